@@ -56,7 +56,7 @@ impl BoundaryMotion {
     /// `points` are those of the undeformed mesh.
     ///
     /// # Errors
-    /// Reports how many such vertices there are, and where the first is.
+    /// When there are such vertices; reports how many, and where the first is.
     pub fn check_alike(
         &self,
         points: &[Point],

@@ -1,4 +1,4 @@
-//! The rigid layer: vertices near a wall that keep their place relative to it.
+//! The rigid layer: vertices near a wall that keep their position relative to it.
 //!
 //! ```text
 //!     x            A vertex x of the layer has its foot f on the nearest facet of
@@ -7,15 +7,14 @@
 //!                  and the offset turns with the wall at the foot, x' = f' + R o.
 //! ```
 //!
-//! R is the blend of the rotations of the facet's vertices (see `rotation`), not the
-//! facet's own: that would jump where the foot passes from one facet to the next,
-//! and shear thin cells that stand across the edge. Turning keeps lengths, so every
-//! vertex keeps its distance from its foot. What is not kept is the distance between
-//! two vertices of the layer where the wall stretches or bends: there the cells of
-//! the layer stretch along with the wall.
+//! R is blended from the rotations of the facet's vertices (see `rotation`). The facet's own rotation would
+//! jump where the foot passes from one facet to the next, and shear thin cells that stand across the edge.
+//! Rotations keep lengths, so every vertex keeps its distance from its foot. The distance between two
+//! vertices of the layer is not kept where the wall stretches or bends: there the cells of the layer stretch
+//! along with the wall.
 //!
-//! Where the wall creases, neighbours may have their feet on different sides of the
-//! crease. Each would go with its own side, so both are left to the graph.
+//! Where the wall has a crease, neighbours may have their feet on different sides of it. Each would move with
+//! its own side, so both are left to the graph.
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle;
@@ -25,17 +24,16 @@ use crate::motion::options::{Extent, FacetSet};
 use crate::motion::rotation::{Wall, change, mean};
 use crate::spatial::NearestTriangle;
 
-/// How far apart the feet of neighbours may be, in distances between the neighbours. In a vessel
-/// with branches, bent, twisted and widened, prisms of the layer keep at least 0.46 of their
-/// thickness and cells invert where this is infinite; at 1.5, 2 and 3 none do, and 0.65, 0.69
-/// and 0.66 are kept.
+/// Largest distance between the feet of neighbours, relative to the distance between the neighbours. In a
+/// vessel with branches, bent, twisted and widened, prisms of the layer keep at least 0.46 of their thickness
+/// and cells invert where this is infinite; at 1.5, 2 and 3 none do, and 0.65, 0.69 and 0.66 are kept.
 const TEAR: f64 = 2.0;
 
 /// One vertex of the layer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Member {
     pub(crate) vertex: VertexId,
-    /// The wall's triangle nearest to it, and the weights of its foot there.
+    /// The nearest triangle of the wall, and the weights of its foot there.
     triangle: u32,
     weights: [f64; 3],
     offset: Point,
@@ -51,8 +49,8 @@ pub(crate) struct Layer {
 }
 
 impl Layer {
-    /// Collects the vertices of `candidates` that are within `extent` of the wall.
-    /// `node` tells the driven node of a vertex.
+    /// Collects those of `candidates` that are within `extent` of the wall. `node` returns the driven node of
+    /// a vertex.
     pub(crate) fn new(
         points: &[Point],
         cells: &Cells,
@@ -101,7 +99,7 @@ impl Layer {
         Ok(Self { wall: Wall::new(&wall_points, triangles), wall_nodes, members })
     }
 
-    /// Displacements of all members, when the driven nodes have these.
+    /// Displacements of all members, given those of the driven nodes.
     pub(crate) fn displacements(&self, driven: &[Point], threads: &Threads) -> Vec<Moved> {
         let of_wall = |v: u32| driven[self.wall_nodes[v as usize] as usize];
         let rotations = self.wall.rotations(of_wall, threads);
@@ -114,15 +112,15 @@ impl Layer {
         })
     }
 
-    /// For each member what numbers at the driven nodes are at its foot.
+    /// The value at the foot of each member, given the values at the driven nodes.
     pub(crate) fn at_feet(&self, driven: &[Point]) -> Vec<Point> {
         let of_wall = |v: u32| driven[self.wall_nodes[v as usize] as usize];
         let foot = |m: &Member| triangle::at(self.wall.triangle(m.triangle as usize).map(of_wall), m.weights);
         self.members.iter().map(foot).collect()
     }
 
-    /// Which members share a cell with a vertex that is neither a member nor driven:
-    /// the layer's outer ones.
+    /// Whether each member is an outer one, which shares a cell with a vertex that is neither a member nor
+    /// driven.
     pub(crate) fn outer(
         &self,
         cells: &Cells,
@@ -144,9 +142,9 @@ impl Layer {
 /// How a member of the layer has moved, in two parts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moved {
-    /// With its foot.
+    /// The displacement of its foot.
     pub(crate) foot: Point,
-    /// By the turn of its offset.
+    /// The change of its offset by rotation.
     pub(crate) turn: Point,
 }
 
@@ -156,9 +154,9 @@ impl Moved {
     }
 }
 
-/// Which vertices share a cell with another one whose foot is more than [`TEAR`] times as far
-/// from theirs as they are from each other. Where the wall creases, each would follow another
-/// side, and the cells between would be crushed: they are left to the graph.
+/// Which vertices share a cell with another one whose foot is more than [`TEAR`] times as far from theirs as
+/// they are from each other. Where the wall has a crease, each would follow another side, and the cells
+/// between would be crushed: they are left to the graph.
 fn between_walls(points: &[Point], cells: &Cells, wall: &[VertexId], members: &[Member]) -> Vec<bool> {
     let mut foot = vec![None; points.len()];
     wall.iter().for_each(|v| foot[v.index()] = Some(points[v.index()]));
@@ -178,8 +176,8 @@ fn between_walls(points: &[Point], cells: &Cells, wall: &[VertexId], members: &[
     between
 }
 
-/// Which vertices are at most `n` cells away from any of `from`. Every ring is a pass over
-/// all cells: for the few rings that a layer has, cheaper than to list the cells of each vertex.
+/// Which vertices are at most `n` cells away from any of `from`. Every ring is a pass over all cells: for the
+/// few rings of a layer, this is cheaper than listing the cells of each vertex.
 fn within_cells(cells: &Cells, n_points: usize, from: &[VertexId], n: usize) -> Vec<bool> {
     let mut near = vec![false; n_points];
     from.iter().for_each(|v| near[v.index()] = true);

@@ -1,4 +1,4 @@
-//! What carries the displacements of the nodes to all vertices.
+//! Maps that carry the displacements of the nodes to all vertices.
 
 use crate::base::{Point, Result, Threads};
 use crate::motion::bodies::Bodies;
@@ -8,14 +8,14 @@ use crate::motion::solve::Solve;
 use crate::motion::spread::Spread;
 use crate::motion::update::Displacements;
 
-/// One of the methods, set up for one place of the mesh.
+/// One of the methods, set up for one position of the mesh.
 #[derive(Debug)]
 pub(crate) enum Map {
     /// A weighted sum for each vertex.
     Graph(Spread),
     /// Shares in the motion of rigid bodies, and weighted sums for the rest.
     Bodies(Box<Bodies>),
-    /// The graph, whose nodes turn.
+    /// The graph whose nodes rotate.
     Guided(Box<Guided>),
     /// Means of rigid motions, by distance.
     Inverse(Box<Inverse>),
@@ -26,10 +26,11 @@ pub(crate) enum Map {
 }
 
 impl Map {
-    /// Moves all vertices from where they are; how many iterations that took.
+    /// Moves all vertices from their positions `from`; returns the number of iterations (of centres, for
+    /// radial basis functions).
     ///
     /// # Errors
-    /// When a system is not solved to the tolerance.
+    /// When a system cannot be solved to the tolerance.
     pub(crate) fn apply(
         &self,
         from: &[Point],

@@ -1,8 +1,7 @@
-//! Which vertex of a mesh each point of a surface file is, and how far it moved.
+//! Which vertex of a mesh each point of a surface file is, and how far the point has moved.
 //!
-//! A surface that was cut out of a mesh carries the ids of its points
-//! (`GlobalNodeID` counts from one, `vtkOriginalPointIds` from zero). Where it
-//! carries none, a point is the vertex that lies where it lies.
+//! A surface that was cut out of a mesh carries the ids of its points (`GlobalNodeID` counts from one,
+//! `vtkOriginalPointIds` from zero). Where it carries none, a point is the vertex at its position.
 
 use std::collections::HashMap;
 
@@ -10,7 +9,7 @@ use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{norm, sub};
 use crate::mesh::{Mesh, bounds};
 
-/// An array that names vertices of the mesh, and the id of the first one where the mesh itself does not say.
+/// An array of vertex ids, and the id of the first vertex of a mesh that has no such array.
 struct IdArray {
     name: &'static str,
     first: i64,
@@ -18,27 +17,27 @@ struct IdArray {
 
 const GLOBAL_NODE_ID: IdArray = IdArray { name: "GlobalNodeID", first: 1 };
 
-/// In the order in which they are looked for.
+/// In the order in which they are tried.
 const ID_ARRAYS: [IdArray; 2] = [GLOBAL_NODE_ID, IdArray { name: "vtkOriginalPointIds", first: 0 }];
 
-/// Vector arrays on a surface that are taken for its displacement, first choice first.
+/// Names of the vector array on a surface that holds its displacement, first choice first.
 const DISPLACEMENT_ARRAYS: &[&str] = &["displacement", "Displacement", "u", "U", "disp"];
 
-/// Two points are one where they are nearer than this part of the bounding box's
-/// diagonal: single precision keeps 1.2e-7 of a coordinate.
+/// Two points are the same where they are closer than this fraction of the bounding box's diagonal: single
+/// precision keeps 1.2e-7 of a coordinate.
 const SAME_PLACE: f64 = 1e-6;
 
-/// For each point of `surface`, which lies on the undeformed mesh, the vertex of
-/// `mesh` that it is: the one that lies there, else the one that its id names.
+/// The vertex of `mesh` that each point of `surface`, which lies on the undeformed mesh, is: by position, or
+/// by its ids where that fails.
 ///
 /// # Errors
-/// When points lie on no vertex and carry no ids: says how many, which is the
-/// first and how far it is from the mesh. When an id names no vertex.
+/// When points lie on no vertex and carry no ids; reports how many they are, which is the first, and how far
+/// it is from the mesh. When an id belongs to no vertex.
 pub fn match_patch(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
     match_by_position(mesh, surface).or_else(|lost| match_by_id(mesh, surface)?.ok_or(lost))
 }
 
-/// The vertices that the surface's own ids name; `None` where it carries none.
+/// The vertices that belong to the surface's own ids; `None` where it carries none.
 fn match_by_id(mesh: &Mesh, surface: &Mesh) -> Result<Option<Vec<VertexId>>> {
     for array in &ID_ARRAYS {
         let Some(ids) = array.of(surface) else { continue };
@@ -47,15 +46,15 @@ fn match_by_id(mesh: &Mesh, surface: &Mesh) -> Result<Option<Vec<VertexId>>> {
     Ok(None)
 }
 
-/// The vertices that nodes with these ids are: by the mesh's own `GlobalNodeID`, counted from 1 where it has none.
+/// The vertices with these ids: by the mesh's own `GlobalNodeID`, or counted from 1 where it has none.
 ///
 /// # Errors
-/// When an id is that of no vertex: says which.
+/// When an id belongs to no vertex; reports which.
 pub fn match_ids(mesh: &Mesh, ids: &[i64]) -> Result<Vec<VertexId>> {
     GLOBAL_NODE_ID.vertices(mesh, ids)
 }
 
-/// The ids by which [`match_ids`] finds the vertices.
+/// The id of each vertex, as [`match_ids`] finds it.
 pub fn node_ids(mesh: &Mesh) -> Vec<i64> {
     GLOBAL_NODE_ID.of(mesh).unwrap_or_else(|| GLOBAL_NODE_ID.counted(mesh).collect())
 }
@@ -108,8 +107,7 @@ fn match_by_position(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
     ))
 }
 
-/// Vertices by where they lie, in cells as wide as the distance at which two
-/// points are one.
+/// Vertices by position, in grid cells as wide as the distance below which two points are the same.
 struct Grid<'a> {
     points: &'a [Point],
     low: Point,
@@ -132,7 +130,7 @@ impl<'a> Grid<'a> {
         [0, 1, 2].map(|i| ((p[i] - self.low[i]) / self.width).floor() as i64)
     }
 
-    /// The nearest vertex within the width of a cell; of equally near ones the first.
+    /// The nearest vertex within the width of a grid cell; the first of equally near ones.
     fn vertex_at(&self, p: Point) -> Option<VertexId> {
         let [i, j, k] = self.cell(p);
         let mut nearest: Option<(f64, u32)> = None;
@@ -156,38 +154,35 @@ pub enum Matching {
     /// By the ids that the surface carries; by position where it carries none.
     #[default]
     Id,
-    /// By position, whatever the surface carries: for one whose ids are those of
-    /// another mesh, such as the solid around a fluid.
+    /// By position, even where the surface carries ids: for a surface with the ids of another mesh, such as
+    /// the solid around a fluid.
     Position,
 }
 
-/// Reads the displacements of a mesh's vertices off surfaces, one after the
-/// other: of one displaced surface, or of a series of them.
+/// Reads the displacements of a mesh's vertices from a displaced surface, or from a series of surfaces.
 ///
-/// Where a surface lies away from the undeformed mesh, its points tell the
-/// displacement; where it lies on it, its vector array `displacement` does, and
-/// without one nothing has moved. Surfaces without ids must begin with one in
-/// the undeformed place: those after it have the same points in the same order.
+/// Where a surface lies away from the undeformed mesh, its points give the displacement. Where it lies on the
+/// mesh, its vector array `displacement` does; without such an array nothing has moved. A series without ids
+/// must begin with the undeformed surface; those after it have the same points in the same order.
 #[derive(Debug)]
 pub struct SurfaceMotion<'a> {
     mesh: &'a Mesh,
     matching: Matching,
-    /// Of the surface before: which vertex each of its points is.
+    /// The vertices that the points of the previous surface are.
     vertices: Option<Vec<VertexId>>,
 }
 
 impl<'a> SurfaceMotion<'a> {
-    /// Nothing is read yet.
+    /// A reader that has read no surface yet.
     pub fn new(mesh: &'a Mesh, matching: Matching) -> Self {
         Self { mesh, matching, vertices: None }
     }
 
-    /// The vertices that the next surface holds, each once, and their displacements
-    /// from where they are in the mesh.
+    /// The vertices of the next surface, each once, and their displacements from their positions in the mesh.
     ///
     /// # Errors
-    /// When a point is no vertex of the mesh, as [`match_patch`]; when two points that are one vertex move apart; when
-    /// a displacement is not finite.
+    /// When a point is no vertex of the mesh, as in [`match_patch`]; when two points of one vertex move
+    /// apart; when a displacement is not finite.
     pub fn next(&mut self, surface: &Mesh) -> Result<Vec<(VertexId, Point)>> {
         let vertices = self.vertices_of(surface)?;
         let moved = self.displacements(surface, &vertices)?;
@@ -221,7 +216,7 @@ impl<'a> SurfaceMotion<'a> {
         let points = vertices.iter().zip(&surface.points);
         let moved: Vec<Point> = points.map(|(v, &p)| sub(p, self.mesh.points[v.index()])).collect();
         let same_place = self.same_place();
-        // Told by what holds, not by what does not: a coordinate that is no number must not pass for unmoved.
+        // Tests what must hold, since a coordinate that is not a number must not pass for unmoved.
         let unmoved = moved.iter().all(|&d| norm(d) <= same_place);
         if !unmoved {
             return Ok(moved);
@@ -237,7 +232,7 @@ impl<'a> SurfaceMotion<'a> {
         self.mesh.bounds().map_or(0.0, |[low, high]| norm(sub(high, low)) * SAME_PLACE)
     }
 
-    /// Points of several faces that are one vertex, taken together.
+    /// Merges points of several faces that are one vertex.
     fn once_each(&self, vertices: &[VertexId], moved: &[Point]) -> Result<Vec<(VertexId, Point)>> {
         let same_place = self.same_place();
         let mut order: Vec<usize> = (0..vertices.len()).collect();

@@ -1,7 +1,7 @@
 //! Middle nodes of quadratic cells that stay in the middle of their corners, so that straight edges stay straight.
 //!
-//! A method moves each vertex for itself. The middle node of a straight edge would leave the edge wherever displacements are not linear along it, and a cell whose
-//! corners move well would be folded between them.
+//! A method moves each vertex independently. The middle node of a straight edge would leave the edge wherever
+//! displacements are not linear along it, and a cell whose corners move well would be folded between them.
 
 use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::vector::{add, norm, scale, sub};
@@ -11,21 +11,25 @@ use crate::mesh::{CellKind, Mesh};
 /// Middle nodes, and the corners that each stays between.
 #[derive(Debug, Default)]
 pub(crate) struct Middles {
-    /// Rising.
+    /// In rising order.
     vertices: Vec<VertexId>,
     corners: Csr<VertexId>,
 }
 
-/// A node is in the middle when it is no farther off than this part of the longest way between its corners: an arc that bends by less than a
-/// thousandth of a radian, and coordinates of some digits.
+/// A node is in the middle when it is off by no more than this fraction of the longest distance between its
+/// corners: this allows for an arc that bends by less than a thousandth of a radian, and for coordinates of
+/// few digits.
 const STRAIGHT: f64 = 1e-4;
-/// Or than so many roundings of the largest coordinate, in the precision that the coordinates are in.
+/// It is also in the middle when it is off by this many roundings of the largest coordinate at most, in the
+/// precision of the coordinates.
 const ROUNDINGS: f64 = 4.0;
 
 impl Middles {
-    /// Those of a mesh in its first place that nobody `is_prescribed` to; `any`: also the nodes of edges that are not straight, for methods that know corners alone.
+    /// Finds the middle nodes of a reference mesh that are not prescribed; with `any`, also those of edges
+    /// that are not straight, for methods that know corners alone.
     ///
-    /// What is a corner of another volume cell follows as corners do. Of several cells that see a node between different corners the first counts.
+    /// A node that is a corner of another volume cell follows as corners do. If several cells have a node
+    /// between different corners, the first counts.
     pub(crate) fn of(mesh: &Mesh, is_prescribed: &[bool], any: bool) -> Self {
         let volumes = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3));
         let of_kind: Vec<_> = (0..=u8::MAX).map(|k| middles(CellKind(k))).collect();
@@ -59,8 +63,8 @@ impl Middles {
         &self.vertices
     }
 
-    /// Puts every node where its corners in `out` take it: as far from `reference` as they are in the mean. What it was off the middle at first it stays, and a mesh that
-    /// does not move keeps its bits.
+    /// Moves every node by the mean displacement of its corners in `out`. A node that was off the middle at
+    /// first stays off by as much, and a mesh that does not move keeps its bits.
     pub(crate) fn place(&self, reference: &[Point], out: &mut [Point], threads: &Threads) {
         let moved = |v: &VertexId| sub(out[v.index()], reference[v.index()]);
         let places = threads.map(self.vertices.len(), |i| {
@@ -72,7 +76,7 @@ impl Middles {
     }
 }
 
-/// Whether a node lies in the middle of its corners, but for rounding.
+/// Whether a node lies in the middle of its corners, up to rounding.
 fn is_between(p: Point, corners: &[Point]) -> bool {
     let middle = scale(corners.iter().copied().fold([0.0; 3], add), 1.0 / corners.len() as f64);
     let longest = corners.iter().map(|&c| norm(sub(c, corners[0]))).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! The mover: set up once, then milliseconds a step.
+//! The mover: set up once, then milliseconds per step.
 
 use std::time::Instant;
 
@@ -23,33 +23,32 @@ use crate::motion::spread::Spread;
 use crate::motion::update::Update;
 use crate::motion::walls::{Added, Walls};
 
-/// Moves the vertices of one mesh after its boundary.
+/// Moves the vertices of a mesh with its boundary.
 ///
-/// It keeps the mesh's first place, the reference: a step depends on the displacement
-/// alone, never on the steps before it, so a wall that comes back brings every vertex
-/// back to the same bits.
+/// It keeps the mesh as given, the reference: a step depends on the displacement alone, never on the steps
+/// before it, so a wall that returns brings every vertex back to the same bits.
 #[derive(Debug)]
 pub struct Mover {
     pub(crate) reference: Vec<Point>,
     pub(crate) nodes: Nodes,
     /// Vertices that follow the nodes.
     hanging: Vec<VertexId>,
-    /// Vertices that stay in the middle of others.
+    /// Middle nodes that stay between their corners.
     middles: Middles,
     method: Method,
     strain: Strain,
     /// The vertices of each rigid body.
     bodies: Vec<Vec<VertexId>>,
-    /// Where a Laplace equation is stiff; facets whose rotation guides.
+    /// Where a Laplace equation is stiff, or the facets whose rotation guides.
     wall: FacetSet,
-    /// How they follow from the reference.
+    /// How vertices follow from the reference.
     pub(crate) map: Map,
     pub(crate) smoother: Option<Smoother>,
     /// Nodes of the graph beside those that are given.
     helpers: Helpers,
     /// What the graph keeps within.
     walls: Option<Walls>,
-    /// Tets of the graph of the reference that hold a vertex.
+    /// Tets of the graph of the reference that contain a vertex.
     pub(crate) tets: Vec<[VertexId; 4]>,
     pub(crate) check: Check,
     pub(crate) limits: Limits,
@@ -57,7 +56,7 @@ pub struct Mover {
     setup: Setup,
 }
 
-/// What a step took.
+/// The work done in a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Work {
     pub(crate) iterations: usize,
@@ -67,31 +66,33 @@ pub(crate) struct Work {
 /// What setting up found, and how long it took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Setup {
-    /// Vertices that the caller moves: those of the boundary, and those asked for.
+    /// Vertices that the caller moves: those of the boundary, and those requested.
     pub driven: usize,
-    /// Of these, vertices that slide in the plane of their patch, or on the line in which two such planes meet.
+    /// Of these, vertices that slide in the plane of their patch, or on the line where two such planes meet.
     pub sliding: usize,
     /// Vertices of the rigid layer.
     pub layer: usize,
-    /// Nodes of the graph: driven vertices, the outer ones of the layer, and those inside that the method adds.
+    /// Nodes of the graph: driven vertices, the outer ones of the layer, and interior ones that the method
+    /// adds.
     pub graph_nodes: usize,
     /// Tets of the graph.
     pub graph_tets: usize,
-    /// Tets of the graph that hold a vertex.
+    /// Tets of the graph that contain a vertex.
     pub holding_tets: usize,
-    /// Vertices that hang in the graph.
+    /// Vertices that follow the graph.
     pub hanging: usize,
-    /// Middle nodes of quadratic cells, none of them in the layer or sliding, that stay in the middle of their corners.
+    /// Middle nodes of quadratic cells that stay in the middle of their corners; none of them is in the layer
+    /// or slides.
     #[serde(skip_serializing_if = "is_zero")]
     pub middles: usize,
     /// Vertices that a linear system is solved for.
     pub solved: usize,
-    /// Bytes of its factor that is kept; 0 where steps are iterated.
+    /// Bytes of the factor that is kept of this system; 0 where steps are iterated.
     pub factor_bytes: u64,
-    /// Of these, vertices of cells that lie outside the graph (middle nodes of a curved
-    /// boundary, vertices of inverted cells): they follow the nearest place of it.
+    /// Of those that follow the graph, vertices of cells that lie outside it (middle nodes of a curved
+    /// boundary, vertices of inverted cells): they follow the nearest place in it.
     pub outside: usize,
-    /// Vertices of no volume cell that lie outside the graph, or nowhere: they stay.
+    /// Vertices of no volume cell that lie outside the graph, or have no finite position: they stay.
     pub left: usize,
     /// Seconds, by stage.
     pub seconds: SetupSeconds,
@@ -104,7 +105,7 @@ pub struct SetupSeconds {
     pub boundary: f64,
     /// Rigid layer and sliding patches.
     pub layer: f64,
-    /// Collecting the corners of the cells, and looking which are inverted at the start.
+    /// Collecting the corners of the cells, and checking which are inverted at the start.
     pub cells: f64,
     /// The Delaunay triangulation of the graph's nodes.
     pub triangulation: f64,
@@ -114,16 +115,16 @@ pub struct SetupSeconds {
     pub system: f64,
     /// Finding the tets of each vertex, for smoothing.
     pub smoothing: f64,
-    /// All of it.
+    /// The whole set-up.
     pub total: f64,
 }
 
 impl Mover {
-    /// Sets up the motion of `mesh`: finds its boundary, builds the graph and hangs every vertex in it.
+    /// Sets up the motion of `mesh`: finds its boundary, builds the graph and locates every vertex in it.
     ///
     /// # Errors
-    /// When the mesh has no volume cells, vertices without a finite place, or a boundary
-    /// that spans no space; when options name what is not there.
+    /// When the mesh has no volume cells, vertices without a finite position, or a boundary that does not
+    /// span space; when options name something that does not exist.
     pub fn new(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<Self> {
         let begin = Instant::now();
         let mut setup = Setup::default();
@@ -182,12 +183,13 @@ impl Mover {
         Ok(mover)
     }
 
-    /// The vertices that the caller moves, in rising order: those of the boundary, and those asked for.
+    /// The vertices that the caller moves, in rising order: those of the boundary, and those of
+    /// [`Options::also_moved`].
     pub fn boundary(&self) -> &[VertexId] {
         &self.nodes.vertices[..self.nodes.n_driven]
     }
 
-    /// The points of the mesh in its first place.
+    /// The points of the mesh as it was given.
     pub fn reference(&self) -> &[Point] {
         &self.reference
     }
@@ -197,8 +199,8 @@ impl Mover {
         &self.nodes.planes
     }
 
-    /// Where a rim of a sliding patch leaves its plane the farthest, when the vertices of [`Self::boundary`] have these displacements; `None` where all
-    /// stay within their planes.
+    /// Where the rim of a sliding patch leaves its plane farthest, when the vertices of [`Self::boundary`]
+    /// have these displacements; `None` where all stay within their planes.
     pub fn leaves_plane(&self, displacement: &[Point]) -> Option<LeavesPlane> {
         self.nodes.leaving(&self.reference, displacement)
     }
@@ -208,9 +210,8 @@ impl Mover {
         &self.setup
     }
 
-    /// The vertices that vertex `v` follows and their weights, as far as it hangs in the graph and follows nothing else.
-    ///
-    /// Panics when there is no such vertex.
+    /// The four vertices that `v` follows in the graph, and their weights; `None` where it follows anything
+    /// else.
     pub fn weights(&self, v: VertexId) -> Option<([VertexId; 4], [f64; 4])> {
         self.hanging.binary_search(&v).ok()?;
         let update = match &self.map {
@@ -224,13 +225,14 @@ impl Mover {
         Some(([a?, b?, c?, d?], weights))
     }
 
-    /// Moves the mesh from its first place: `displacement` has an entry for each vertex
-    /// of [`Self::boundary`], `out` gets the place of every vertex of the mesh.
+    /// Moves the mesh from the reference: `displacement` has an entry for each vertex of [`Self::boundary`],
+    /// and `out` receives the position of every vertex of the mesh.
     ///
-    /// The driven vertices are where they are told to be, to the bit; nothing is checked.
+    /// Driven vertices arrive to the bit; cells are not checked.
     ///
     /// # Errors
-    /// When a length does not fit, or a displacement is not finite.
+    /// When a length does not fit, a displacement is not finite, or a linear system cannot be solved to its
+    /// tolerance.
     pub fn step(&self, displacement: &[Point], out: &mut [Point], threads: &Threads) -> Result<()> {
         self.check_lengths(displacement, out)?;
         self.go(displacement, out, threads).map(|_| ())
@@ -248,21 +250,22 @@ impl Mover {
         }
     }
 
-    /// A step without a look at the lengths.
+    /// A step without a check of the lengths.
     pub(crate) fn go(&self, displacement: &[Point], out: &mut [Point], threads: &Threads) -> Result<Work> {
         let nodes = self.nodes.displacements(displacement, threads);
         let iterations = self.map.apply(&self.reference, &nodes, out, threads)?;
         Ok(Work { iterations, smoothed: self.finish(out, threads) })
     }
 
-    /// What comes after the method: smooths, where that is asked for, and puts middle nodes in the middle. How many vertices were smoothed.
+    /// Finishes a step: smooths, where that is requested, and puts middle nodes in the middle. Returns the
+    /// number of vertices smoothed.
     pub(crate) fn finish(&self, out: &mut [Point], threads: &Threads) -> usize {
         let n_smoothed = self.smoother.as_ref().map_or(0, |smoother| smoother.apply(out, threads));
         self.middles.place(&self.reference, out, threads);
         n_smoothed
     }
 
-    /// Seconds that it took.
+    /// Sets up smoothing; returns the seconds that this took.
     fn set_up_smoothing(&mut self, sweeps: usize) -> f64 {
         let begin = Instant::now();
         let new = || Smoother::new(&self.check, &self.hanging, self.reference.len(), sweeps);
@@ -270,11 +273,11 @@ impl Mover {
         begin.elapsed().as_secs_f64()
     }
 
-    /// Builds the graph anew and hangs every vertex into it, then does a [`Self::step`]: what
-    /// one sub-step costs beside the looking for inverted cells.
+    /// Rebuilds the graph and locates every vertex in it, then does a [`Self::step`]: the cost of a sub-step
+    /// without the check for inverted cells.
     ///
     /// # Errors
-    /// As [`Self::step`].
+    /// Those of [`Self::step`].
     pub fn rebuild_and_step(
         &self,
         displacement: &[Point],
@@ -304,7 +307,7 @@ impl Mover {
         }
     }
 
-    /// Sets the method up where `points` has the vertices.
+    /// Sets the method up with the vertices at `points`.
     pub(crate) fn rebuild(&self, points: &[Point], threads: &Threads) -> Result<Map> {
         match self.method {
             Method::InverseDistance => {
@@ -327,7 +330,7 @@ impl Mover {
         }
     }
 
-    /// What carries displacements on a graph, found with the vertices at `points`.
+    /// The map of displacements on a graph that was built with the vertices at `points`.
     fn on_graph(&self, graph: Graph, found: &Hanging, points: &[Point], threads: &Threads) -> Result<Map> {
         if matches!(self.method, Method::Guided) {
             let mut update = Update::never(graph.places.len() as u32, self.reference.len());
@@ -357,7 +360,7 @@ impl Mover {
         }
     }
 
-    /// Sets up the system of the reference. Vertices that no cell uses are not part of what moves.
+    /// Sets up the system of the reference. Vertices that no cell uses do not take part.
     fn assemble_reference(&mut self, is_used: &[bool], threads: &Threads) -> Result<()> {
         let begin = Instant::now();
         self.hanging.retain(|v| is_used[v.index()]);
@@ -381,7 +384,7 @@ impl Mover {
         Ok(())
     }
 
-    /// Where the vertices hang in the graph; seconds for building it, and for looking them up.
+    /// Builds the graph and locates the vertices in it; also returns the seconds for each of the two.
     fn find(&self, points: &[Point], threads: &Threads) -> Result<(Graph, Hanging, [f64; 2])> {
         let mut clock = Instant::now();
         let at = |v: &VertexId| points[v.index()];
@@ -400,7 +403,7 @@ impl Mover {
         Ok((Graph { places: graph, tets }, found, [built, lap(&mut clock)]))
     }
 
-    /// Builds the graph of the reference. Vertices outside of it that no cell uses are not part of what moves.
+    /// Builds the graph of the reference. Vertices outside it that no cell uses do not take part.
     fn hang_reference(&mut self, is_used: &[bool], threads: &Threads) -> Result<()> {
         if matches!(self.method, Method::Guided) {
             self.helpers = guided::choose(&self.check.corners.tets, &self.reference, &self.hanging, RINGS);
@@ -437,7 +440,8 @@ impl Mover {
         Ok(())
     }
 
-    /// The table for all vertices: nodes hang on themselves, what stays on the node that never moves.
+    /// The table for all vertices: nodes follow themselves, and vertices that stay follow the node that never
+    /// moves.
     fn tabulate(&self, found: &Hanging, n_added: usize) -> Update {
         let n_nodes = self.nodes.vertices.len();
         let mut update = Update::never((n_nodes + n_added) as u32, self.reference.len());
@@ -456,15 +460,17 @@ impl Mover {
     }
 }
 
-/// Helpers are more than so many edges apart. With 2 a step takes a third of the time on a mesh of 32,000 vertices, but a flap that bends by 90 degrees keeps an inverted tet through 16
-/// sweeps of smoothing, and at 60 degrees half as many bad ones again.
+/// Helpers are more than this many edges apart. With 2 a step takes a third of the time on a mesh of 32,000
+/// vertices, but a flap that bends by 90 degrees keeps an inverted tet through 16 sweeps of smoothing, and at
+/// 60 degrees half as many bad ones again.
 const RINGS: usize = 1;
 
 fn is_zero(n: &usize) -> bool {
     *n == 0
 }
 
-/// The facets that guide: the boundary. Where a Laplace equation is stiff: what the options name, else all of the boundary that does not slide.
+/// The facets that guide, which are the boundary; or those where a Laplace equation is stiff: what the
+/// options name, else all of the boundary that does not slide.
 fn wall(boundary: &Boundary, options: &Options) -> FacetSet {
     match &options.method {
         Method::Guided | Method::InverseDistance => FacetSet::of_boundary(boundary, "boundary", |_| true),

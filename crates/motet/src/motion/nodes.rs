@@ -1,4 +1,4 @@
-//! The nodes: vertices that something else than the graph moves. The caller, a wall, a rim.
+//! The nodes: vertices that something other than the graph moves: the caller, a wall, or a rim.
 
 use std::collections::HashSet;
 
@@ -19,27 +19,27 @@ pub(crate) struct Nodes {
     /// Nodes that the graph is made of: driven ones, and the outer ones of the layer.
     pub(crate) of_graph: Vec<u32>,
     layer: Option<Layer>,
-    /// For each member of the layer its node.
+    /// The node of each member of the layer.
     member_nodes: Vec<u32>,
-    /// For members that slide, the place in `slides`.
+    /// For members that slide, the index into `slides`.
     member_slides: Vec<Option<u32>>,
     slides: Vec<Slide>,
-    /// Where the vertices of sliding patches are held.
+    /// How the vertices of sliding patches are constrained.
     freedom: Freedom,
-    /// What is reported of the planes of sliding patches.
+    /// The planes of sliding patches, as they are reported.
     pub(crate) planes: Vec<SlidingPlane>,
     rims: Vec<Rim>,
 }
 
-/// Where a motion in sub-steps has brought the nodes, and what those that slide follow from there on.
+/// Where a motion in sub-steps has brought the nodes, and what the sliding ones follow from there on.
 #[derive(Debug)]
 pub(crate) struct Start {
-    /// Displacements of all nodes from the reference, and the node that never moves.
+    /// Displacements of all nodes from the reference, and that of the node that never moves.
     pub(crate) displacement: Vec<Padded>,
     slides: Vec<Slide>,
 }
 
-/// Says that a vertex is no node.
+/// Marks a vertex that is no node.
 const NONE: u32 = u32::MAX;
 
 impl Nodes {
@@ -79,7 +79,8 @@ impl Nodes {
         Ok(nodes)
     }
 
-    /// What the vertices that slide follow where `points` has all vertices; those of the layer follow their feet.
+    /// What the sliding vertices follow, with all vertices at `points`; those of the layer follow their feet
+    /// instead.
     fn hung(&self, freedom: &Freedom, points: &[Point], threads: &Threads) -> Result<Vec<Slide>> {
         let mut node_of = vec![NONE; points.len()];
         (0..).zip(&self.vertices[..self.n_driven]).for_each(|(i, v)| node_of[v.index()] = i);
@@ -91,7 +92,8 @@ impl Nodes {
         freedom.held.iter().map(slide).collect()
     }
 
-    /// The start of a sub-step where `points` has the vertices, reached by the displacements `driven` of the driven nodes.
+    /// The start of a sub-step with the vertices at `points`, reached by the displacements `driven` of the
+    /// driven nodes.
     ///
     /// # Errors
     /// When the vertices of a sliding patch cannot be triangulated there.
@@ -114,8 +116,8 @@ impl Nodes {
         Ok(Start { displacement, slides })
     }
 
-    /// Makes nodes of the vertices near the wall, as far as they are not driven; those of them
-    /// that slide are driven in name only, and move with the wall, too.
+    /// Makes nodes of the vertices near the wall that are not driven; sliding vertices, which are driven in
+    /// name only, move with the wall as well.
     fn add_layer(
         &mut self,
         mesh: &Mesh,
@@ -144,7 +146,7 @@ impl Nodes {
         Ok(())
     }
 
-    /// Displacements of all nodes from those of the driven ones.
+    /// Displacements of all nodes, given those of the driven ones.
     pub(crate) fn displacements<'a>(&self, driven: &'a [Point], threads: &Threads) -> Displacements<'a> {
         if self.layer.is_none() && self.slides.is_empty() {
             return Displacements::Driven(driven);
@@ -154,7 +156,8 @@ impl Nodes {
         Displacements::All(all)
     }
 
-    /// Displacements of all nodes from the reference, from those of the driven ones, when the motion goes on from `start`.
+    /// Displacements of all nodes from the reference, given those of the driven ones, when the motion
+    /// continues from `start`.
     pub(crate) fn displacements_from(
         &self,
         start: &Start,
@@ -169,7 +172,7 @@ impl Nodes {
         all
     }
 
-    /// Displacements of driven nodes as they are given, and of those of the layer.
+    /// Displacements before sliding: of driven nodes as they are given, and of those of the layer.
     fn before_sliding(&self, driven: &[Point], threads: &Threads) -> Vec<Padded> {
         let mut all = vec![Padded::default(); self.vertices.len() + 1];
         all.iter_mut().zip(driven).for_each(|(all, &d)| *all = Padded::new(d));
@@ -185,19 +188,19 @@ impl Nodes {
         all
     }
 
-    /// Where a rim of a sliding patch leaves its plane farthest, when the driven nodes have these displacements.
+    /// Where a rim of a sliding patch leaves its plane farthest, given the displacements of the driven nodes.
     pub(crate) fn leaving(&self, reference: &[Point], driven: &[Point]) -> Option<LeavesPlane> {
         leaving(&self.rims, &self.vertices, reference, driven)
     }
 
-    /// Nodes that slide after others, rising; those of the layer are not among them.
+    /// Nodes that slide by following others, in rising order; those of the layer are not among them.
     pub(crate) fn sliding(&self) -> Vec<u32> {
         let mut sliding: Vec<u32> = self.slides.iter().flat_map(|s| s.sliding.iter().copied()).collect();
         sliding.sort_unstable();
         sliding
     }
 
-    /// Whether each of the vertices of a mesh has its place from the caller: driven, and sliding in no plane.
+    /// Whether the caller prescribes the position of each vertex of a mesh: it is driven and does not slide.
     pub(crate) fn prescribed(&self, n_points: usize) -> Vec<bool> {
         let mut is_prescribed = vec![false; n_points];
         self.vertices[..self.n_driven].iter().for_each(|v| is_prescribed[v.index()] = true);
@@ -208,7 +211,7 @@ impl Nodes {
         is_prescribed
     }
 
-    /// Numbers of all nodes from those of the driven ones: nodes of the layer have those of their feet.
+    /// Values at all nodes, given those at the driven ones: nodes of the layer have the values at their feet.
     pub(crate) fn at_feet(&self, driven: &[Point]) -> Vec<Point> {
         let mut all = driven.to_vec();
         all.resize(self.vertices.len(), [0.0; 3]);
@@ -224,7 +227,7 @@ impl Nodes {
         members + self.slides.iter().map(Slide::n_sliding).sum::<usize>()
     }
 
-    /// Puts every node to exactly where it belongs.
+    /// Puts every node exactly where its displacement takes it.
     pub(crate) fn place(&self, reference: &[Point], displacement: &[Padded], out: &mut [Point]) {
         for (v, &d) in self.vertices.iter().zip(displacement) {
             out[v.index()] = add(reference[v.index()], d.point());

@@ -1,4 +1,4 @@
-//! What a mover is told beside the mesh: which facets are walls, what stays rigid, what slides.
+//! Options of a mover: which facets are walls, what stays rigid, what slides.
 
 use serde::Serialize;
 
@@ -7,21 +7,26 @@ use crate::base::{Csr, Error, Result, VertexId};
 use crate::geometry::vector::LARGEST;
 use crate::mesh::{Boundary, CellKind, Mesh, corners};
 
-/// How the vertices inside follow.
+/// How the interior vertices follow.
 #[derive(Clone, Debug, Default, Serialize)]
 pub enum Method {
     /// By weights in the Delaunay graph of the nodes (Liu, Qin, Xia 2006).
     #[default]
     Delaunay,
-    /// As rigid bodies carry them along: the patches, each a body; where there is none, each part of the walls that hangs together is one, but for the outer one. Walls are the boundary and
-    /// facets inside whose vertices are [moved](Options::also_moved), such as those between fluid and solid: what they enclose goes along rigidly.
-    /// A body's motion is the rigid one that fits its vertices best, a turn of at most half a circle; the rest is done by the graph.
+    /// As rigid bodies carry them along: each of the patches is a body; where there are none, each connected
+    /// part of the walls is one, except the outer part.
+    ///
+    /// Walls are the boundary and interior facets whose vertices are [moved](Options::also_moved), such as
+    /// those between fluid and solid: what they enclose moves along rigidly. A body's motion is the rigid one
+    /// that best fits its vertices, a rotation of at most half a circle; the rest is done by the graph.
     Bodies(Vec<FacetSet>),
-    /// By the graph with some vertices inside as nodes, each with a rotation beside its displacement, that of the walls near it: for walls that bend. Two small linear systems a step.
+    /// By the graph with some interior vertices as nodes, each with a rotation in addition to its
+    /// displacement, that of the walls near it: for walls that bend. Two small linear systems per step.
     Guided,
-    /// As an elastic body that is stiff where cells are small. A linear system a step.
+    /// As an elastic body that is stiff where cells are small. A linear system per step.
     Elastic(Elastic),
-    /// Each coordinate of the displacement by a Laplace equation that is stiff at the wall. A linear system a step.
+    /// Each coordinate of the displacement by a Laplace equation that is stiff at the wall. A linear system
+    /// per step.
     Laplace(Laplace),
     /// By the mean of the rigid motions of all boundary vertices, weighted by distance (Luke, Collins, Blades 2012).
     InverseDistance,
@@ -29,21 +34,23 @@ pub enum Method {
     Radial,
 }
 
-/// Where the strain goes that bodies put on what is round them: see [`Method::Bodies`].
+/// Where the strain goes that bodies put on the volume around them: see [`Method::Bodies`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Strain {
-    /// Evenly over all that lies between a body and the walls that stay: no tet gets much of it. For walls that come back.
+    /// Evenly over all that lies between a body and the walls that stay: no tet gets much of it. For walls
+    /// that return.
     #[default]
     Even,
-    /// Into a band of about one edge beside the body: what is farther away stays as it is, to the bit. For bodies that go on: few tets become bad, again and again, and all others stay good.
+    /// Into a band of about one edge beside the body: what is farther away stays unchanged, to the bit. For
+    /// bodies that keep moving: a few tets become bad, again and again, and all others stay good.
     Band,
 }
 
 impl Strain {
-    /// The one of a name, `even` or `band`.
+    /// The strain with a name, `even` or `band`.
     ///
     /// # Errors
-    /// When none is called that.
+    /// When none has that name.
     pub fn of_name(name: &str) -> Result<Self> {
         match name {
             "even" => Ok(Self::Even),
@@ -58,11 +65,13 @@ impl Strain {
 pub struct Elastic {
     /// Poisson's ratio, at least 0 and below 0.5. Default: 0.3.
     pub poisson: f64,
-    /// A cell is as stiff as one over its volume to this power (Stein, Tezduyar, Benney 2003). Default: 1.
+    /// The stiffness of a cell is one over its volume to this power (Stein, Tezduyar, Benney 2003). Default:
+    /// 1.
     pub stiffening: f64,
-    /// When a step is solved that is iterated. Default: a residual of 1e-6.
+    /// Tolerance of steps that are iterated. Default: a residual of 1e-6.
     pub tolerance: Tolerance,
-    /// Bytes that a factor of the matrix may take. It is kept, so that a step is exact and no longer an iteration; where it would take more than this, steps are iterated. Default: 0.
+    /// Bytes that a factor of the matrix may take. It is kept, so that a step is exact and needs no
+    /// iterations; where it would take more than this, steps are iterated. Default: 0.
     pub factor_bytes: u64,
 }
 
@@ -77,11 +86,12 @@ impl Default for Elastic {
 pub struct Laplace {
     /// The diffusivity is one over the distance from the wall to this power. Default: 1.
     pub exponent: f64,
-    /// The wall; `None`: all of the boundary that does not slide.
+    /// The wall; `None` means all of the boundary that does not slide.
     pub wall: Option<FacetSet>,
-    /// When a step is solved that is iterated. Default: a residual of 1e-6.
+    /// Tolerance of steps that are iterated. Default: a residual of 1e-6.
     pub tolerance: Tolerance,
-    /// Bytes that a factor of the matrix may take. It is kept, so that a step is exact and no longer an iteration; where it would take more than this, steps are iterated. Default: 0.
+    /// Bytes that a factor of the matrix may take. It is kept, so that a step is exact and needs no
+    /// iterations; where it would take more than this, steps are iterated. Default: 0.
     pub factor_bytes: u64,
 }
 
@@ -91,14 +101,14 @@ impl Default for Laplace {
     }
 }
 
-/// What may be said about methods, whichever it is that is asked for.
+/// Parameters for all methods, whichever is requested.
 #[derive(Clone, Debug)]
 pub struct MethodWords {
     /// The patches of [`Method::Bodies`].
     pub bodies: Vec<FacetSet>,
     /// [`Laplace::wall`].
     pub wall: Option<FacetSet>,
-    /// When a step is solved that is iterated. Default: 1e-6.
+    /// Residual of steps that are iterated. Default: 1e-6.
     pub residual: f64,
     /// Gibibytes that a factor may take. Default: 0.
     pub factor_gib: f64,
@@ -111,8 +121,10 @@ impl Default for MethodWords {
 }
 
 impl MethodWords {
+    /// Checks the memory for a factor; a residual is checked by the methods that have one.
+    ///
     /// # Errors
-    /// When the room for a factor is negative or no number. The residual is judged where a method has one.
+    /// When the memory for a factor is negative or not a number.
     pub fn check(&self) -> Result<()> {
         if self.factor_gib >= 0.0 {
             return Ok(());
@@ -123,7 +135,7 @@ impl MethodWords {
 }
 
 impl Method {
-    /// All methods, with what is said about each of them.
+    /// All methods, each with its parameters.
     pub fn all(words: MethodWords) -> [Self; 7] {
         let MethodWords { bodies, wall, residual, factor_gib } = words;
         let factor_bytes = (factor_gib * (1u64 << 30) as f64) as u64;
@@ -139,15 +151,16 @@ impl Method {
         ]
     }
 
-    /// Whether it places corners of cells only, since it rests on the tets at them.
+    /// Whether the method places only corners of cells, since it is based on the tets at them.
     pub(crate) fn knows_corners_alone(&self) -> bool {
         matches!(self, Self::Bodies(_) | Self::Elastic(_) | Self::Laplace(_))
     }
 
-    /// The method of a [name](Self::name).
+    /// The method with a [name](Self::name).
     ///
     /// # Errors
-    /// When none is called that; it says what they are called. When [words](MethodWords::check) mean nothing.
+    /// When none has that name; reports the names there are. When the [parameters](MethodWords::check) are
+    /// invalid.
     pub fn of_name(name: &str, words: MethodWords) -> Result<Self> {
         words.check()?;
         let all = Self::all(words);
@@ -157,7 +170,7 @@ impl Method {
         })
     }
 
-    /// As the command line has it.
+    /// The name of the method on the command line.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Delaunay => "delaunay",
@@ -170,8 +183,10 @@ impl Method {
         }
     }
 
+    /// Checks the numbers of the method.
+    ///
     /// # Errors
-    /// When a number means nothing.
+    /// When a number is out of range.
     pub(crate) fn check(&self) -> Result<()> {
         let (power, tolerance) = match self {
             Self::Delaunay | Self::Bodies(_) | Self::Guided | Self::InverseDistance | Self::Radial => {
@@ -204,40 +219,44 @@ impl Method {
     }
 }
 
-/// Displacements are right to about this part of the largest: far finer than cells are.
+/// Displacements are accurate to about this fraction of the largest: far finer than cells.
 const SOLVED: Tolerance = Tolerance { residual: 1e-6, iterations: 10_000 };
 
-/// How a mesh is to be moved. The default moves every inner vertex by the graph
-/// of the boundary alone.
+/// How a mesh is to be moved. The default moves every interior vertex by the graph of the boundary alone.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// How the vertices inside follow.
+    /// How the interior vertices follow.
     pub method: Method,
-    /// Of [`Method::Bodies`]: where the strain goes. Default: [`Strain::Even`].
+    /// Where the strain goes with [`Method::Bodies`]. Default: [`Strain::Even`].
     pub strain: Strain,
-    /// Whether the graph keeps within the walls, so that no vertex follows the wall of another lumen or the far side of a flap. It is slower to set up, and needs a boundary whose
-    /// facets do not meet in more than they share. Default: no.
+    /// Whether the graph stays within the walls, so that no vertex follows the wall of another lumen or the
+    /// far side of a flap. It is slower to set up, and needs a boundary whose facets meet only in what they
+    /// share. Default: no.
     pub within_walls: bool,
-    /// Sweeps over the vertices of bad tets after each step, which move them to where their tets are better. Default: none.
+    /// Number of sweeps over the vertices of bad tets after each step, which move them to where their tets
+    /// are better. Default: 0.
     pub smoothing: usize,
-    /// Vertices inside the volume that the caller moves, too, such as those of an
-    /// interface between fluid and wall. Those of them on the boundary slide in no patch. Default: none.
+    /// Interior vertices that the caller moves as well, such as those of an interface between fluid and wall.
+    /// Any of them on the boundary do not slide. Default: none.
     pub also_moved: Vec<VertexId>,
-    /// Vertices near a wall that keep their place relative to it. Default: none.
+    /// Vertices near a wall that keep their position relative to it. Default: none.
     pub rigid_layer: Option<RigidLayer>,
-    /// Flat parts of the boundary whose vertices slide in their plane after the
-    /// vertices around them, where two planes meet along their line. What the caller gives
-    /// for those vertices is not looked at. Default: none.
+    /// Flat parts of the boundary whose vertices slide in their plane, following the vertices around them;
+    /// where two planes meet, along their line. Displacements given for these vertices are ignored. Default:
+    /// none.
     pub sliding: Vec<FacetSet>,
-    /// How far the vertices of such a part may be off its plane, as a part of its radius; they stay as far off.
+    /// How far the vertices of such a part may be off its plane, relative to its radius; they stay as far
+    /// off.
     pub slide_tolerance: SlideTolerance,
     /// Limits of [`Mover::advance`](crate::motion::Mover::advance).
     pub limits: Limits,
 }
 
 impl Options {
+    /// Checks the numbers.
+    ///
     /// # Errors
-    /// When a number means nothing.
+    /// When a number is out of range.
     pub(crate) fn check(&self) -> Result<()> {
         self.method.check()?;
         let SlideTolerance(tolerance) = self.slide_tolerance;
@@ -262,20 +281,21 @@ impl Options {
 pub struct RigidLayer {
     /// How far from the wall the layer reaches.
     pub extent: Extent,
-    /// The wall; `None`: all of the boundary that does not slide.
+    /// The wall; `None` means all of the boundary that does not slide.
     pub wall: Option<FacetSet>,
 }
 
-/// How flat a patch that slides has to be.
+/// How flat a sliding patch has to be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SlideTolerance(
-    /// The largest distance of a vertex from the plane of the patch, as a part of the radius of the patch. Default: 0.05. Inlets that programs
-    /// cut are off by 0.003, caps of rims that were cut by hand by 0.01 (both met); the wall of a vessel by 0.3 and more.
+    /// The largest distance of a vertex from the plane of the patch, relative to the radius of the patch.
+    /// Default: 0.05. Inlets cut by programs are off by 0.003, caps of rims cut by hand by 0.01 (both
+    /// observed); the wall of a vessel by 0.3 and more.
     pub f64,
 );
 
 impl SlideTolerance {
-    /// What is taken where nothing is given.
+    /// The default tolerance.
     pub const DEFAULT: Self = Self(0.05);
 }
 
@@ -290,24 +310,23 @@ impl Default for SlideTolerance {
 pub enum Extent {
     /// Vertices at most this far from the wall, in the unit of the mesh.
     Distance(f64),
-    /// Vertices at most so many cells from the wall.
+    /// Vertices at most this many cells from the wall.
     Cells(usize),
 }
 
 /// When sub-stepping gives up.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Limits {
-    /// At most so many sub-steps. Default: 50.
+    /// Maximum number of sub-steps. Default: 50.
     pub substeps: usize,
-    /// A sub-step that gets on by less than this part of the whole motion is no
-    /// progress. Default: 0.002.
+    /// A sub-step that advances by less than this fraction of the whole motion is no progress. Default:
+    /// 0.002.
     pub smallest: f64,
-    /// A sub-step that does not get all the way goes no further than to where the worst
-    /// cell has lost all but this share of the volume that it had when the sub-step
-    /// began: one that goes to the very end of the admissible leaves flat cells behind.
-    /// Default: 0.5 (tried 0 to 0.9 on a sphere in a box, 32 k vertices, moved by three
-    /// radii: the worst EAS is 0.001 up to 0.2, and 0.005 to 0.018 from 0.4 on, in 2 to
-    /// 5 sub-steps).
+    /// A sub-step that cannot go all the way goes no farther than to where the worst cell keeps this share of
+    /// the volume that it had when the sub-step began: going to the very end of the admissible would leave
+    /// flat cells behind. Default: 0.5 (values from 0 to 0.9 were tried on a sphere in a box, 32 k vertices,
+    /// moved by three radii: the worst EAS is 0.001 up to 0.2, and 0.005 to 0.018 from 0.4 on, in 2 to 5
+    /// sub-steps).
     pub keep_volume: f64,
 }
 
@@ -320,22 +339,22 @@ impl Default for Limits {
 /// Facets of a mesh, as rings of corners, and all vertices on them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FacetSet {
-    /// What to call it in messages: the name of a patch, say.
+    /// The name for messages, such as that of a patch.
     pub name: String,
-    /// The corners of each facet in the order in which they follow each other.
+    /// The corners of each facet, in order around it.
     pub rings: Csr<VertexId>,
     /// Corners and middle nodes, each once, in rising order.
     pub vertices: Vec<VertexId>,
 }
 
 impl FacetSet {
-    /// The surface cells of `mesh` for which `is_wanted` holds, which gets their place among the cells.
+    /// The surface cells of `mesh` for which `is_wanted`, called with the index of the cell, holds.
     pub fn of_cells(mesh: &Mesh, name: impl Into<String>, is_wanted: impl Fn(usize) -> bool) -> Self {
         let cells = mesh.cells.iter().filter(|(id, kind, _)| kind.dim() == Some(2) && is_wanted(id.index()));
         Self::collect(name.into(), cells.map(|(_, kind, vertices)| (kind, vertices)), |v| v)
     }
 
-    /// The facets of one patch, by the label of its surface cells; no facets when there is no such patch.
+    /// The facets of one patch, by the label of its surface cells; none when there is no such patch.
     pub fn of_patch(mesh: &Mesh, label: i32) -> Self {
         match mesh.patches() {
             Some(patches) => Self::of_cells(mesh, patches.name(label), |i| patches.ids[i] == label),
@@ -343,7 +362,7 @@ impl FacetSet {
         }
     }
 
-    /// The facets of the patch that a word means: its name, or its number.
+    /// The facets of the patch with this name or number.
     ///
     /// # Errors
     /// When the mesh has no such patch.
@@ -351,13 +370,13 @@ impl FacetSet {
         Ok(Self::of_patch(mesh, mesh.find_patch(word)?))
     }
 
-    /// Facets by their corners, in the order in which they follow each other.
+    /// Facets given by their corners, in order around each.
     pub fn of_rings<'a>(name: impl Into<String>, rings: impl Iterator<Item = &'a [VertexId]>) -> Self {
         let polygon = rings.map(|ring| (CellKind::POLYGON, ring));
         Self::collect(name.into(), polygon, |v| v)
     }
 
-    /// All of these as one, with all their names; `None` where there is none.
+    /// The union of the sets, with all their names; `None` where there are no sets.
     pub fn joined(sets: impl IntoIterator<Item = Self>) -> Option<Self> {
         sets.into_iter().reduce(|mut all, set| {
             all.name = format!("{}, {}", all.name, set.name);
@@ -369,7 +388,7 @@ impl FacetSet {
         })
     }
 
-    /// The cells of another mesh, a surface, whose points are these vertices.
+    /// The cells of another mesh, a surface, whose points are the vertices `point_to_vertex`.
     ///
     /// Panics when a cell names a point that has no entry in `point_to_vertex`.
     pub fn of_surface(surface: &Mesh, name: impl Into<String>, point_to_vertex: &[VertexId]) -> Self {
@@ -378,7 +397,7 @@ impl FacetSet {
         Self::collect(name.into(), cells, |p| point_to_vertex[p.index()])
     }
 
-    /// The facets of a boundary for which `is_wanted` holds.
+    /// The facets of a boundary for which `is_wanted`, called with the index of the facet, holds.
     pub fn of_boundary(
         boundary: &Boundary,
         name: impl Into<String>,
@@ -398,7 +417,7 @@ impl FacetSet {
         for (kind, vertices) in facets {
             set.vertices.extend(vertices.iter().map(|&v| vertex(v)));
             match kind {
-                // Corners of a pixel stand in rows, not in a ring.
+                // Corners of a pixel are in rows, not in a ring.
                 CellKind::PIXEL => set.rings.push([0, 1, 3, 2].map(|i| vertex(vertices[i]))),
                 CellKind::TRIANGLE_STRIP => {
                     vertices.windows(3).for_each(|t| set.rings.push(t.iter().map(|&v| vertex(v))));
@@ -411,7 +430,7 @@ impl FacetSet {
         set
     }
 
-    /// The facets cut into triangles, as fans from their first corners.
+    /// The facets divided into triangles, as fans from their first corners.
     pub fn triangles(&self) -> impl Iterator<Item = [VertexId; 3]> + '_ {
         self.rings.iter().flat_map(|ring| {
             let last = ring.len().saturating_sub(1);
@@ -419,7 +438,7 @@ impl FacetSet {
         })
     }
 
-    /// Whether it holds no facet.
+    /// Whether there are no facets.
     pub fn is_empty(&self) -> bool {
         self.rings.is_empty()
     }

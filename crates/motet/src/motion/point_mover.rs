@@ -1,31 +1,34 @@
-//! Points after nodes, without a mesh: for solvers that have a part of the mesh each.
+//! Points that follow nodes, without a mesh: for solvers whose processes each have a part of the mesh.
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::in_range;
 use crate::motion::graph::{hang, triangulate};
 use crate::motion::update::{Displacements, Update};
 
-/// Moves any points by the Delaunay graph of some nodes: a weighted sum of four displacements each.
+/// Moves arbitrary points by the Delaunay graph of some nodes: a weighted sum of four displacements each.
 ///
-/// It is what [`Mover`](crate::motion::Mover) does with [`Method::Delaunay`](crate::motion::Method::Delaunay), but for the mesh: cells are not known, so nothing is
-/// checked and certified. Processes that have a part of a mesh each give all nodes of the boundary, and their own points. Nodes are taken in the order of their
-/// coordinates, one for each place, so that the graph does not depend on the order in which they are given. A point that lies on a facet of it is found in either tet, as
-/// the points before it lead there: processes that have the same point may place it apart by its last digits.
+/// It does what [`Mover`](crate::motion::Mover) does with
+/// [`Method::Delaunay`](crate::motion::Method::Delaunay), but without the mesh: cells are not known, so
+/// nothing is checked or certified. Processes that each have a part of a mesh pass all nodes of the boundary,
+/// and their own points. Nodes are taken in the order of their coordinates, one for each position, so that
+/// the graph does not depend on the order in which they are given. A point that lies on a facet of the graph
+/// is found in either tet, depending on the points before it: processes that share a point may place it
+/// differently in the last digits.
 #[derive(Debug)]
 pub struct PointMover {
     reference: Vec<Point>,
     n_nodes: usize,
-    /// The given node that stands for each place of the graph.
+    /// The given node that stands for each node of the graph.
     firsts: Vec<u32>,
     update: Update,
     n_outside: usize,
 }
 
 impl PointMover {
-    /// Sets up the motion of `points` after `nodes`.
+    /// Sets up `points` to follow `nodes`.
     ///
     /// # Errors
-    /// When nodes do not span space; when a coordinate is not finite.
+    /// When the nodes do not span space, a coordinate is not finite, or there are more points than ids.
     pub fn new(nodes: &[Point], points: &[Point], threads: &Threads) -> Result<Self> {
         check_finite(nodes, "node")?;
         check_finite(points, "point")?;
@@ -33,7 +36,7 @@ impl PointMover {
             return Err(Error::input(format!("{} points are more than there are ids", points.len())));
         }
         let mut firsts: Vec<u32> = (0..nodes.len() as u32).collect();
-        // -0.0 is the place of 0.0.
+        // -0.0 counts as 0.0.
         let place = |&i: &u32| nodes[i as usize].map(|x| x + 0.0);
         firsts.sort_by(|a, b| {
             let (p, q) = (place(a), place(b));
@@ -61,17 +64,18 @@ impl PointMover {
         self.n_nodes
     }
 
-    /// The points in their first place.
+    /// The points as they were given.
     pub fn reference(&self) -> &[Point] {
         &self.reference
     }
 
-    /// How many points lie outside of the graph: they follow the nearest place of it.
+    /// How many points lie outside the graph; they follow the nearest place in it.
     pub fn n_outside(&self) -> usize {
         self.n_outside
     }
 
-    /// Moves the points from their first place: `displacement` has an entry for each node as they were given; of several nodes at one place that of the first counts.
+    /// Moves the points from where they were given: `displacement` has an entry for each node as given, and
+    /// of several nodes at one position the first counts; `out` receives the positions.
     ///
     /// # Errors
     /// When a length does not fit, or a displacement is not finite.

@@ -1,15 +1,15 @@
-//! Motions told in words: turns, shifts, affine maps; each also part of the way.
+//! Prescribed motions, such as rotations, translations and affine maps, each at any fraction of it.
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
 use crate::mesh::bounds;
 
-/// A motion of space, of which any fraction can be asked for.
+/// A motion of space that can be evaluated at any fraction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Prescribed {
-    /// Every point by the same vector.
+    /// A translation of every point by the same vector.
     Shift(Point),
-    /// About an axis through a centre.
+    /// A rotation about an axis through a centre.
     Turn {
         /// Direction of the axis, of any length but zero.
         axis: Point,
@@ -18,42 +18,44 @@ pub enum Prescribed {
         /// A point on the axis.
         centre: Point,
     },
-    /// `x' = A x + b`; each row holds one of A's and the entry of b.
+    /// `x' = A x + b`; each row holds a row of A and the entry of b.
     Affine([[f64; 4]; 3]),
-    /// What stands on a plane becomes an arc: a beam, a flap, a leaflet. What lies behind the plane stays.
+    /// Bends what stands on a plane into an arc: a beam, a flap, a leaflet. What lies behind the plane stays.
     Bend {
-        /// A point of the plane where it is held.
+        /// A point of the plane in which it is held.
         hinge: Point,
-        /// Which way it stands at first; of any length but zero.
+        /// The direction in which it stands at first; of any length but zero.
         along: Point,
-        /// Which way it bends: what is at right angles to `along` counts, and must not be nothing.
+        /// The direction in which it bends; only the part at right angles to `along` counts, and must not be
+        /// zero.
         towards: Point,
-        /// How long it is, in the unit of the points.
+        /// Its length, in the unit of the points.
         length: f64,
-        /// By how much its end turns, in radians.
+        /// The angle by which its end turns, in radians.
         angle: f64,
     },
-    /// The first, then the others, each applied to where the one before it led.
+    /// Several motions, each applied to the result of the one before.
     Sequence(Vec<Prescribed>),
 }
 
 impl Prescribed {
-    /// One after the other; one alone is itself, since a shift alone is exact and as one of a sequence would round.
+    /// The motions one after the other. A single motion is returned as it is: a translation alone is exact,
+    /// but would round in a sequence.
     pub fn sequence(mut motions: Vec<Self>) -> Self {
         if motions.len() == 1 { motions.remove(0) } else { Self::Sequence(motions) }
     }
 
-    /// The middle of the box around some vertices, about which they turn where nobody names a centre.
+    /// The middle of the bounding box of some vertices: the default centre of rotation.
     pub fn middle(points: &[Point], vertices: &[VertexId]) -> Point {
         let around: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
         let [low, high] = bounds(&around).unwrap_or_default();
         [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]))
     }
 
-    /// Checks that all numbers are finite and axes point somewhere.
+    /// Checks that all numbers are finite and that directions have a length.
     ///
     /// # Errors
-    /// Of kind [`Options`](crate::base::ErrorKind::Options), saying which number is off.
+    /// When they are not; of kind [`Options`](crate::base::ErrorKind::Options), reporting what is wrong.
     pub fn check(&self) -> Result<()> {
         let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
         let fine = match self {
@@ -78,8 +80,8 @@ impl Prescribed {
         if fine { Ok(()) } else { Err(Error::options("a motion with a number that is not finite")) }
     }
 
-    /// Where `fraction` of the motion takes a point: 0 leaves it, 1 is all of it.
-    /// A turn goes by its angle, so that every fraction of it is rigid.
+    /// Where `fraction` of the motion takes a point: 0 leaves it in place, 1 is the whole motion. A rotation
+    /// takes the fraction of its angle, so that every fraction of it is rigid.
     pub fn apply(&self, p: Point, fraction: f64) -> Point {
         match self {
             Self::Shift(by) => add(p, scale(*by, fraction)),
@@ -102,7 +104,7 @@ impl Prescribed {
         }
     }
 
-    /// How far `fraction` of the motion takes a point.
+    /// The displacement of a point at `fraction` of the motion.
     pub fn displacement(&self, p: Point, fraction: f64) -> Point {
         match self {
             // Not as a difference of positions: that would round.
@@ -112,7 +114,8 @@ impl Prescribed {
     }
 }
 
-/// Where a place of a beam along the unit vector `along` from the origin goes as the beam gets this curvature towards the unit vector `off`.
+/// Where a point of a beam along the unit vector `along` from the origin goes when the beam gets this
+/// curvature towards the unit vector `off`.
 fn bent(v: Point, along: Point, off: Point, curvature: f64) -> Point {
     let (height, aside) = (dot(v, along), dot(v, off));
     if height <= 0.0 || curvature == 0.0 {
@@ -120,13 +123,13 @@ fn bent(v: Point, along: Point, off: Point, curvature: f64) -> Point {
     }
     let angle = curvature * height;
     let (sin, cos) = angle.sin_cos();
-    // (1 - cos) / angle by the half angle, which loses no digits.
+    // (1 - cos) / angle from the half angle, which loses no digits.
     let half = (0.5 * angle).sin();
     let (up, over) = (sin / curvature - aside * sin, 2.0 * half * half / curvature + aside * cos);
     add(v, add(scale(along, up - height), scale(off, over - aside)))
 }
 
-/// Turns `v` by `angle` about an axis through the origin (Rodrigues 1840).
+/// Rotates `v` by `angle` about an axis through the origin (Rodrigues 1840).
 fn turned(v: Point, axis: Point, angle: f64) -> Point {
     let k = scale(axis, 1.0 / norm(axis));
     let (sin, cos) = angle.sin_cos();
@@ -192,7 +195,7 @@ mod tests {
         }
         let end = sub(at(4.0), hinge);
         assert!(near(end, [radius * (1.0 - angle.cos()), 0.0, radius * angle.sin()]));
-        // Across the beam all stays straight, behind the hinge all stays.
+        // Cross-sections stay straight, and everything behind the hinge stays.
         let [a, b] = [0.1, 0.3].map(|x| bend.apply(add(hinge, [x, 0.0, 3.0]), 1.0));
         assert!((norm(sub(a, b)) - 0.2).abs() < 1e-14);
         assert_eq!(bend.apply(sub(hinge, [0.0, 0.0, 1.0]), 1.0), sub(hinge, [0.0, 0.0, 1.0]));

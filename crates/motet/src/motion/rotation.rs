@@ -1,11 +1,10 @@
-//! How far each vertex of a wall has turned.
+//! The rotation of each vertex of a wall.
 //!
-//! The rotation of a facet is the one part of its deformation that is no stretch:
-//! the polar factor of its plane gradient, with the normal carried along. That of a
-//! vertex is the mean of its facets' by area, that of a point of a facet the mean of
-//! the three vertices' by its weights: so it does not jump from facet to facet, and
-//! two neighbours in a layer that have their feet on different facets stay neighbours.
-//! A wall that moves rigidly turns every point by exactly its own rotation.
+//! The rotation of a facet is the part of its deformation that is no stretch: the polar factor of its plane
+//! gradient, with the normal carried along. The rotation of a vertex is the mean over its facets, weighted by
+//! area; that of a point of a facet is the mean over the three vertices, by its weights. So it does not jump
+//! from facet to facet, and two neighbours in a layer that have their feet on different facets stay
+//! neighbours. A wall that moves rigidly rotates every point by exactly its own rotation.
 
 use crate::base::{Csr, Point, Threads};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
@@ -15,13 +14,14 @@ pub(crate) type Quaternion = [f64; 4];
 
 pub(crate) const NO_TURN: Quaternion = [1.0, 0.0, 0.0, 0.0];
 
-/// A triangle of the wall in its first place.
+/// A triangle of the wall in its reference position.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
-    /// Along the first edge, across it in the plane, along the normal.
+    /// Unit vectors along the first edge, across it in the plane, and along the normal.
     axes: [Point; 3],
     edges: [Point; 2],
-    /// 1 / length of the first edge; how far the second leans along it; 1 / height over it.
+    /// 1 / length of the first edge; the component of the second edge along the first, relative to its
+    /// length; 1 / height above it.
     plane: [f64; 3],
     area: f64,
 }
@@ -30,13 +30,13 @@ struct Frame {
 #[derive(Debug)]
 pub(crate) struct Wall {
     triangles: Vec<[u32; 3]>,
-    /// `None` for a triangle without area: it has no say.
+    /// `None` for a triangle without area, which has no influence.
     frames: Vec<Option<Frame>>,
     vertex_to_triangles: Csr<u32>,
 }
 
 impl Wall {
-    /// The wall made of `triangles` between `points`, in its first place.
+    /// The wall made of `triangles` between `points`, in its reference position.
     pub(crate) fn new(points: &[Point], triangles: Vec<[u32; 3]>) -> Self {
         let frames = triangles.iter().map(|t| Frame::new(t.map(|v| points[v as usize]))).collect();
         let vertex_to_triangles = Csr::from_pairs(points.len(), || {
@@ -49,7 +49,7 @@ impl Wall {
         self.triangles[i]
     }
 
-    /// The rotation of every vertex, once they have moved by `displacement`.
+    /// The rotation of every vertex after a motion by `displacement`.
     pub(crate) fn rotations(
         &self,
         displacement: impl Fn(u32) -> Point + Sync,
@@ -80,10 +80,11 @@ impl Frame {
         finite.then_some(Self { axes, edges, plane, area: 0.5 * twice_area })
     }
 
-    /// The rotation, as long as the area; nothing when the facet has lost its area.
+    /// The rotation scaled by the area; zero when the facet has lost its area.
     fn rotation(&self, [a, b, c]: [Point; 3]) -> Quaternion {
         if a == b && a == c {
-            // A shift: most of a wall of which a part moves. A twentieth of the time, and no rounding.
+            // Only translated, like most of a wall of which a part moves: a twentieth of the time, and no
+            // rounding.
             return NO_TURN.map(|x| x * self.area);
         }
         let [first, second] = [add(self.edges[0], sub(b, a)), add(self.edges[1], sub(c, a))];
@@ -91,7 +92,7 @@ impl Frame {
         // The plane gradient: images of the unit vectors along and across the first edge.
         let along = scale(first, self.plane[0]);
         let across = scale(sub(second, scale(first, self.plane[1])), self.plane[2]);
-        // Its polar factor turns the first axis to here.
+        // Its polar factor rotates the first axis to this one.
         let along = unit(add(along, cross(across, normal)));
         let turned = [along, cross(normal, along), normal];
         let q = quaternion(self.axes, turned).map(|x| x * self.area);
@@ -103,8 +104,8 @@ fn unit(a: Point) -> Point {
     scale(a, 1.0 / norm(a))
 }
 
-/// The rotation that takes one right-handed set of axes to another (Shepperd 1978:
-/// from the largest of the four components, so that none is lost).
+/// The rotation that takes one right-handed set of axes to another (Shepperd 1978: computed from the largest
+/// of the four components, so that no precision is lost).
 fn quaternion(from: [Point; 3], to: [Point; 3]) -> Quaternion {
     let m = |i: usize, j: usize| (0..3).map(|k| to[k][i] * from[k][j]).sum::<f64>();
     let diagonal = [m(0, 0), m(1, 1), m(2, 2)];
@@ -123,8 +124,8 @@ fn quaternion(from: [Point; 3], to: [Point; 3]) -> Quaternion {
     q.map(|c| c * 0.5 / s.sqrt())
 }
 
-/// The weighted mean of rotations, normalised; `q` and `-q` are one rotation, so all
-/// are taken on the side of the first.
+/// The weighted mean of rotations, normalised; `q` and `-q` are the same rotation, so each is taken on the
+/// side of the sum so far.
 pub(crate) fn mean(parts: impl Iterator<Item = (f64, Quaternion)>) -> Quaternion {
     let mut sum = [0.0; 4];
     for (weight, q) in parts {
@@ -136,7 +137,7 @@ pub(crate) fn mean(parts: impl Iterator<Item = (f64, Quaternion)>) -> Quaternion
     if length > 0.0 { sum.map(|x| x / length) } else { NO_TURN }
 }
 
-/// By how much the turned `v` differs from `v`: without cancellation where the turn is small.
+/// The difference between the rotated `v` and `v`, without cancellation where the rotation is small.
 pub(crate) fn change(q: Quaternion, v: Point) -> Point {
     let axis = [q[1], q[2], q[3]];
     scale(cross(axis, add(cross(axis, v), scale(v, q[0]))), 2.0)
