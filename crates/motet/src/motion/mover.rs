@@ -44,9 +44,9 @@ pub struct Mover {
     /// How vertices follow from the reference.
     pub(crate) map: Map,
     pub(crate) smoother: Option<Smoother>,
-    /// Nodes of the graph beside those that are given.
+    /// Nodes of the graph in addition to those that are given.
     helpers: Helpers,
-    /// What the graph keeps within.
+    /// The walls that the graph stays within.
     walls: Option<Walls>,
     /// Tets of the graph of the reference that contain a vertex.
     pub(crate) tets: Vec<[VertexId; 4]>,

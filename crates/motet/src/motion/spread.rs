@@ -1,22 +1,23 @@
-//! A step by the graph alone: weighted sums for all vertices, after what the graph's own points do.
+//! A step by the graph alone: weighted sums for all vertices, after the points that the graph added have been
+//! placed.
 
 use crate::base::{Point, Result, Threads};
 use crate::motion::update::{Displacements, Update};
 use crate::motion::walls::Added;
 
-/// On what each vertex hangs.
+/// How vertices depend on the nodes of the graph.
 #[derive(Debug, Default)]
 pub(crate) struct Spread {
-    /// In nodes, behind them the points that the graph added.
+    /// Its nodes are followed by the points that the graph added.
     pub(crate) update: Update,
     pub(crate) added: Option<Box<Added>>,
 }
 
 impl Spread {
-    /// Iterations that it took.
+    /// Moves all vertices from their positions `from`; returns the number of iterations.
     ///
     /// # Errors
-    /// When the system of the added points is not solved to its tolerance.
+    /// When the system of the added points cannot be solved to its tolerance.
     pub(crate) fn apply(
         &self,
         from: &[Point],

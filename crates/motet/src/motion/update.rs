@@ -1,16 +1,14 @@
 //! The step itself: one weighted sum of four displacements for every vertex.
 //!
-//! It has to run at the speed of memory, so the layout is what counts. Every vertex
-//! of the mesh, in the caller's order, holds four nodes (16 bytes) and three weights
-//! (24): the first weight is what they leave of 1. With the place it starts from and
-//! the place it goes to that makes 88 bytes a vertex, in four streams; the nodes'
-//! displacements stay in the cache. Measured against it: nodes looked up through the
-//! number of a tet move 76 bytes but take a third longer (one more load that has to
-//! wait), vertices sorted by tet need their results scattered.
+//! It has to run at the speed of memory, so the layout is what counts. Every vertex of the mesh, in the
+//! caller's order, has four nodes (16 bytes) and three weights (24); the first weight is 1 less the others.
+//! With the position it starts from and the position it goes to, that makes 88 bytes per vertex, in four
+//! streams; the nodes' displacements stay in the cache. Alternatives that were measured: looking nodes up
+//! through the index of a tet moves 76 bytes but takes a third longer (one more dependent load); vertices
+//! sorted by tet need their results scattered.
 //!
-//! A vertex that is a node itself holds that node four times, and so gets exactly its
-//! displacement: no branch, no second pass. Every vertex is for itself: results do not
-//! depend on the number of threads.
+//! A vertex that is a node itself has that node four times, and so gets exactly its displacement: no branch,
+//! no second pass. Vertices are independent: results do not depend on the number of threads.
 
 use std::borrow::Cow;
 use std::sync::Mutex;
@@ -19,7 +17,7 @@ use pulp::{NullaryFnOnce, f64x4};
 
 use crate::base::{Point, Threads, VertexId};
 
-/// A displacement and a zero: four numbers load at once, and from one cache line.
+/// A displacement and a zero, so that four numbers load at once and from one cache line.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(32))]
 pub(crate) struct Padded([f64; 4]);
@@ -44,7 +42,7 @@ pub(crate) enum Displacements<'a> {
 }
 
 impl Displacements<'_> {
-    /// As the update reads them: four numbers a node, and a node at the end that never moves.
+    /// The table that the update reads: four numbers per node, and a node at the end that never moves.
     pub(crate) fn table(&self) -> Cow<'_, [Padded]> {
         match self {
             Self::Driven(all) => {
@@ -58,7 +56,7 @@ impl Displacements<'_> {
     }
 }
 
-/// On what each vertex hangs.
+/// The nodes that each vertex follows, and their weights.
 #[derive(Debug, Default)]
 pub(crate) struct Update {
     /// Four nodes for each vertex.
@@ -67,16 +65,15 @@ pub(crate) struct Update {
     pub(crate) weights: Vec<[f64; 3]>,
 }
 
-/// Below this a second thread takes longer to wake than to do its part.
+/// With fewer vertices per part, a second thread takes longer to wake than to do its part.
 const SMALLEST: usize = 2048;
 
-/// Parts for each thread. The caller begins at once and takes part after part while the
-/// others, which sleep between steps, wake up: with a share for each, fixed beforehand,
-/// it would wait for the last to wake.
+/// Parts per thread. The caller begins at once and takes part after part while the others, which sleep
+/// between steps, wake up: with a fixed share for each, it would wait for the last to wake.
 const PARTS: usize = 16;
 
 impl Update {
-    /// All of so many vertices hang on a node that never moves.
+    /// An update in which all of `n` vertices follow a node that never moves.
     pub(crate) fn never(node: u32, n: usize) -> Self {
         Self { nodes: vec![[node; 4]; n], weights: vec![[0.0; 3]; n] }
     }
@@ -86,10 +83,10 @@ impl Update {
         self.weights[v.index()] = [w[1], w[2], w[3]];
     }
 
-    /// `out = from + sum w_i d_i`.
+    /// Computes `out = from + sum w_i d_i`.
     ///
-    /// Every thread makes a table of its own: one that another thread has read a step ago is slow to
-    /// write (for 17,000 nodes 90 us in place of 20, where the step takes 300).
+    /// Every thread makes its own table: one that another thread read a step ago is slow to write (for 17,000
+    /// nodes 90 us instead of 20, where the step takes 300).
     pub(crate) fn apply(
         &self,
         from: &[Point],
@@ -127,8 +124,8 @@ impl Update {
     }
 }
 
-/// The loop. With four numbers to an instruction it runs 1.5 times as fast as with two,
-/// and gives the same bits: products are not fused with sums.
+/// The loop. With four numbers per instruction it runs 1.5 times as fast as with two, and gives the same
+/// bits: products are not fused with sums.
 fn add_means(
     from: &[Point],
     nodes: &[[u32; 4]],
@@ -143,9 +140,9 @@ fn add_means(
     Each { sum: Plain, from, nodes, weights, displacement, out }.call();
 }
 
-/// How `sum w_i d_i` is computed from the last three weights. A trait, since a closure is not sure to be compiled
-/// into the loop for which the wide instructions are switched on (without it: 20 times
-/// slower).
+/// How `sum w_i d_i` is computed from the last three weights. It is a trait, since a closure is not certain
+/// to be compiled into the loop for which the wide instructions are enabled (20 times slower where it is
+/// not).
 trait Sum: Copy {
     fn sum(self, w: &[f64; 3], d: [f64x4; 4]) -> f64x4;
 }
@@ -158,8 +155,8 @@ struct Wide(pulp::x86::V3);
 impl Sum for Wide {
     #[inline(always)]
     fn sum(self, w: &[f64; 3], d: [f64x4; 4]) -> f64x4 {
-        // The first weight in four lanes, too: computed in one and spread out it takes four instructions
-        // more, and the loop a tenth longer.
+        // The first weight in four lanes, too: computing it in one and spreading it takes four more
+        // instructions, and a tenth more time for the loop.
         let simd = self.0;
         let [w1, w2, w3] = [simd.splat_f64x4(w[0]), simd.splat_f64x4(w[1]), simd.splat_f64x4(w[2])];
         let one = simd.splat_f64x4(1.0);

@@ -1,7 +1,9 @@
-//! Walls that the graph does not cross: its tets are those of the constrained Delaunay triangulation of the boundary, so each vertex hangs on nodes of its own lumen.
+//! Walls that the graph does not cross: its tets are those of the constrained Delaunay triangulation of the
+//! boundary, so each vertex follows nodes of its own lumen.
 //!
-//! Where triangles of the boundary cannot all be facets without more points (Schoenhardt 1928), the triangulation has some inside. Their displacement is that
-//! of linear elements on the graph, a Laplace equation: so an affine motion of the boundary is still one of every vertex.
+//! Where triangles of the boundary cannot all be facets without more points (Schoenhardt 1928), the
+//! triangulation has some inside. They move by linear elements on the graph for a Laplace equation: so an
+//! affine motion of the boundary still moves every vertex by the same affine map.
 
 use std::collections::HashSet;
 
@@ -26,7 +28,8 @@ pub(crate) struct Walls {
 }
 
 impl Walls {
-    /// The boundary, and triangles of patches inside all of whose corners are nodes. Nodes in the middle of edges leave the graph: they are where they are told to be.
+    /// The triangles of the boundary, and triangles of interior patches whose corners are all nodes. Nodes in
+    /// the middle of edges leave the graph: they move by their own displacements.
     pub(crate) fn new(mesh: &Mesh, boundary: &Boundary, nodes: &mut Nodes) -> Self {
         let outer = FacetSet::of_boundary(boundary, "", |_| true);
         let mut is_corner = vec![false; mesh.points.len()];
@@ -44,7 +47,7 @@ impl Walls {
             let [a, b, c] = t.map(|v| node_of[v.index()]);
             Some([a?, b?, c?])
         };
-        // A facet of four corners counts once, however its patch cuts it.
+        // A facet of four corners counts once, however its patch divides it.
         let rings: HashSet<Vec<VertexId>> = outer.rings.iter().map(key).collect();
         let mut triangles: Vec<[VertexId; 3]> = Vec::new();
         for t in outer.triangles() {
@@ -61,7 +64,7 @@ impl Walls {
         Self { triangles }
     }
 
-    /// The graph on nodes at these places, and where `points` hang in it.
+    /// The graph on nodes at these positions, and where `points` lie in it.
     ///
     /// # Errors
     /// When facets of the boundary meet in more than they share.
@@ -83,7 +86,8 @@ impl Walls {
     }
 }
 
-/// As in [`graph::hang`](crate::motion::graph::hang), in tets that fill no convex space.
+/// Locates points as [`graph::hang`](crate::motion::graph::hang) does, in tets that need not fill a convex
+/// space.
 fn hang(nodes: &[Point], tets: &[[VertexId; 4]], points: &[Point], threads: &Threads) -> Hanging {
     let corners = |t: u32| tets[t as usize].map(|v| nodes[v.index()]);
     let boxes: Vec<[Point; 2]> = (0..tets.len() as u32)
@@ -114,7 +118,7 @@ fn hang(nodes: &[Point], tets: &[[VertexId; 4]], points: &[Point], threads: &Thr
     Hanging::new(nodes, tets, &found, points, threads)
 }
 
-/// Points of the graph that were not given: they follow the others.
+/// Points that the graph added: they follow the others.
 #[derive(Debug)]
 pub(crate) struct Added {
     /// The place among all nodes of each node of the graph that is given.
@@ -123,14 +127,14 @@ pub(crate) struct Added {
     system: System<f64>,
 }
 
-/// Far below what cells see.
+/// A tolerance far below what affects cells.
 const SOLVED: Tolerance = Tolerance { residual: 1e-12, iterations: 10_000 };
 
 impl Added {
-    /// `None` where all nodes of the graph are given.
+    /// Sets up the added points of a graph; `None` where all its nodes are given.
     ///
     /// # Errors
-    /// When one has only flat tets.
+    /// When an added point has only flat tets.
     pub(crate) fn new(graph: &Graph, given: &[u32]) -> Result<Option<Self>> {
         let n = graph.places.len() - given.len();
         if n == 0 {
@@ -153,10 +157,10 @@ impl Added {
         self.n
     }
 
-    /// Displacements of all nodes and, behind them, of the added ones; iterations that it took.
+    /// Displacements of all nodes, followed by those of the added points; and the number of iterations.
     ///
     /// # Errors
-    /// When the system is not solved to the tolerance.
+    /// When the system cannot be solved to the tolerance.
     pub(crate) fn extended(
         &self,
         displacements: &Displacements<'_>,

@@ -1,29 +1,28 @@
-//! Four weights that carry a point along with its graph tet.
+//! Four weights with which a point moves with its graph tet.
 //!
-//! A Delaunay graph of boundary vertices is full of slivers: four vertices on a
-//! sphere, or on a wall, are nearly or exactly in a plane. In a sliver of height
-//! `h` and length `l` a weight that is taken from rounded volumes is off by
-//! `eps l / h`, up to anything. So the volumes of flat tets are taken exactly. Where
-//! that does not tell either (no volume at all, or the point lies outside), the point
-//! keeps the weights of the nearest place on the tet's surface.
+//! A Delaunay graph of boundary vertices is full of slivers: four vertices on a sphere, or on a wall, are
+//! nearly or exactly coplanar. In a sliver of height `h` and length `l` a weight that is computed from
+//! rounded volumes is off by `eps l / h`, which may be anything. So the volumes of flat tets are computed
+//! exactly. Where that does not decide either (no volume at all, or a point outside), the point gets the
+//! weights of the nearest place on the tet's surface.
 //!
-//! Tets that are not flat go by rounded volumes that share their products, checked by where they put the point:
-//! weighing 139,000 vertices of a sphere in a box takes 65 ms so, and 94 ms by [`geometry::weights`] alone.
+//! Other tets use rounded volumes that share their products, checked by where they put the point: the weights
+//! of 139,000 vertices of a sphere in a box take 65 ms in this way, and 94 ms by [`geometry::weights`] alone.
 
 use crate::base::Point;
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
 use crate::geometry::{self, tet, triangle};
 
-/// Below this share of `length^3` a volume from rounded products is not trusted:
-/// its error, some 1e-15 of `length^3`, would show in the weights as 1e-9.
+/// Below this fraction of `length^3` a volume from rounded products is not trusted: its error, some 1e-15 of
+/// `length^3`, would show in the weights as 1e-9.
 const FLAT: f64 = 1e-6;
 
-/// How far, as a share of the tet's length, the weights may put the point from where it is.
+/// How far from the point, relative to the tet's length, the weights may put it.
 const OFF: f64 = 2e-15;
 
 /// Weights in [0, 1] whose sum is 1 and for which `sum w_i x_i` is `p`, for a point `p` of the tet `x`.
 ///
-/// For a point outside the tet: those of the point of the tet's surface nearest to it.
+/// For a point outside the tet, they are those of the nearest point on its surface.
 pub(crate) fn weights(p: Point, x: [Point; 4]) -> [f64; 4] {
     let e = x.map(|x| sub(x, p));
     let length = e.iter().map(|&e| norm(e)).fold(0.0, f64::max);
@@ -46,21 +45,21 @@ fn combine(w: [f64; 4], e: [Point; 4]) -> Point {
     (0..4).fold([0.0; 3], |s, i| add(s, scale(e[i], w[i])))
 }
 
-/// Six times the volumes of the four tets that `p`, the origin of `e`, makes with the facets.
+/// Six times the volumes of the four tets between `p`, the origin of `e`, and the facets.
 fn rounded_volumes(e: [Point; 4]) -> [f64; 4] {
     let (ab, cd) = (cross(e[0], e[1]), cross(e[2], e[3]));
     [dot(e[1], cd), -dot(e[0], cd), dot(e[3], ab), -dot(e[2], ab)]
 }
 
-/// Volumes as shares of their sum; small negative ones, which are rounding, as 0.
+/// Volumes as fractions of their sum; small negative ones, due to rounding, count as 0.
 fn shares(volumes: [f64; 4]) -> Option<[f64; 4]> {
     let volumes = volumes.map(|v| v.max(0.0));
     let sum: f64 = volumes.iter().sum();
     (sum > 0.0 && sum.is_finite()).then(|| sum_to_one(volumes.map(|v| v / sum)))
 }
 
-/// The first weight is what the other three leave of 1, so that three need to be
-/// kept; it must not fall below 0 by rounding.
+/// Makes the first weight 1 less the other three, so that three need to be stored; it must not fall below 0
+/// by rounding.
 fn sum_to_one(mut w: [f64; 4]) -> [f64; 4] {
     let rest = |w: &[f64; 4]| 1.0 - w[1] - w[2] - w[3];
     while rest(&w) < 0.0 {

@@ -52,7 +52,7 @@ struct Domain<'a> {
     lengths: Vec<f64>,
     points: &'a [Point],
     numbering: Numbering,
-    /// Shares of three bodies at a time on what is given.
+    /// Prescribed shares, three bodies at a time.
     given: Vec<Vec<Point>>,
     /// The centre of each body.
     centres: Vec<Point>,

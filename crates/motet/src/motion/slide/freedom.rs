@@ -1,8 +1,9 @@
-//! How each vertex of sliding patches may go: in one plane, along the line in which planes meet, or not at all.
+//! How each vertex of sliding patches may move: in one plane, along the line where planes meet, or not at
+//! all.
 //!
-//! A vertex all of whose boundary facets slide is held by their planes. With one plane it has
-//! two degrees of freedom, where two planes meet one, where three meet none. Vertices on any
-//! other facet are driven, and so are those that the caller asks to drive.
+//! A vertex whose boundary facets all slide is constrained by their planes. With one plane it has two degrees
+//! of freedom, where two planes meet one, where three meet none. Vertices on any other facet are driven, and
+//! so are those that the caller wants driven.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -13,17 +14,17 @@ use crate::motion::options::FacetSet;
 use crate::motion::slide::key;
 use crate::motion::slide::plane::Plane;
 
-/// Two planes are distinct where their angle is more than so many times what their normals may be off by. The two
-/// halves of a shallow dish, which are one patch, are apart by twice that.
+/// Two planes are distinct where their angle is more than this many times the uncertainty of their normals.
+/// The two halves of a shallow dish, which are one patch, differ by twice that uncertainty.
 const DISTINCT: f64 = 4.0;
 
-/// Planes that are as far apart as this, 30 degrees, are distinct whatever they are off by: its sine.
+/// Planes with an angle of 30 degrees or more are distinct whatever their uncertainty: its sine.
 const APART: f64 = 0.5;
 
-/// Normals are off by no less than this: rounding.
+/// The least uncertainty of normals: rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// A plane that one patch slides in, or several patches that lie side by side in it.
+/// A plane in which one patch slides, or several patches side by side.
 #[derive(Clone, Debug)]
 pub(crate) struct Flat {
     /// All facets in the plane.
@@ -31,28 +32,28 @@ pub(crate) struct Flat {
     pub(crate) plane: Plane,
 }
 
-/// The vertices that are held by the same planes.
+/// The vertices that are constrained to the same planes.
 #[derive(Clone, Debug)]
 pub(crate) struct Held {
     /// The planes, as places among all of them, rising.
     pub(crate) planes: Vec<u32>,
-    /// The unit vector along the line in which the planes meet; `None` where there is one plane.
+    /// The unit vector along the line where the planes meet; `None` where there is one plane.
     pub(crate) along: Option<Point>,
-    /// The vertices, rising.
+    /// The vertices, in rising order.
     pub(crate) free: Vec<VertexId>,
-    /// For a line: the other vertices that lie on all of its planes, rising.
+    /// For a line: the other vertices that lie on all of its planes, in rising order.
     pub(crate) anchors: Vec<VertexId>,
 }
 
-/// All planes, and the vertices that slide in them. Lines come first, those of more planes before others, then planes:
-/// what each follows is known when its turn comes.
+/// All planes, and the vertices that slide in them. Lines come first, those of more planes before others,
+/// then planes, so that what a vertex follows is placed before it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Freedom {
     pub(crate) flats: Vec<Flat>,
     pub(crate) held: Vec<Held>,
 }
 
-/// The sets whose facets a vertex is on, and whether it is driven, too.
+/// The sets whose facets a vertex is on, and whether it is also driven.
 struct Member {
     vertex: VertexId,
     sets: Vec<u32>,
@@ -60,7 +61,9 @@ struct Member {
 }
 
 impl Freedom {
-    /// `driven`, rising, are vertices that do not slide wherever they lie; `tolerance` is how far a patch may be off its plane, as a part of its radius.
+    /// Finds the planes of `sets` and the vertices that slide in them. `driven`, in rising order, are
+    /// vertices that do not slide wherever they lie; `tolerance` is how far a patch may be off its plane,
+    /// relative to its radius.
     ///
     /// # Errors
     /// When a set is not flat.
@@ -108,14 +111,15 @@ impl Freedom {
                 planes: planes.clone(),
                 free: free.clone(),
             })
-            // Nothing leads the vertices of a line that has no anchor.
+            // On a line without anchors, vertices have nothing to follow.
             .filter(|held| held.along.is_none() || !held.anchors.is_empty())
             .collect();
         sorted.sort_by_key(|held| std::cmp::Reverse(held.planes.len()));
         Ok(Self { flats, held: sorted })
     }
 
-    /// Which vertex slides on which plane or line, with planes and lines fitted to the places of the vertices in `points`: a patch may have been turned as a whole.
+    /// The constraints with planes and lines fitted to the vertices at `points`: a patch may have rotated as
+    /// a whole.
     ///
     /// # Errors
     /// When the facets of a plane have no area there.
@@ -135,7 +139,7 @@ impl Freedom {
         Ok(Self { held: held.collect(), flats })
     }
 
-    /// The line or the plane that holds each vertex, as a place in [`Self::held`].
+    /// The line or the plane that constrains each vertex, as an index into [`Self::held`].
     pub(crate) fn held_of(&self, n_points: usize) -> Vec<Option<u32>> {
         let mut of = vec![None; n_points];
         for (i, held) in (0..).zip(&self.held) {
@@ -145,7 +149,7 @@ impl Freedom {
     }
 }
 
-/// The vertices of the boundary on facets of sets, rising.
+/// The vertices of the boundary on facets of sets, in rising order.
 fn members(sets: &[FacetSet], boundary: &Boundary, driven: &[VertexId]) -> Vec<Member> {
     const OTHER: u32 = u32::MAX;
     let mut set_of = HashMap::new();
@@ -172,7 +176,7 @@ fn members(sets: &[FacetSet], boundary: &Boundary, driven: &[VertexId]) -> Vec<M
     members.filter(|member| !member.sets.is_empty()).collect()
 }
 
-/// The distinct planes, and the one of each set: sets that meet without an angle lie in one.
+/// The distinct planes, and the one of each set: sets that meet without an angle share a plane.
 fn joined<'a>(
     points: &[Point],
     sets: &[FacetSet],
@@ -202,7 +206,7 @@ fn joined<'a>(
             flat_of.iter_mut().filter(|flat| **flat == i.max(j)).for_each(|flat| *flat = i.min(j));
         }
     }
-    // The planes that are left are numbered anew.
+    // Renumbers the remaining planes.
     let mut used = flat_of.clone();
     used.sort_unstable();
     used.dedup();
@@ -214,12 +218,13 @@ fn are_distinct(a: &Plane, b: &Plane) -> bool {
     norm(cross(a.normal, b.normal)) > doubt([a, b])
 }
 
-/// The sine of an angle that these planes may have to each other by what they are off.
+/// The sine of the largest angle between planes that their uncertainty may account for.
 fn doubt<'a>(planes: impl IntoIterator<Item = &'a Plane>) -> f64 {
     APART.min(DISTINCT * planes.into_iter().map(|plane| plane.tilt() + ROUNDING).sum::<f64>())
 }
 
-/// The direction of the line in which planes meet; `None` where there is one plane, where they meet in a point, or their angle is in doubt.
+/// The direction of the line where planes meet; `None` where there is one plane, where they meet in a point,
+/// or where their angle is uncertain.
 fn line(flats: &[Flat], on: &[u32]) -> Option<Point> {
     let planes: Vec<&Plane> = on.iter().map(|&flat| &flats[flat as usize].plane).collect();
     let mut best = [0.0; 3];
@@ -231,7 +236,7 @@ fn line(flats: &[Flat], on: &[u32]) -> Option<Point> {
             }
         }
     }
-    // The direction is the less sure the flatter the angle: by one over its sine.
+    // The flatter the angle, the less certain the direction: by one over its sine.
     let doubt = doubt(planes.iter().copied());
     let lies_in = |plane: &&Plane| dot(plane.normal, best).abs() <= doubt;
     let sine = norm(best);

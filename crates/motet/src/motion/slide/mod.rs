@@ -1,19 +1,19 @@
-//! Flat parts of the boundary whose vertices slide: in a plane, or along the line in which two planes meet.
+//! Flat parts of the boundary whose vertices slide: in a plane, or along the line where two planes meet.
 //!
-//! An inlet is cut across a vessel; when the wall moves, its rim goes along and the
-//! vertices between must follow. They hang in the Delaunay triangulation of the
-//! vertices around them in the plane, just as inner vertices hang in the one in space.
-//! In fact it is the same code: with one more node above the plane, the tets over the
-//! plane stand on the triangles of the plane's own Delaunay triangulation (the sphere
+//! An inlet is cut across a vessel; when the wall moves, its rim moves along and the vertices between must
+//! follow. They are located in the Delaunay triangulation of the vertices around them in the plane, just as
+//! inner vertices are located in the one in space. In fact the code is the same: with one more node above the
+//! plane, the tets on the plane stand on the triangles of the plane's own Delaunay triangulation (the sphere
 //! through a triangle and that node cuts the plane in the triangle's circle).
 //!
-//! On the line of two planes the same holds with one dimension less: a vertex follows the
-//! two anchors between which it lies. So an affine motion of what is driven is an affine
-//! motion of what slides. Displacements are followed as a whole: what a vertex is off its
-//! plane it stays, and where all of a rim leaves the plane, the patch goes along.
+//! On the line of two planes this holds with one dimension less: a vertex follows the two anchors between
+//! which it lies. So an affine motion of the driven vertices is an affine motion of the sliding ones.
+//! Displacements are followed as a whole: a vertex that is off its plane stays as far off, and where all of a
+//! rim leaves the plane, the patch moves along.
 //!
-//! A rim that becomes straight flattens the triangles between its own vertices, and what hangs in them. A motion
-//! in sub-steps therefore triangulates the planes anew at each, as it does the graph in space.
+//! A rim that becomes straight flattens the triangles between its own vertices, and the vertices in them with
+//! it. A motion in sub-steps therefore triangulates the planes anew at each sub-step, as it does the graph in
+//! space.
 
 mod freedom;
 mod plane;
@@ -29,17 +29,17 @@ pub(crate) use freedom::Freedom;
 pub use report::{LeavesPlane, SlidingPlane};
 pub(crate) use report::{Rim, leaving};
 
-/// Vertices of one plane or line that slide.
+/// The sliding vertices of one plane or line.
 #[derive(Debug)]
 pub(crate) struct Slide {
     way: Way,
     /// Nodes of the sliding vertices.
     pub(crate) sliding: Vec<u32>,
-    /// For each the nodes that it follows, and their weights.
+    /// For each of these, the nodes that it follows and their weights.
     follows: Vec<([u32; 4], [f64; 4])>,
 }
 
-/// Where vertices that slide can go.
+/// The directions in which sliding vertices can move.
 #[derive(Clone, Copy, Debug)]
 enum Way {
     /// At right angles to this unit vector.
@@ -48,7 +48,7 @@ enum Way {
     Line(Point),
 }
 
-/// A facet by its corners, in whatever order.
+/// A facet by its corners, whatever their order.
 type Key = Vec<VertexId>;
 
 pub(crate) fn key(ring: &[VertexId]) -> Key {
@@ -56,10 +56,11 @@ pub(crate) fn key(ring: &[VertexId]) -> Key {
 }
 
 impl Slide {
-    /// The free vertices for which `is_sliding` holds follow the others of their planes; `node` gives the node of a vertex.
+    /// Makes the free vertices for which `is_sliding` holds follow the others of their planes; `node` returns
+    /// the node of a vertex.
     ///
     /// # Errors
-    /// When vertices of a plane have fewer than three to follow, or all of these lie in a line.
+    /// When the vertices of a plane have fewer than three to follow, or all of these lie on a line.
     pub(crate) fn new(
         points: &[Point],
         flats: &[Flat],
@@ -90,7 +91,7 @@ impl Slide {
         self.sliding.len()
     }
 
-    /// The part of a displacement that leads out of the plane, or off the line.
+    /// The component of a displacement out of the plane, or off the line.
     pub(crate) fn outward(&self, d: Point) -> Point {
         match self.way {
             Way::Plane(normal) => scale(normal, dot(d, normal)),
@@ -98,7 +99,8 @@ impl Slide {
         }
     }
 
-    /// Gives the sliding nodes their displacement; `start` is the displacement of a node where the weights were computed.
+    /// Computes the displacements of the sliding nodes; `start` is the displacement of a node where the
+    /// weights were computed.
     pub(crate) fn apply(&self, start: impl Fn(u32) -> Point, displacement: &mut [Padded]) {
         for (&sliding, (nodes, weights)) in self.sliding.iter().zip(&self.follows) {
             let change = |node: u32| sub(displacement[node as usize].point(), start(node));
@@ -133,7 +135,7 @@ fn in_plane(
         .at(format!("sliding patch {}", set.name))
     })?;
     let hanging = hang(&graph, &flat, threads);
-    // The node above the plane has no weight for a point in it; any node does in its place.
+    // The node above the plane has no weight for a point in it; any node can take its place.
     let vertex = |i: u32| sources.get(i as usize).copied().unwrap_or(sources[0]);
     let above = sources.len() as u32;
     let follows = hanging.tet.iter().zip(&hanging.weights).map(|(&tet, weights)| {
@@ -145,14 +147,15 @@ fn in_plane(
     Ok(follows.collect())
 }
 
-/// What each of `sliding` follows: the nearest source on either side along the line, or the last where there is none beyond.
+/// What each of `sliding` follows: the nearest source on either side along the line, or the last one at an
+/// end of it.
 fn on_line(
     points: &[Point],
     along: Point,
     sources: &[VertexId],
     sliding: &[VertexId],
 ) -> Vec<([VertexId; 4], [f64; 4])> {
-    // From a place on the line, so that no digits are lost far from the origin.
+    // Measured from a place on the line, so that no digits are lost far from the origin.
     let origin = points[sources[0].index()];
     let at = |v: VertexId| dot(sub(points[v.index()], origin), along);
     let mut sorted: Vec<(f64, VertexId)> = sources.iter().map(|&v| (at(v), v)).collect();

@@ -1,4 +1,4 @@
-//! The plane of a flat patch, and by how much the patch is off it.
+//! The plane of a flat patch, and how far the patch is off it.
 
 use crate::base::{Error, Point, Result};
 use crate::geometry::triangle::area_vector;
@@ -18,7 +18,7 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    /// Through the mean of the vertices, at right angles to the sum of the area vectors.
+    /// The plane through the mean of the vertices, at right angles to the sum of the area vectors.
     ///
     /// # Errors
     /// When the facets have no area, or a vertex is off the plane by more than `tolerance` times the radius.
@@ -26,7 +26,7 @@ impl Plane {
         let corners = set.vertices.iter().map(|v| points[v.index()]);
         let centre = scale(corners.clone().fold([0.0; 3], add), 1.0 / set.vertices.len().max(1) as f64);
         let radius = corners.clone().map(|p| norm(sub(p, centre))).fold(0.0, f64::max);
-        // Facets of a patch need not all run the same way round: none may cancel another.
+        // Facets of a patch need not all have the same orientation: none may cancel another.
         let area = set.triangles().map(|t| area_vector(t.map(|v| points[v.index()])));
         let area = area.fold([0.0; 3], |sum, a| if dot(sum, a) < 0.0 { sub(sum, a) } else { add(sum, a) });
         let normal = scale(area, 1.0 / norm(area));
@@ -45,7 +45,7 @@ impl Plane {
                  or make caps flat (`motet cap --flatten`)",
             ));
         }
-        // Along the coordinate axis that is furthest from the normal.
+        // Along the coordinate axis that is farthest from the normal.
         let least = (0..3).fold(0, |i, j| if normal[j].abs() < normal[i].abs() { j } else { i });
         let across = cross(normal, [0, 1, 2].map(|i| f64::from(u8::from(i == least))));
         let across = scale(across, 1.0 / norm(across));
@@ -58,7 +58,7 @@ impl Plane {
         [dot(p, self.axes[0]), dot(p, self.axes[1]), 0.0]
     }
 
-    /// The angle in radians by which its normal may be off, since the patch is not exactly flat.
+    /// The angle in radians by which the normal may be off, since the patch is not exactly flat.
     pub(crate) fn tilt(&self) -> f64 {
         if self.radius > 0.0 { self.deviation / self.radius } else { 0.0 }
     }

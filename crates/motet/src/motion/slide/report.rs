@@ -1,4 +1,4 @@
-//! What is reported of sliding patches: how flat they are, and where their rims leave the plane.
+//! Reports on sliding patches: how flat they are, and where their rims leave the plane.
 
 use serde::Serialize;
 
@@ -6,12 +6,12 @@ use crate::base::{Point, VertexId};
 use crate::geometry::vector::dot;
 use crate::motion::slide::freedom::Freedom;
 
-/// A plane that one patch slides in, or several patches that lie side by side in it.
+/// A plane in which one patch slides, or several patches side by side.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SlidingPlane {
     /// The names of the patches.
     pub patch: String,
-    /// The largest distance of a vertex from the middle, in the unit of the mesh.
+    /// The largest distance of a vertex from the centre, in the unit of the mesh.
     pub radius: f64,
     /// The largest distance of a vertex from the plane, in the unit of the mesh.
     pub deviation: f64,
@@ -19,18 +19,18 @@ pub struct SlidingPlane {
     pub sliding: usize,
 }
 
-/// Where the rim of a sliding patch leaves its plane: the patch goes along with it.
+/// Where the rim of a sliding patch leaves its plane; the patch moves along with it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeavesPlane {
     /// The names of the patches in the plane.
     pub patch: String,
-    /// The vertex of the rim that goes farthest.
+    /// The vertex of the rim that moves farthest out of the plane.
     pub vertex: VertexId,
-    /// Where that vertex is in the reference.
+    /// The position of that vertex in the reference.
     pub place: Point,
-    /// How far it is moved at right angles to the plane, in the unit of the mesh.
+    /// How far it moves at right angles to the plane, in the unit of the mesh.
     pub distance: f64,
-    /// Whether that is more than rounding of coordinates in single precision can make.
+    /// Whether that is more than the rounding of single-precision coordinates can cause.
     pub is_significant: bool,
 }
 
@@ -39,13 +39,13 @@ pub struct LeavesPlane {
 pub(crate) struct Rim {
     patch: String,
     normal: Point,
-    /// What coordinates of single precision are off by.
+    /// The rounding error of single-precision coordinates.
     rounding: f64,
     nodes: Vec<u32>,
 }
 
 impl Freedom {
-    /// What is reported of each plane.
+    /// The report on each plane.
     pub(crate) fn planes(&self) -> Vec<SlidingPlane> {
         let mut planes: Vec<SlidingPlane> = (self.flats.iter())
             .map(|flat| SlidingPlane {
@@ -61,7 +61,7 @@ impl Freedom {
         planes
     }
 
-    /// The rim of each plane; `node` gives the node of a vertex.
+    /// The rim of each plane; `node` returns the node of a vertex.
     pub(crate) fn rims(&self, points: &[Point], node: impl Fn(VertexId) -> u32) -> Vec<Rim> {
         let held = self.held_of(points.len());
         let is_driven = |v: &VertexId| held[v.index()].is_none();
@@ -80,8 +80,8 @@ impl Freedom {
     }
 }
 
-/// The vertex of all rims that leaves its plane farthest; `None` where all stay. `vertices` are those of the nodes, `driven` the
-/// displacements of the driven ones, which come first.
+/// The vertex of all rims that leaves its plane farthest; `None` where all stay. `vertices` are those of the
+/// nodes; `driven` are the displacements of the driven nodes, which come first.
 pub(crate) fn leaving(
     rims: &[Rim],
     vertices: &[VertexId],

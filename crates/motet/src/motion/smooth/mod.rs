@@ -1,9 +1,11 @@
-//! Local smoothing: the vertices of bad tets, and no others, go where their tets are better.
+//! Local smoothing: the vertices of bad tets, and no others, move to where their tets are better.
 //!
-//! Each goes downhill on the sum over its tets of `h(r)^-4`, where `r` is the mean ratio `12 sqrt(3) 6V / (sum of squared edges)^1.5` as Mmg has it (1 for the regular tet), and
-//! `h(r) = (r + sqrt(r^2 + delta^2)) / 2`, which stays positive for inverted tets (Escobar, Rodriguez, Montenegro, Montero, Gonzalez-Yuste 2003). It starts
-//! from where the method put the vertices, every time: the result depends on the boundary alone. How far a vertex may go fades out where its worst tet gets good, so that
-//! none jumps when it enters or leaves the list.
+//! Each moves downhill on the sum over its tets of `h(r)^-4`, where `r` is the mean ratio `12 sqrt(3) 6V /
+//! (sum of squared edges)^1.5` as Mmg defines it (1 for the regular tet), and `h(r) = (r + sqrt(r^2 +
+//! delta^2)) / 2`, which stays positive for inverted tets (Escobar, Rodriguez, Montenegro, Montero,
+//! Gonzalez-Yuste 2003). Smoothing always starts from where the method put the vertices: the result depends
+//! on the boundary alone. How far a vertex may move fades out as its worst tet becomes good, so that none
+//! jumps when it enters or leaves the list.
 
 mod star;
 
@@ -19,28 +21,29 @@ use crate::motion::certificate::BAD_EAS;
 use crate::motion::check::Check;
 use crate::motion::smooth::star::Star;
 
-/// From this EAS of their worst tet down vertices move, and freely below [`BAD_EAS`].
+/// Vertices move where the EAS of their worst tet is below this, and freely where it is below [`BAD_EAS`].
 const FADES: f64 = 0.225;
-/// A sweep moves a vertex by no more than this part of the mean edge at it.
+/// A sweep moves a vertex by no more than this fraction of the mean edge at it.
 const FARTHEST: f64 = 0.3;
-/// Shorter steps that are tried where the whole one does not help, each so much shorter.
+/// Number of shorter steps that are tried where the whole one does not help, each [`SHORTER`] times the one
+/// before.
 const BACKTRACKS: usize = 3;
 const SHORTER: f64 = 0.4;
 
-/// What smoothing has to know of the mesh.
+/// What smoothing needs of the mesh.
 #[derive(Debug, Default)]
 pub(crate) struct Smoother {
     sweeps: usize,
     tets: Vec<[VertexId; 4]>,
-    /// The tets of each vertex that may move; none of the others.
+    /// The tets of each vertex that may move; empty for all others.
     tets_of: Csr<u32>,
 }
 
-/// Vertices that are looked at in one go.
+/// Tets per run.
 const CHUNK: usize = 1 << 13;
 
 impl Smoother {
-    /// Only the corners of tets count that follow, and are corners of nothing but tets.
+    /// Only those vertices of `follows` may move that are corners of nothing but tets.
     pub(crate) fn new(check: &Check, follows: &[VertexId], n_points: usize, sweeps: usize) -> Self {
         let corners = &check.corners;
         let mut may_move = vec![false; n_points];
@@ -55,7 +58,7 @@ impl Smoother {
         Self { sweeps, tets_of: Csr::from_pairs(n_points, uses), tets: corners.tets.clone() }
     }
 
-    /// Moves vertices of bad tets; how many.
+    /// Moves vertices of bad tets; returns how many.
     pub(crate) fn apply(&self, points: &mut [Point], threads: &Threads) -> usize {
         let mut listed = self.listed(points, threads);
         let first: Vec<Point> = listed.iter().map(|(v, _)| points[v.index()]).collect();
@@ -120,7 +123,7 @@ impl<F: Four> NullaryFnOnce for Sweeps<'_, F> {
     }
 }
 
-/// One step of Newton, as far as that makes the sum smaller.
+/// One step of Newton, shortened until it makes the sum smaller.
 #[inline(always)]
 fn improved<F: Four>(machine: F::Machine, star: &Star, from: Point, freedom: f64) -> Point {
     let (before, way) = star.downhill::<F>(machine, from);
@@ -133,7 +136,7 @@ fn improved<F: Four>(machine: F::Machine, star: &Star, from: Point, freedom: f64
     for _ in 0..=BACKTRACKS {
         let to = add(from, scale(way, part));
         let now = star.value::<F>(machine, to);
-        // What stands upright stays so.
+        // Upright tets stay upright.
         if now.sum < before.sum && (now.worst > 0.0 || before.worst <= 0.0) {
             return to;
         }
@@ -142,7 +145,7 @@ fn improved<F: Four>(machine: F::Machine, star: &Star, from: Point, freedom: f64
     from
 }
 
-/// The other three corners of a tet, in the order that leaves its volume with its sign when `v` comes first.
+/// The other three corners of a tet, in the order that keeps the sign of its volume when `v` comes first.
 #[inline(always)]
 fn opposite(tet: [VertexId; 4], v: VertexId, points: &[Point]) -> [Point; 3] {
     let [a, b, c, d] = tet;

@@ -1,4 +1,5 @@
-//! The sum over the tets of a vertex that smoothing makes smaller, four tets at a time: 2.4 times as fast as one by one.
+//! The sum over the tets of a vertex that smoothing minimises, four tets at a time: 2.4 times as fast as one
+//! by one.
 
 use crate::algebra::Block;
 use crate::base::Point;
@@ -7,15 +8,16 @@ use crate::geometry::vector::scale;
 
 /// `12 sqrt(3)`: makes the mean ratio of the regular tet 1.
 const REGULAR: f64 = 20.784_609_690_826_528;
-/// Where `h` begins to bend.
+/// The scale of `r` at which `h` bends.
 const DELTA: f64 = 0.02;
 
 /// The tets of one vertex.
 #[derive(Debug, Default)]
 pub(super) struct Star {
-    /// The other three corners of each, in the order that leaves its volume with its sign when the vertex comes first; four tets in one.
+    /// The other three corners of each tet, in the order that keeps the sign of its volume when the vertex
+    /// comes first; four tets per entry.
     opposite: Vec<[[[f64; 4]; 3]; 3]>,
-    /// 1 for a tet, 0 for none: there are not always four.
+    /// 1 for a tet, 0 for a filler: the last entry may have fewer than four tets.
     counts: Vec<[f64; 4]>,
     n: usize,
 }
@@ -38,7 +40,7 @@ impl Star {
     pub(super) fn push(&mut self, opposite: [Point; 3]) {
         let lane = self.n % 4;
         if lane == 0 {
-            // Where there is no tet stands a copy of this one, which is not counted.
+            // Lanes without a tet hold a copy of this one, which is not counted.
             let [p, q, r] = opposite;
             let all = |p: Point| [[p[0]; 4], [p[1]; 4], [p[2]; 4]];
             self.opposite.push([all(p), all(q), all(r)]);
@@ -55,7 +57,7 @@ impl Star {
         self.n += 1;
     }
 
-    /// The mean length of the edges at the vertex, each as often as it has tets.
+    /// The mean length of the edges at the vertex, each counted once per tet.
     #[inline(always)]
     pub(super) fn mean_edge<F: Four>(&self, machine: F::Machine, from: Point) -> f64 {
         let from = splat::<F>(machine, from);
@@ -70,7 +72,7 @@ impl Star {
         sum.sum() / (3 * self.n) as f64
     }
 
-    /// With the vertex at `x`.
+    /// The value with the vertex at `x`.
     #[inline(always)]
     pub(super) fn value<F: Four>(&self, machine: F::Machine, x: Point) -> Value {
         let x = splat::<F>(machine, x);
@@ -92,7 +94,7 @@ impl Star {
         Value { sum: sum.sum(), worst: worst.least() }
     }
 
-    /// The value at `x`, and the step from there that Newton's method takes.
+    /// The value at `x`, and the step of Newton's method from there.
     #[inline(always)]
     pub(super) fn downhill<F: Four>(&self, machine: F::Machine, x: Point) -> (Value, Point) {
         let x = splat::<F>(machine, x);
@@ -106,7 +108,8 @@ impl Star {
             let count = F::load(machine, count);
             let (a, b, c) = (sub(p, x), sub(q, x), sub(r, x));
             let (e, f, g) = (sub(q, p), sub(r, q), sub(p, r));
-            // The volume is linear in x, the sum of squares is a parabola; of its slope -2 is left out.
+            // The volume is linear in x, the sum of squares is quadratic; the factor -2 of its slope is left
+            // out.
             let volume_6 = dot(a, cross(b, c));
             let of_volume = cross(f, e);
             let squares = dot(a, a) + dot(b, b) + dot(c, c) + dot(e, e) + dot(f, f) + dot(g, g);
@@ -153,7 +156,7 @@ fn barrier<F: Four>(machine: F::Machine, r: F) -> Barrier<F> {
     let half = all(0.5);
     let square = all(DELTA * DELTA);
     let root = (r * r + square).sqrt();
-    // For inverted tets the sum would cancel.
+    // For inverted tets `r + root` would cancel.
     let h = r.if_positive(half * (r + root), half * square / (root - r));
     let (slope, bend) = (h / root, half * square / (root * root * root));
     let h2 = h * h;
@@ -162,7 +165,7 @@ fn barrier<F: Four>(machine: F::Machine, r: F) -> Barrier<F> {
     Barrier { value, first: first * slope, second: all(20.0) * value / h2 * (slope * slope) + first * bend }
 }
 
-/// Newton's step where the sum bends upward in all directions, else each coordinate for itself.
+/// Newton's step where the sum is convex, else a step in each coordinate separately.
 fn way(slope: Point, bend: [[f64; 3]; 3]) -> Point {
     let newton = bend.inverse().map(|inverse| scale(inverse.times(slope), -1.0));
     newton.unwrap_or_else(|| {
@@ -221,7 +224,8 @@ mod tests {
         }
     }
 
-    /// Newton's step leads to where the slope of the parabola is zero: seen from differences of the sum.
+    /// Newton's step leads to where the slope of the parabola is zero; here it is computed from differences
+    /// of the sum.
     #[test]
     fn derivatives_are_those_of_differences() {
         let star = star(&[

@@ -1,9 +1,9 @@
-//! From the matrices of tets to that of the mesh.
+//! Assembly of the matrix of a mesh from those of its tets.
 
 use crate::algebra::{Block, Sgs, SparseMatrix};
 use crate::base::{Csr, Error, Result, VertexId};
 
-/// The unknowns: free vertices first, then those that are given.
+/// The numbers of the unknowns: free vertices first, then those that are given.
 #[derive(Debug)]
 pub(crate) struct Numbering {
     of_vertex: Vec<u32>,
@@ -11,10 +11,10 @@ pub(crate) struct Numbering {
     n_given: usize,
 }
 
-/// A vertex that is neither.
+/// Marks a vertex that is neither free nor given.
 const NONE: u32 = u32::MAX;
 
-/// Tets all of whose vertices have numbers.
+/// Tets whose vertices all have numbers.
 pub(crate) struct NumberedTets {
     pub(crate) vertices: Vec<[VertexId; 4]>,
     pub(crate) numbers: Vec<[u32; 4]>,
@@ -43,17 +43,18 @@ impl Numbering {
 /// The equations of the free vertices.
 #[derive(Clone, Debug)]
 pub(crate) struct System<B> {
-    /// What they have to do with each other.
+    /// Their coupling with each other.
     pub(crate) inner: SparseMatrix<B>,
-    /// And with those that are given.
+    /// Their coupling with the given vertices.
     pub(crate) coupling: SparseMatrix<B>,
     pub(crate) sweeps: Sgs<B>,
-    /// For each tet where its matrix goes, row after row. To look for them each time takes five times as long.
+    /// For each tet, where its matrix goes, row after row. Searching for these places each time takes five
+    /// times as long.
     places: Vec<[[u32; 4]; 4]>,
 }
 
 impl<B: Block> System<B> {
-    /// All zero, with room for what tets of these numbers bring.
+    /// A zero system with the pattern of tets that have these numbers.
     pub(crate) fn with_pattern(numbering: &Numbering, tets: &[[u32; 4]]) -> Self {
         let n_free = numbering.n_free as u32;
         let is_free = |number: u32| number < n_free;
@@ -83,7 +84,7 @@ impl<B: Block> System<B> {
         Self { places, inner, coupling, sweeps: Sgs::default() }
     }
 
-    /// [`Self::with_pattern`] and [`Self::fill`].
+    /// Calls [`Self::with_pattern`], then [`Self::fill`].
     pub(super) fn assemble(
         numbering: &Numbering,
         tets: &[[u32; 4]],
@@ -94,7 +95,7 @@ impl<B: Block> System<B> {
         Ok(system)
     }
 
-    /// `of_tet` gives the matrix of each tet.
+    /// Sums the matrices of all tets into the system; `of_tet` returns the matrix of each.
     ///
     /// # Errors
     /// When a free vertex has no tet, or only flat ones.

@@ -1,4 +1,4 @@
-//! The matrix of a tet with linear shape functions.
+//! The matrices of tets with linear shape functions.
 
 use crate::algebra::{Block, Block3};
 use crate::base::{Point, Threads, VertexId};
@@ -7,7 +7,7 @@ use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::motion::options::{Elastic, FacetSet, Laplace};
 use crate::spatial::NearestTriangle;
 
-/// The gradients of the shape functions, and the volume without its sign; `None` where that is zero.
+/// The gradients of the shape functions, and the absolute volume; `None` where that is zero or not finite.
 pub(crate) fn gradients([p, q, r, s]: [Point; 4]) -> Option<([Point; 4], f64)> {
     let (a, b, c) = (sub(q, p), sub(r, p), sub(s, p));
     let volume_6 = dot(a, cross(b, c));
@@ -18,14 +18,14 @@ pub(crate) fn gradients([p, q, r, s]: [Point; 4]) -> Option<([Point; 4], f64)> {
     Some(([scale(add(add(x, y), z), -1.0), x, y, z], volume_6.abs() / 6.0))
 }
 
-/// The mean volume: in units of it, numbers are neither large nor small.
+/// The mean volume, as a unit in which numbers are neither large nor small.
 fn mean_volume(tets: &[[VertexId; 4]], points: &[Point]) -> f64 {
     let volumes = tets.iter().filter_map(|tet| Some(gradients(tet.map(|v| points[v.index()]))?.1));
     volumes.sum::<f64>() / tets.len().max(1) as f64
 }
 
-/// Linear elasticity (Zienkiewicz, Taylor, Zhu 2005, 6.2): `lambda g_i g_j^T + mu (g_j g_i^T + g_i . g_j I)`, times the volume, with a modulus of
-/// `(mean volume / volume)^stiffening`.
+/// Element matrices of linear elasticity (Zienkiewicz, Taylor, Zhu 2005, 6.2): `lambda g_i g_j^T + mu (g_j
+/// g_i^T + g_i . g_j I)`, times the volume, with a modulus of `(mean volume / volume)^stiffening`.
 pub(super) fn elastic<'a>(
     law: &Elastic,
     tets: &'a [[VertexId; 4]],
@@ -54,7 +54,8 @@ pub(super) fn elastic<'a>(
     }
 }
 
-/// `g_i . g_j` times the volume and the diffusivity: the distance of the centre from the wall to the power `-exponent`.
+/// Element matrices of the Laplace equation: `g_i . g_j` times the volume and the diffusivity, which is the
+/// distance of the centre from the wall to the power `-exponent`.
 pub(super) fn laplace<'a>(
     law: &Laplace,
     tets: &'a [[VertexId; 4]],
@@ -71,13 +72,13 @@ pub(super) fn laplace<'a>(
     let exponent = law.exponent;
     move |t| {
         let Some((g, volume)) = gradients(tets[t].map(|v| points[v.index()])) else { return [[0.0; 4]; 4] };
-        // The centre of a tet at the wall is as far from it as a quarter of its height: never zero but by rounding.
+        // The centre of a tet at the wall is a quarter of its height away from it: zero only by rounding.
         let weight = volume * distances[t].max(1e-9 * volume.cbrt()).powf(-exponent);
         laplacian(&g, weight)
     }
 }
 
-/// `stiffness g_i . g_j`
+/// The matrix `stiffness g_i . g_j`.
 pub(crate) fn laplacian(gradients: &[Point; 4], stiffness: f64) -> [[f64; 4]; 4] {
     std::array::from_fn(|i| std::array::from_fn(|j| stiffness * dot(gradients[i], gradients[j])))
 }

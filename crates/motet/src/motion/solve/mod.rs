@@ -1,8 +1,10 @@
-//! The other way for the volume to follow: its vertices go where a linear system puts them.
+//! Methods by which the interior vertices move as a linear system determines.
 //!
-//! Slow beside the graph, and what that is measured against: as users know it from their solvers, done as well as it can be. Linear elasticity whose cells are the stiffer the
-//! smaller they are (Tezduyar 1992; Stein, Tezduyar, Benney 2003: "Jacobian-based stiffening"), and a Laplace equation for each coordinate with a diffusivity that falls with the distance
-//! from the wall (Jasak and Tukovic 2006).
+//! They are slow compared to the graph, and what it is measured against: the methods that users know from
+//! their solvers, implemented as well as possible. Linear elasticity, with cells that are stiffer the smaller
+//! they are (Tezduyar 1992; Stein, Tezduyar, Benney 2003: "Jacobian-based stiffening"), and a Laplace
+//! equation for each coordinate, with a diffusivity that falls with the distance from the wall (Jasak and
+//! Tukovic 2006).
 
 mod assemble;
 mod element;
@@ -24,11 +26,11 @@ use crate::motion::update::Displacements;
 pub(crate) struct Solve {
     /// The vertices that are solved for.
     free: Vec<VertexId>,
-    /// The vertices that are given.
+    /// The vertices whose displacements are given.
     nodes: Vec<VertexId>,
     kind: Kind,
     tolerance: Tolerance,
-    /// The last solution, where the next one begins.
+    /// The last solution, from which the next one starts.
     last: Mutex<Vec<Point>>,
 }
 
@@ -39,10 +41,12 @@ enum Kind {
 }
 
 impl Solve {
-    /// Sets up the system of a mesh whose cells have these corners, with its vertices at `points`; `nodes` are given. `wall` is where a Laplace equation is stiff.
+    /// Sets up the system of a mesh whose cells have the corners `tets`, with its vertices at `points`. The
+    /// displacements of `nodes` will be given; `wall` is where a Laplace equation is stiff.
     ///
     /// # Errors
-    /// When `free` has a vertex that no corner holds, and when all cells at one are flat.
+    /// When a vertex of `free` is a corner of no cell, when all cells at one are flat, or when a factor
+    /// cannot be computed.
     pub(crate) fn new(
         method: &Method,
         tets: &[[VertexId; 4]],
@@ -73,7 +77,7 @@ impl Solve {
         Ok(Self { free: free.to_vec(), nodes: nodes.to_vec(), kind, tolerance, last })
     }
 
-    /// Bytes of the factor that is kept.
+    /// Bytes of the factor that is kept; 0 without one.
     pub(crate) fn factor_bytes(&self) -> u64 {
         match &self.kind {
             Kind::Elastic(solver) => solver.factor_bytes(),
@@ -81,7 +85,7 @@ impl Solve {
         }
     }
 
-    /// Moves all vertices from where they are; those of no cell and no node stay.
+    /// Moves all vertices from their positions `from`; those of no cell and no node stay.
     ///
     /// # Errors
     /// When the tolerance is not reached.

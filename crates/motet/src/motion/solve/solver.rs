@@ -1,13 +1,14 @@
-//! A system and how it is solved.
+//! A linear system and the way it is solved.
 
 use crate::algebra::{Block, Cholesky, Solved, Tolerance, TwoLevel, conjugate_gradients};
 use crate::base::{Point, Result, Threads};
 use crate::motion::solve::assemble::System;
 
-/// From so many unknown vertices on, two levels are worth setting up: on meshes of 32,000 vertices and more a step takes two thirds of the time or less, of 158,000 a third.
+/// From this many unknown vertices on, two levels are worth setting up: a step takes two thirds of the time
+/// or less on meshes of 32,000 vertices and more, and a third on one of 158,000.
 const TWO_LEVELS_FROM: usize = 5_000;
 
-/// A system ready for right sides.
+/// A system ready for right-hand sides.
 #[derive(Debug)]
 pub(super) struct Solver<B> {
     system: System<B>,
@@ -22,7 +23,8 @@ enum Way<B> {
 }
 
 impl<B: Block> Solver<B> {
-    /// By a factor, where it takes no more than so many bytes; `places` has those of the unknown vertices.
+    /// Uses a factor where it takes no more than `factor_bytes`; `places` are the positions of the unknown
+    /// vertices.
     pub(super) fn new(
         system: System<B>,
         places: &[Point],
@@ -44,7 +46,8 @@ impl<B: Block> Solver<B> {
         Ok(Self { system, way })
     }
 
-    /// Displacements of the unknown vertices from those that are given; `x` has a guess before.
+    /// Computes the displacements `x` of the unknown vertices from the given ones; `x` holds a guess on
+    /// entry.
     pub(super) fn solve(
         &self,
         given: &[Point],
@@ -64,7 +67,7 @@ impl<B: Block> Solver<B> {
         }
     }
 
-    /// Bytes of the factor.
+    /// Bytes of the factor; 0 without one.
     pub(super) fn factor_bytes(&self) -> u64 {
         if let Way::Factor(factor) = &self.way { factor.n_bytes() } else { 0 }
     }
