@@ -60,17 +60,18 @@
 //! # Kinds of vertices
 //!
 //! * *driven* vertices are moved by the caller: those of the boundary ([`Mover::boundary`]), and any others
-//! that
-//!   [`Options::also_moved`] names, such as those of an interface inside ([`Interface::moved`]). They arrive to the
-//!   bit. Two boundary vertices in one place (the two sides of a slit) move independently; vertices nearby follow the
-//!   one that comes first.
-//! * *sliding* vertices ([`Options::sliding`]) lie on flat patches and follow their rim: in the plane, and where two
-//!   planes meet, along their line. Where three planes meet, and where a sliding patch meets one that does not slide,
-//!   vertices are driven.
+//!   that [`Options::also_moved`] names, such as those of an interface inside ([`Interface::moved`]). They
+//!   arrive to the bit. Two boundary vertices in one place (the two sides of a slit) move independently;
+//!   vertices nearby follow the one that comes first.
+//! * *sliding* vertices ([`Options::sliding`]) lie on flat patches and follow their rim: in the plane, and
+//!   where two planes meet, along their line. Where three planes meet, and where a sliding patch meets one
+//!   that does not slide, vertices are driven.
 //! * the *rigid layer* ([`Options::rigid_layer`]) keeps its position relative to the wall.
-//! * *middle* nodes of quadratic cells that lie in the middle of their corners at first, and that the caller does not
-//!   move, stay there: straight edges stay straight. Those of curved edges follow like any other vertex.
-//! * all other vertices follow the graph; those that lie outside it and belong to no volume cell stay where they are.
+//! * *middle* nodes of quadratic cells that lie in the middle of their corners at first, and that the caller
+//!   does not move, stay there: straight edges stay straight. Those of curved edges follow like any other
+//!   vertex.
+//! * all other vertices follow the graph; those that lie outside it and belong to no volume cell stay where
+//!   they are.
 
 mod advance;
 mod bodies;

@@ -121,7 +121,7 @@ fn hang(nodes: &[Point], tets: &[[VertexId; 4]], points: &[Point], threads: &Thr
 /// Points that the graph added: they follow the others.
 #[derive(Debug)]
 pub(crate) struct Added {
-    /// The place among all nodes of each node of the graph that is given.
+    /// For each given node of the graph, its index among all nodes.
     given: Vec<u32>,
     n: usize,
     system: System<f64>,

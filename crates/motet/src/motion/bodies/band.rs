@@ -93,7 +93,7 @@ fn ramp(distance: f64, gap: f64, edge: f64) -> f64 {
     if distance < end { ((end - distance) / (end - begin)).min(1.0) } else { 0.0 }
 }
 
-/// Owners of vertices: nobody, a wall that is no body, and from [`BODIES`] on the bodies.
+/// Owners of vertices: nobody, a wall of no body, and the bodies from [`BODIES`] on.
 const NOBODY: u32 = 0;
 const A_WALL: u32 = 1;
 const BODIES: u32 = 2;

@@ -7,12 +7,13 @@
 //! 1. The rotation of a boundary vertex is that of its facets. Inside, rotation vectors are harmonic
 //!    (harmonic guidance: Zayer, Roessl, Karni, Seidel 2005).
 //! 2. Interior nodes move to where the gradient of the motion is nearest to those rotations,
-//!    `min sum k_T |grad x' - R_T|^2` over the tets of the graph (Poisson editing: Yu, Zhou, Xu, Shi, Bao, Guo, Shum
-//!    2004). These are sparse systems of some hundred unknowns. They are solved once more, for the rotations nearest
-//!    to the gradients of the first solution (as rigid as possible: Sorkine, Alexa 2007), with compressed tets stiffer.
-//! 3. Each node carries an affine map: its displacement and half its gradient. A vertex gets the weighted mean of those
-//!    of its four nodes: exact for motions of second order, and without the kinks that linear weights have where tets of
-//!    the graph meet.
+//!    `min sum k_T |grad x' - R_T|^2` over the tets of the graph (Poisson editing: Yu, Zhou, Xu, Shi, Bao,
+//!    Guo, Shum 2004). These are sparse systems of some hundred unknowns. They are solved once more, for the rotations
+//!    nearest to the gradients of the first solution (as rigid as possible: Sorkine, Alexa 2007), with
+//!    compressed tets stiffer.
+//! 3. Each node carries an affine map: its displacement and half its gradient. A vertex gets the weighted
+//!    mean of those of its four nodes: exact for motions of second order, and without the kinks that linear
+//!    weights have where tets of the graph meet.
 //!
 //! All of it starts from the reference: a step depends on where the boundary is, not on how it got there.
 

@@ -35,7 +35,7 @@ pub(crate) struct Flat {
 /// The vertices that are constrained to the same planes.
 #[derive(Clone, Debug)]
 pub(crate) struct Held {
-    /// The planes, as places among all of them, rising.
+    /// The planes, as indices among all of them, in rising order.
     pub(crate) planes: Vec<u32>,
     /// The unit vector along the line where the planes meet; `None` where there is one plane.
     pub(crate) along: Option<Point>,

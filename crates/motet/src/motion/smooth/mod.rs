@@ -1,11 +1,11 @@
 //! Local smoothing: the vertices of bad tets, and no others, move to where their tets are better.
 //!
-//! Each moves downhill on the sum over its tets of `h(r)^-4`, where `r` is the mean ratio `12 sqrt(3) 6V /
-//! (sum of squared edges)^1.5` as Mmg defines it (1 for the regular tet), and `h(r) = (r + sqrt(r^2 +
-//! delta^2)) / 2`, which stays positive for inverted tets (Escobar, Rodriguez, Montenegro, Montero,
-//! Gonzalez-Yuste 2003). Smoothing always starts from where the method put the vertices: the result depends
-//! on the boundary alone. How far a vertex may move fades out as its worst tet becomes good, so that none
-//! jumps when it enters or leaves the list.
+//! Each moves downhill on the sum over its tets of `h(r)^-4`, where `r` is the mean ratio
+//! `12 sqrt(3) 6V / (sum of squared edges)^1.5` as Mmg defines it (1 for the regular tet), and
+//! `h(r) = (r + sqrt(r^2 + delta^2)) / 2`, which stays positive for inverted tets (Escobar, Rodriguez,
+//! Montenegro, Montero, Gonzalez-Yuste 2003). Smoothing always starts from where the method put the vertices:
+//! the result depends on the boundary alone. How far a vertex may move fades out as its worst tet becomes
+//! good, so that none jumps when it enters or leaves the list.
 
 mod star;
 

@@ -24,8 +24,9 @@ fn mean_volume(tets: &[[VertexId; 4]], points: &[Point]) -> f64 {
     volumes.sum::<f64>() / tets.len().max(1) as f64
 }
 
-/// Element matrices of linear elasticity (Zienkiewicz, Taylor, Zhu 2005, 6.2): `lambda g_i g_j^T + mu (g_j
-/// g_i^T + g_i . g_j I)`, times the volume, with a modulus of `(mean volume / volume)^stiffening`.
+/// Element matrices of linear elasticity (Zienkiewicz, Taylor, Zhu 2005, 6.2):
+/// `lambda g_i g_j^T + mu (g_j g_i^T + g_i . g_j I)`, times the volume, with a modulus of
+/// `(mean volume / volume)^stiffening`.
 pub(super) fn elastic<'a>(
     law: &Elastic,
     tets: &'a [[VertexId; 4]],
