@@ -33,8 +33,8 @@
 //! The graph fills the convex hull of the boundary, so it contains every vertex of any domain, convex or not.
 //! It does not know of walls: a vertex in a narrow branch may depend on vertices of another branch, and one
 //! beside a thin flap on the flap's far side, where the boundary is coarser than the gap is wide. With
-//! [`Options::within_walls`] the graph is the constrained Delaunay triangulation of the boundary, and no
-//! vertex does.
+//! [`Options::within_walls`] the graph is the constrained Delaunay triangulation of the boundary, and
+//! neither happens.
 //!
 //! # Limits
 //!

@@ -8,9 +8,9 @@
 //!    (harmonic guidance: Zayer, Roessl, Karni, Seidel 2005).
 //! 2. Interior nodes move to where the gradient of the motion is nearest to those rotations,
 //!    `min sum k_T |grad x' - R_T|^2` over the tets of the graph (Poisson editing: Yu, Zhou, Xu, Shi, Bao,
-//!    Guo, Shum 2004). These are sparse systems of some hundred unknowns. They are solved once more, for the rotations
-//!    nearest to the gradients of the first solution (as rigid as possible: Sorkine, Alexa 2007), with
-//!    compressed tets stiffer.
+//!    Guo, Shum 2004). These are sparse systems of some hundred unknowns. They are solved once more, for the
+//!    rotations nearest to the gradients of the first solution (as rigid as possible: Sorkine, Alexa 2007),
+//!    with compressed tets stiffer.
 //! 3. Each node carries an affine map: its displacement and half its gradient. A vertex gets the weighted
 //!    mean of those of its four nodes: exact for motions of second order, and without the kinks that linear
 //!    weights have where tets of the graph meet.
@@ -37,8 +37,8 @@ pub(crate) use helpers::{Helpers, choose};
 /// The tolerance of a step, far below what affects cells.
 const SOLVED: Tolerance = Tolerance { residual: 1e-9, iterations: 10_000 };
 /// Small tets are stiff: the power of the edge length in the stiffness for displacements. Powers of -2 to
-/// -3.5 were tried on a sphere that shifts and turns and on a flap that bends: below 2.25 the flap's tip
-/// inverts cells, above 2.5 the shifted sphere does.
+/// -3.5 were tried on a sphere that shifts and turns and on a flap that bends: weaker than -2.25, the flap's
+/// tip inverts cells; stronger than -2.5, the shifted sphere does.
 const STIFF: f64 = -2.25;
 /// The power of the edge length in the stiffness for rotations. With -2 the rotated sphere leaves a tenth
 /// more bad tets.
