@@ -1,14 +1,13 @@
-//! One label for each cell, for formats that have labels of their own.
+//! One label per cell, for formats with a single label column.
 
 use crate::io::select::lost_arrays;
 use crate::mesh::{CellKind, Field, Labels, Mesh};
 
-/// Arrays in which labels of curves and points may be.
+/// Arrays that may hold labels of curves and points.
 const LOW_ARRAYS: &[&str] = &["gmsh:physical", "medit:ref", "tetgen:ref"];
 
-/// The label of each cell: its region or its patch, or what `gmsh:physical` and
-/// its kin say of curves and points; 0 where there is none, and where labels could
-/// only come from the array `but_not`.
+/// The label of each cell: its region or patch, or for curves and points the value of `gmsh:physical` or a
+/// similar array; 0 where there is none, and where the label could only come from the array `but_not`.
 pub(super) fn cell_labels(mesh: &Mesh, but_not: Option<&str>) -> Vec<i32> {
     let mut labels = vec![0; mesh.cells.len()];
     let low = LOW_ARRAYS.iter().find_map(|name| int_column(mesh, name));
@@ -24,13 +23,13 @@ pub(super) fn cell_labels(mesh: &Mesh, but_not: Option<&str>) -> Vec<i32> {
     labels
 }
 
-/// A cell array of whole numbers.
+/// A cell array of integers that fit `i32`, if there is one with this name.
 pub(super) fn int_column(mesh: &Mesh, name: &str) -> Option<Vec<i32>> {
     let field = mesh.cell_field(name).filter(|f| f.components == 1)?;
     field.values.to_i64()?.into_iter().map(|v| i32::try_from(v).ok()).collect()
 }
 
-/// Whether `labels` say all that a cell array says.
+/// Whether `labels` hold everything that a cell array holds.
 pub(super) fn say_all(labels: &[i32], mesh: &Mesh, field: &Field) -> bool {
     let dim = match field.name.as_str() {
         "region" => Some(3),
@@ -45,12 +44,12 @@ pub(super) fn say_all(labels: &[i32], mesh: &Mesh, field: &Field) -> bool {
         .is_some_and(|values| labels.iter().zip(mesh.cells.kinds()).map(said).eq(values))
 }
 
-/// A sentence on the cell arrays that say more than `labels` do.
+/// A message that lists the cell arrays with more information than `labels`.
 pub(super) fn lost_cell_arrays(format: &str, mesh: &Mesh, labels: &[i32]) -> Option<String> {
     lost_arrays(format, "cell", mesh.cell_data.iter().filter(|f| !say_all(labels, mesh, f)))
 }
 
-/// A sentence on the names of labels, for formats without any.
+/// A message that lists the names of labels, for formats without such names.
 pub(super) fn lost_names(format: &str, mesh: &Mesh) -> Option<String> {
     let names = mesh.label_names.regions.values().chain(mesh.label_names.patches.values());
     let names: Vec<&str> = names.map(String::as_str).collect();

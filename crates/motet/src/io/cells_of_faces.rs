@@ -1,10 +1,10 @@
-//! Cells from their faces.
+//! Recovers cells from their faces.
 
 use crate::base::{Csr, VertexId};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{CellKind, Cells};
 
-/// Kinds of cells that are known by their faces: how many triangles, how many quads.
+/// Cell kinds identified by their faces: numbers of triangles and of quads.
 const KINDS: [(CellKind, usize, usize); 4] = [
     (CellKind::TETRA, 4, 0),
     (CellKind::PYRAMID, 4, 1),
@@ -12,7 +12,8 @@ const KINDS: [(CellKind, usize, usize); 4] = [
     (CellKind::HEXAHEDRON, 0, 6),
 ];
 
-/// Adds the cell that has these faces, each a ring that runs counter-clockwise seen from outside.
+/// Appends the cell with these faces, each a ring that runs counter-clockwise seen from outside. Faces that
+/// fit no fixed kind make a polyhedron.
 pub(super) fn push(cells: &mut Cells, faces: &[Vec<VertexId>]) {
     let count = |n: usize| faces.iter().filter(|face| face.len() == n).count();
     let kind = KINDS.iter().find(|&&(_, triangles, quads)| {
@@ -31,13 +32,14 @@ pub(super) fn push(cells: &mut Cells, faces: &[Vec<VertexId>]) {
     }
 }
 
-/// The vertices of a cell of a kind, in VTK's order; `None` where its faces do not make one.
+/// The vertices of a cell of the given kind, in VTK's order; `None` if the faces do not form one.
 ///
-/// One face is the first of its size that the kind has; each of the others is found along an edge from it.
+/// One face is matched with the first face of the kind of that size; each other vertex is found along an edge
+/// from it.
 fn corners(kind: CellKind, faces: &[Vec<VertexId>]) -> Option<Vec<VertexId>> {
     let shapes = facet_shapes(kind)?;
     let n = kind.n_vertices()?;
-    // The quad of a pyramid, a triangle of a wedge.
+    // The quad of a pyramid, or a triangle of a wedge.
     let size = if kind == CellKind::PYRAMID {
         4
     } else if kind == CellKind::WEDGE {
@@ -69,7 +71,7 @@ fn corners(kind: CellKind, faces: &[Vec<VertexId>]) -> Option<Vec<VertexId>> {
     shapes.iter().all(|shape| is_there(shape.corners())).then_some(vertices)
 }
 
-/// What follows `of` in the rings that hold it.
+/// The successors of `of` in the rings that contain it.
 fn along_edges<'a, T: Copy + PartialEq + 'a>(
     rings: impl Iterator<Item = &'a [T]>,
     of: T,
@@ -80,7 +82,7 @@ fn along_edges<'a, T: Copy + PartialEq + 'a>(
     })
 }
 
-/// Whether two rings run through the same vertices the same way round, wherever they begin.
+/// Whether two rings pass through the same vertices in the same direction, whatever their starting points.
 fn is_same_ring(a: &[VertexId], b: &[VertexId]) -> bool {
     let start = b.iter().position(|v| a.first() == Some(v));
     a.len() == b.len() && start.is_some_and(|start| a.iter().eq(b[start..].iter().chain(&b[..start])))

@@ -1,4 +1,4 @@
-//! From what the lines said to one mesh.
+//! Builds one mesh from the parsed model.
 
 use std::collections::HashMap;
 
@@ -67,7 +67,7 @@ pub(super) fn assemble(model: Model<'_>, notes: &Notes) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// Puts nodes and elements of a scope into the mesh.
+/// Appends the nodes and elements of a scope to the mesh.
 fn put(mesh: &mut Mesh, scope: &Scope) -> Result<Placed> {
     let nodes = Numbering::new(&scope.node_ids, "node", mesh.points.len())?;
     let elements = Numbering::new(&scope.element_ids, "element", mesh.cells.len())?;
@@ -93,7 +93,7 @@ fn put(mesh: &mut Mesh, scope: &Scope) -> Result<Placed> {
     Ok(Placed { nodes, elements, cells, node_sets: Members::default(), element_sets: Members::default() })
 }
 
-/// Sets and surfaces of all scopes.
+/// The sets and surfaces collected from all scopes.
 #[derive(Default)]
 struct Collected {
     are_several: bool,
@@ -131,7 +131,8 @@ impl Collected {
         Ok(())
     }
 
-    /// The name of something in an instance, which says so where there are several.
+    /// The name of a set or surface of a scope, prefixed with the instance name where there are several
+    /// instances.
     fn name_in(&self, scope: &Scope, label: &Label) -> String {
         match &scope.name {
             Some(instance) if self.are_several => format!("{}.{}", instance.shown, label.shown),
@@ -139,7 +140,7 @@ impl Collected {
         }
     }
 
-    /// A set as the mesh has it; none where it says nothing to others.
+    /// A set as the mesh stores it; `None` for an internal set without a section.
     fn named(&mut self, scope: &Scope, set: &Set, runs: &Runs, has_section: bool) -> Option<Named> {
         let rank = match () {
             () if has_section => Rank::Section,

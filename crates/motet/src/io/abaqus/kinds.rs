@@ -1,24 +1,24 @@
-//! Types of elements: the kind of cell of each, the order of its nodes, and the numbers of its faces.
+//! Element types: the cell kind of each, the order of its nodes, and the numbers of its faces.
 
 use crate::io::node_order::{Nodes, vtk_to_other};
 use crate::mesh::CellKind;
 use crate::mesh::facets::facet_shapes;
 
-/// What the digits behind the letters of a family mean.
+/// The meaning of the digits after the letters of a family.
 #[derive(Clone, Copy)]
 enum Digits {
-    /// How many nodes a solid has.
+    /// Number of nodes of a solid.
     Solid,
-    /// How many nodes a face has.
+    /// Number of nodes of a face.
     Face,
-    /// How many nodes a curve has.
+    /// Number of nodes of a curve.
     Curve,
-    /// The order of interpolation of a beam.
+    /// Order of interpolation of a beam.
     Beam,
 }
 
-/// Families of elements, by what stands before the digits; what follows these (`R`, `H`, `T`, ...) does not
-/// change the nodes.
+/// Element families by the letters before the digits; a suffix (`R`, `H`, `T`, ...) does not change the
+/// nodes.
 const FAMILIES: &[(&str, Digits)] = &[
     ("C3D", Digits::Solid),
     ("DC3D", Digits::Solid),
@@ -65,17 +65,17 @@ const FAMILIES: &[(&str, Digits)] = &[
     ("ELBOW3", Digits::Beam),
 ];
 
-/// A type of element.
+/// An element type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ElementType {
     pub(super) kind: CellKind,
     pub(super) n_nodes: usize,
-    /// Whether one more node may follow, which tells how a beam is turned.
+    /// Whether one more node may follow, which gives the orientation of a beam.
     pub(super) may_have_direction: bool,
 }
 
 impl ElementType {
-    /// The type of a name in capitals; `None` where it is no cell here.
+    /// The type with this name, in capitals; `None` if it has no cell kind here.
     pub(super) fn of(name: &str) -> Option<Self> {
         let digits_at = |rest: &str| rest.starts_with(|c: char| c.is_ascii_digit());
         let (digits, rest) = FAMILIES.iter().find_map(|&(letters, digits)| {
@@ -84,7 +84,7 @@ impl ElementType {
         let n_digits = rest.bytes().take_while(u8::is_ascii_digit).count();
         let (number, suffix) = rest.split_at(n_digits);
         let kind = match digits {
-            // Elements with nodes that may be missing.
+            // Variable-node elements, some of whose nodes may be missing.
             _ if suffix.starts_with('V') => return None,
             Digits::Solid => solid(number),
             Digits::Face => face(number),
@@ -102,7 +102,7 @@ fn solid(digits: &str) -> Option<CellKind> {
         "6" => CellKind::WEDGE,
         "8" => CellKind::HEXAHEDRON,
         "10" => CellKind::QUADRATIC_TETRA,
-        // Gmsh's; Abaqus has none.
+        // Written by Gmsh; Abaqus has no such element.
         "13" => CellKind::QUADRATIC_PYRAMID,
         "15" => CellKind::QUADRATIC_WEDGE,
         "20" => CellKind::QUADRATIC_HEXAHEDRON,
@@ -125,14 +125,14 @@ fn face(digits: &str) -> Option<CellKind> {
 
 fn curve(digits: Digits, number: &str) -> Option<CellKind> {
     Some(match (digits, number) {
-        // Cubic beams have no nodes between.
+        // Cubic beams have no mid-side nodes.
         (Digits::Curve, "2") | (Digits::Beam, "1" | "3") => CellKind::LINE,
         (Digits::Curve, "3") | (Digits::Beam, "2") => CellKind::QUADRATIC_LINE,
         _ => return None,
     })
 }
 
-/// The types that cells are written as.
+/// The element type written for each cell kind.
 const WRITTEN: &[(CellKind, &str)] = &[
     (CellKind::LINE, "T3D2"),
     (CellKind::QUADRATIC_LINE, "T3D3"),
@@ -151,15 +151,16 @@ const WRITTEN: &[(CellKind, &str)] = &[
     (CellKind::TRIQUADRATIC_HEXAHEDRON, "C3D27"),
 ];
 
-/// The type that cells of a kind are written as.
+/// The element type written for cells of a kind, if any.
 pub(super) fn written_as(kind: CellKind) -> Option<&'static str> {
     WRITTEN.iter().find(|w| w.0 == kind).map(|w| w.1)
 }
 
-/// For each node in VTK's order, its place in that of Abaqus. Where nothing is said here both are the same.
+/// For each node in VTK's order, its position in Abaqus's order. Kinds not listed here have the same order in
+/// both.
 pub(super) fn vtk_to_abaqus(kind: CellKind, n_nodes: usize) -> Vec<usize> {
     match kind {
-        // From end to end.
+        // Abaqus numbers the nodes from one end to the other.
         CellKind::QUADRATIC_LINE => vec![0, 2, 1],
         CellKind::TRIQUADRATIC_HEXAHEDRON => vtk_to_other(kind, n_nodes, BRICK_OF_27),
         _ => (0..n_nodes).collect(),
@@ -188,7 +189,8 @@ const BRICK_OF_27: Nodes = &[
     &[0, 3, 4, 7],
 ];
 
-/// Corners of the faces S1, S2, ... of solids with so many corners ("Element faces" in the element library).
+/// Corners of the faces S1, S2, ... of solids by their number of corners ("Element faces" in the element
+/// library).
 const FACES: &[(usize, Nodes)] = &[
     (4, &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]]),
     (5, &[&[0, 1, 2, 3], &[0, 4, 1], &[1, 4, 2], &[2, 4, 3], &[3, 4, 0]]),
@@ -196,7 +198,7 @@ const FACES: &[(usize, Nodes)] = &[
     (8, &[&[0, 1, 2, 3], &[4, 7, 6, 5], &[0, 4, 5, 1], &[1, 5, 6, 2], &[2, 6, 7, 3], &[3, 7, 4, 0]]),
 ];
 
-/// For each face S1, S2, ... of a solid, its place among the facets of the kind; nothing for other kinds.
+/// For each face S1, S2, ... of a solid, its index among the facets of the kind; empty for other kinds.
 pub(super) fn faces(kind: CellKind) -> Vec<usize> {
     let shapes = facet_shapes(kind).unwrap_or_default();
     let n_corners = shapes.iter().flat_map(|s| s.corners()).max().map_or(0, |&last| usize::from(last) + 1);

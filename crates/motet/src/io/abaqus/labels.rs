@@ -1,4 +1,4 @@
-//! Which sets become labels, and arrays for the others.
+//! Decides which sets become labels; the others become arrays.
 
 use std::collections::HashMap;
 
@@ -8,14 +8,14 @@ use super::{ELSET, SURFACE};
 use crate::io::format::Notes;
 use crate::mesh::{Field, Labels, Mesh, Values, unused_name};
 
-/// A set or a surface, by places in the mesh.
+/// A set or surface, as indices of points or cells of the mesh.
 pub(super) struct Named {
     pub(super) name: String,
     pub(super) runs: Runs,
     pub(super) rank: Rank,
 }
 
-/// Kinds of sets, those first that say best what parts of a mesh are.
+/// Kinds of sets, in the order in which they are preferred as labels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rank {
     Section,
@@ -25,7 +25,7 @@ pub(super) enum Rank {
     Surface,
 }
 
-/// Arrays for sets that labels do not say, at most: each takes a byte for each cell.
+/// Maximum number of arrays for sets that labels do not express; each takes a byte per cell.
 const MOST_ARRAYS: usize = 1000;
 
 impl Named {
@@ -34,7 +34,7 @@ impl Named {
     }
 }
 
-/// Sets under names that differ.
+/// Sets with distinct names.
 #[derive(Default)]
 pub(super) struct NamedSets {
     pub(super) all: Vec<Named>,
@@ -42,7 +42,7 @@ pub(super) struct NamedSets {
 }
 
 impl NamedSets {
-    /// Adds a set under a name that no other has; what comes twice under one name is one set.
+    /// Adds a set under a unique name; a set with the same name and the same members is added only once.
     pub(super) fn add(&mut self, mut set: Named) {
         if self.by_name.get(&set.name).is_some_and(|&i| self.all[i].runs == set.runs) {
             return;
@@ -52,14 +52,14 @@ impl NamedSets {
         self.all.push(set);
     }
 
-    /// Adds a surface, whose name a set may have too.
+    /// Adds a surface, whose name may also be that of a set.
     pub(super) fn add_surface(&mut self, name: String, runs: Runs) {
         self.all.push(Named { name, runs, rank: Rank::Surface });
     }
 }
 
-/// Makes labels of sets and surfaces, and arrays of those that labels do not say. Cells from `n_own` on are of
-/// surfaces alone.
+/// Turns sets and surfaces into labels, and into arrays where labels do not express them. Cells from index
+/// `n_own` on were added for surfaces.
 pub(super) fn set_labels(mesh: &mut Mesh, n_own: usize, sets: &[Named], notes: &Notes) {
     let dims: Vec<usize> = mesh.cells.kinds().iter().map(|kind| kind.dim().unwrap_or(0)).collect();
     let regions = chosen(sets, &dims[..n_own], 3);
@@ -86,14 +86,14 @@ pub(super) fn set_labels(mesh: &mut Mesh, n_own: usize, sets: &[Named], notes: &
     }
 }
 
-/// In place of a set.
+/// Marks a cell without a set.
 const NONE: u32 = u32::MAX;
 
-/// The set that labels each cell of dimension `dim`: those of the rank that reaches most cells.
+/// The set that labels each cell of dimension `dim`, chosen from the rank that reaches most cells.
 fn chosen(sets: &[Named], dims: &[usize], dim: usize) -> Vec<u32> {
     let n_cells = dims.iter().filter(|&&d| d == dim).count();
     let n_of = |set: &Named| set.places().filter(|&place| dims.get(place) == Some(&dim)).count();
-    // A set of all cells says least, unless a section says that it is meant.
+    // A set of all cells carries the least information, unless it has a section.
     let is_whole: Vec<bool> = sets.iter().map(|s| s.rank != Rank::Section && n_of(s) == n_cells).collect();
     let ranks = [Rank::Section, Rank::Declared, Rank::OfElements, Rank::Instance];
     let mut best = vec![NONE; dims.len()];
@@ -113,7 +113,8 @@ fn chosen(sets: &[Named], dims: &[usize], dim: usize) -> Vec<u32> {
     best
 }
 
-/// Labels the cells of each set of which none has a label yet; returns how many cells got one.
+/// For each set in turn, labels its cells if none of them has a label yet; returns the number of labelled
+/// cells.
 fn take_in_turn(labels: &mut [u32], order: &[usize], sets: &[Named], dims: &[usize], dim: usize) -> usize {
     let mut n = 0;
     for &i in order {
@@ -128,7 +129,7 @@ fn take_in_turn(labels: &mut [u32], order: &[usize], sets: &[Named], dims: &[usi
     n
 }
 
-/// Whether labels of the name of a set say just which cells it holds.
+/// Whether the labels with the name of a set cover exactly the cells of the set.
 fn is_said(set: &Named, sets: &[Named], labels: &[u32], dims: &[usize]) -> bool {
     let has_name = |place: usize| sets.get(labels[place] as usize).is_some_and(|s| s.name == set.name);
     let mut found = [0usize; 4];
@@ -140,13 +141,13 @@ fn is_said(set: &Named, sets: &[Named], labels: &[u32], dims: &[usize]) -> bool 
     }
     let Some(first) = set.places().next() else { return false };
     let by = &sets[labels[first] as usize];
-    // A surface may have the name of a set that holds solids besides.
+    // A surface may share its name with a set that also holds solids.
     let same_size =
         |dim: usize| found[dim] == 0 || by.places().filter(|&place| dims[place] == dim).count() == found[dim];
     (0..4).all(same_size)
 }
 
-/// Labels of the cells of one dimension; `None` where none has one.
+/// Labels of the cells of one dimension; `None` if no such cell is labelled.
 fn numbered(
     sets: &[Named],
     labels: &[u32],
@@ -172,7 +173,7 @@ fn numbered(
     })
 }
 
-/// An array of 0 and 1 for each set.
+/// Adds an array of 0 and 1 for each set.
 pub(super) fn set_arrays<'s>(
     fields: &mut Vec<Field>,
     prefix: &str,

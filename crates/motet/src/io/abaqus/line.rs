@@ -1,9 +1,9 @@
-//! Lines of an input file: keywords with their parameters, fields of data, labels.
+//! Lines of an input file: keywords with their parameters, data fields, labels.
 
 use crate::base::{Error, Result};
 use crate::io::text::{parse_float, parse_int, quoted};
 
-/// A keyword line: the keyword in capitals without blanks, and parameters.
+/// A keyword line: the keyword in capitals without blanks, and its parameters.
 #[derive(Debug)]
 pub(super) struct Keyword {
     pub(super) name: String,
@@ -11,7 +11,7 @@ pub(super) struct Keyword {
 }
 
 impl Keyword {
-    /// Reads the line behind its star.
+    /// Parses a keyword line without its leading star.
     pub(super) fn parse(line: &str) -> Self {
         let mut words = split(line).into_iter();
         let name = squeezed(words.next().unwrap_or_default());
@@ -22,12 +22,12 @@ impl Keyword {
         Self { name, parameters: words.map(parameter).filter(|p| !p.0.is_empty()).collect() }
     }
 
-    /// The value of a parameter; empty where it has none.
+    /// The value of a parameter, empty if it was given without one; `None` if the parameter is absent.
     pub(super) fn get(&self, key: &str) -> Option<&str> {
         self.parameters.iter().find(|p| p.0 == key).map(|p| p.1.as_str())
     }
 
-    /// The value of a parameter that must be there.
+    /// The value of a required parameter; an error if it is missing or empty.
     pub(super) fn expect(&self, key: &str) -> Result<&str> {
         self.get(key).filter(|value| !value.is_empty()).ok_or_else(|| {
             Error::input(format!("*{} has no parameter {key}=...", self.name))
@@ -35,7 +35,7 @@ impl Keyword {
         })
     }
 
-    /// The label that a parameter gives.
+    /// The value of a parameter as a label; `None` if it is missing or empty.
     pub(super) fn label(&self, key: &str) -> Option<Label> {
         self.get(key).filter(|value| !value.is_empty()).map(Label::new)
     }
@@ -44,9 +44,9 @@ impl Keyword {
 /// The name of a set, a part or an instance.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Label {
-    /// By which it is known: in capitals, unless between quotes.
+    /// The key for comparisons: in capitals, unless quoted.
     pub(super) key: String,
-    /// As the file has it.
+    /// The name as spelled in the file.
     pub(super) shown: String,
 }
 
@@ -63,7 +63,7 @@ impl Label {
     }
 }
 
-/// What a line names a thing by, and the instance that it is of.
+/// A reference to a node, element or set by number or label, and the instance that it belongs to.
 #[derive(Clone, Debug)]
 pub(super) struct Reference {
     pub(super) instance: Option<String>,
@@ -77,7 +77,7 @@ pub(super) enum Target {
 }
 
 impl Reference {
-    /// Reads a number or a label, which an instance and a dot may stand before.
+    /// Parses a number or a label, with an optional instance and dot before it.
     pub(super) fn parse(field: &str) -> Result<Self> {
         if let Some(id) = parse_int(field.as_bytes()) {
             return Ok(Self { instance: None, to: Target::Number(number(id)?) });
@@ -97,7 +97,7 @@ impl Reference {
     }
 }
 
-/// What stands before the first dot that is not between quotes, and behind it.
+/// Splits at the first dot outside quotes.
 fn instance_and_rest(field: &str) -> Option<(&str, &str)> {
     let mut is_quoted = false;
     let dot = field.char_indices().find_map(|(at, c)| {
@@ -107,7 +107,7 @@ fn instance_and_rest(field: &str) -> Option<(&str, &str)> {
     Some((&field[..dot], &field[dot + 1..]))
 }
 
-/// The fields of a line, without the empty one behind a last comma.
+/// The fields of a line, without the empty one after a trailing comma.
 pub(super) fn fields(line: &str) -> Vec<&str> {
     let mut fields = split(line);
     if fields.last().is_some_and(|f| f.is_empty()) {
@@ -116,7 +116,7 @@ pub(super) fn fields(line: &str) -> Vec<&str> {
     fields
 }
 
-/// What commas divide, between quotes left alone.
+/// Splits at commas outside quotes and trims each field.
 fn split(line: &str) -> Vec<&str> {
     let mut is_quoted = false;
     line.split(|c| {
@@ -127,12 +127,12 @@ fn split(line: &str) -> Vec<&str> {
     .collect()
 }
 
-/// In capitals, without blanks, which mean nothing.
+/// The text in capitals and without blanks, which carry no meaning.
 fn squeezed(text: &str) -> String {
     text.chars().filter(|c| !c.is_ascii_whitespace()).map(|c| c.to_ascii_uppercase()).collect()
 }
 
-/// Reads the number of a node or element.
+/// Parses the number of a node or element.
 pub(super) fn id(field: &str, what: &str) -> Result<u64> {
     parse_int(field.as_bytes()).ok_or_else(|| unexpected(field, what, "a whole number")).and_then(number)
 }
@@ -144,7 +144,7 @@ fn number(id: i64) -> Result<u64> {
     }
 }
 
-/// Reads a number; an empty field is 0.
+/// Parses a floating-point number; an empty field is 0.
 pub(super) fn float(field: &str, what: &str) -> Result<f64> {
     if field.is_empty() {
         return Ok(0.0);

@@ -1,4 +1,4 @@
-//! What the lines of input files say, taken one by one.
+//! The model built from the lines of input files, one line at a time.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -8,7 +8,7 @@ use super::scope::{Entry, Placement, Scope, Sets, SurfaceText};
 use crate::base::{Error, Result};
 use crate::io::format::Notes;
 
-/// All that was read so far, and the block that the next line of data belongs to.
+/// Everything read so far, and the block that the next data line belongs to.
 pub(super) struct Model<'n> {
     /// The flat file and the assembly.
     pub(super) top: Scope,
@@ -19,7 +19,7 @@ pub(super) struct Model<'n> {
     part_of_key: HashMap<String, usize>,
     here: Here,
     block: Block,
-    /// Bytes that further instances of parts took.
+    /// Bytes taken by further instances of a part, beyond the first.
     n_copied: usize,
     passed_over: BTreeSet<String>,
     notes: &'n Notes,
@@ -32,9 +32,9 @@ enum Here {
     Instance(usize),
 }
 
-/// What lines of data are about.
+/// The block that data lines belong to.
 enum Block {
-    /// No keyword was there yet.
+    /// No keyword has been read yet.
     Start,
     Ignored,
     Nodes(Option<usize>),
@@ -46,28 +46,28 @@ enum Block {
         instance: Option<String>,
     },
     Surface(usize),
-    /// Lines on how an instance lies that were read.
+    /// Placement of an instance, with the number of its lines read so far.
     Placement(usize),
 }
 
 struct Elements {
     name: String,
     of: ElementType,
-    /// For each node in VTK's order, its place in that of Abaqus.
+    /// For each node in VTK's order, its position in Abaqus's order.
     order: Vec<usize>,
     set: Option<usize>,
-    /// Numbers of the element that is being read: its own and those of its nodes.
+    /// Numbers of the element being read: its own, then those of its nodes.
     pending: Vec<u64>,
 }
 
-/// Instances copy their part: a small file could ask for any amount of memory.
+/// Bound in bytes on the copies made for instances, since a small file could request any amount of memory.
 const MOST_COPIED: usize = 1 << 30;
 
-/// Keywords that make nodes or elements, or move them, so that a mesh without them would be another.
+/// Keywords that generate or move nodes or elements; without them the mesh would be a different one.
 const REFUSED: &[&str] =
     &["NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SYMMETRICMODELGENERATION"];
 
-/// Keywords without anything that a mesh could hold.
+/// Keywords that carry nothing a mesh could hold.
 const SILENT: &[&str] = &["HEADING", "PREPRINT", "ASSEMBLY", "ENDPART", "ENDASSEMBLY", "ENDINSTANCE"];
 
 impl<'n> Model<'n> {
@@ -94,7 +94,7 @@ impl<'n> Model<'n> {
         }
     }
 
-    /// Ends the block before, and begins that of a keyword.
+    /// Ends the current block and begins that of a keyword.
     pub(super) fn keyword(&mut self, keyword: &Keyword) -> Result<()> {
         self.end_block()?;
         self.block = match keyword.name.as_str() {
@@ -195,7 +195,7 @@ impl<'n> Model<'n> {
         Ok(Block::Ignored)
     }
 
-    /// An instance begins as a copy of its part.
+    /// Starts an instance as a copy of its part.
     fn instance(&mut self, keyword: &Keyword) -> Result<Block> {
         let name = Label::new(keyword.expect("NAME")?);
         let part = Label::new(keyword.expect("PART")?);
@@ -222,7 +222,7 @@ impl<'n> Model<'n> {
         Ok(Block::Placement(0))
     }
 
-    /// Takes a line of data.
+    /// Takes a data line.
     pub(super) fn data(&mut self, line: &str) -> Result<()> {
         let mut block = std::mem::replace(&mut self.block, Block::Ignored);
         let notes = self.notes;
@@ -265,7 +265,7 @@ impl<'n> Model<'n> {
         }
     }
 
-    /// Ends the last block; parts without instances lie as they are.
+    /// Ends the last block; parts without instances are used where they are.
     pub(super) fn finish(&mut self) -> Result<()> {
         self.end_block()?;
         if self.instances.is_empty() {
@@ -280,7 +280,7 @@ impl<'n> Model<'n> {
     }
 }
 
-/// A number and up to three coordinates.
+/// Reads a node: a number and up to three coordinates.
 fn node(scope: &mut Scope, set: Option<usize>, row: &[&str]) -> Result<()> {
     let id = id(row.first().copied().unwrap_or_default(), "number of a node")?;
     let mut point = [0.0; 3];
@@ -296,7 +296,7 @@ fn node(scope: &mut Scope, set: Option<usize>, row: &[&str]) -> Result<()> {
 }
 
 impl Elements {
-    /// Takes a line; an element goes on over lines until it has all its nodes.
+    /// Takes a data line; an element continues over lines until it has all its nodes.
     fn line(&mut self, scope: &mut Scope, row: &[&str], notes: &Notes) -> Result<()> {
         for field in row {
             self.pending.push(id(field, "number of an element or of its nodes")?);
@@ -331,7 +331,7 @@ impl Elements {
     }
 }
 
-/// Adds what a field of a set names: a number, or a set that is there already.
+/// Adds a member of a set: a number, or a set that is already defined.
 fn member(sets: &mut Sets, set: usize, field: &str, instance: &Option<String>) -> Result<()> {
     let reference = Reference::parse(field)?;
     let instance = reference.instance.or_else(|| instance.clone());
@@ -346,7 +346,7 @@ fn member(sets: &mut Sets, set: usize, field: &str, instance: &Option<String>) -
     Ok(())
 }
 
-/// First, last, and every how many.
+/// Parses a range: first, last and an optional step.
 fn generate(row: &[&str], instance: &Option<String>) -> Result<Entry> {
     let what = "first, last and step of a set";
     let ids: Vec<u64> = row.iter().map(|field| id(field, what)).collect::<Result<_>>()?;
@@ -363,7 +363,7 @@ fn generate(row: &[&str], instance: &Option<String>) -> Result<Entry> {
     Ok(Entry::Ids { first, last, step, instance: instance.clone() })
 }
 
-/// The first line on how an instance lies shifts it, the second turns it.
+/// Takes a placement line of an instance: the first translates it, the second rotates it.
 fn place(placement: &mut Placement, line: usize, row: &[&str]) -> Result<()> {
     let numbers: Vec<f64> = row.iter().map(|f| float(f, "how an instance lies")).collect::<Result<_>>()?;
     let at = |i: usize| numbers.get(i).copied().unwrap_or(0.0);

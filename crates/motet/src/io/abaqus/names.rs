@@ -1,18 +1,18 @@
-//! Labels have numbers, sets have names: from one to the other.
+//! Conversion between the numbers of labels and the names of sets.
 
 use std::collections::BTreeSet;
 
 pub(super) const REGION: &str = "REGION_";
 pub(super) const PATCH: &str = "PATCH_";
 
-/// The number of a name that says no more than it.
+/// The number in a name that is just the prefix and a number; `None` for other names.
 pub(super) fn bare_number(name: &str, prefix: &str) -> Option<i32> {
     let (head, tail) = name.split_at_checked(prefix.len())?;
     let number: i32 = tail.parse().ok()?;
     (head.eq_ignore_ascii_case(prefix) && number != 0 && tail == number.to_string()).then_some(number)
 }
 
-/// A number for each name: the one that it says, else the next from 1 on that is free.
+/// A number for each name: the one in the name if it is a bare number, otherwise the next free one from 1.
 pub(super) fn numbers(names: &[&str], prefix: &str) -> Vec<i32> {
     let mut taken = BTreeSet::from([0]);
     let said: Vec<Option<i32>> =
@@ -21,7 +21,8 @@ pub(super) fn numbers(names: &[&str], prefix: &str) -> Vec<i32> {
     said.into_iter().map(|number| number.or_else(|| free.next()).unwrap_or_default()).collect()
 }
 
-/// A name as a file has it: between quotes where it is no plain word, or where quotes tell it from another.
+/// A name as written to a file: quoted where it is not a plain word, or where quotes distinguish it from
+/// another.
 pub(super) fn written(name: &str, needs_quotes: bool) -> String {
     let is_plain = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
@@ -31,7 +32,7 @@ pub(super) fn written(name: &str, needs_quotes: bool) -> String {
     format!("\"{}\"", one_line(name))
 }
 
-/// A name that stays on its line and between its quotes.
+/// The name with line breaks and double quotes replaced.
 pub(super) fn one_line(name: &str) -> String {
     name.replace('"', "'").replace(['\n', '\r'], " ")
 }

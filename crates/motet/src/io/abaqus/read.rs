@@ -1,4 +1,4 @@
-//! From lines of a file, and of the files that it includes, to keywords and data.
+//! Reads the lines of a file, and of the files that it includes, into keywords and data.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -11,9 +11,9 @@ use crate::io::text::Text;
 use crate::io::{Input, is_same_file};
 use crate::mesh::Mesh;
 
-/// Files within files at most.
+/// Maximum depth of nested includes.
 const MOST_DEEP: usize = 16;
-/// Files that are included at most, in all.
+/// Maximum number of included files.
 const MOST_INCLUDED: usize = 10_000;
 
 pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
@@ -27,7 +27,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
 
 struct Reader<'n> {
     model: Model<'n>,
-    /// The files that are being read, each included in the one before.
+    /// The files being read, each included by the one before.
     open: Vec<PathBuf>,
     n_included: usize,
 }
@@ -55,7 +55,7 @@ impl Reader<'_> {
             return self.include(keyword.expect("INPUT")?);
         }
         self.model.keyword(keyword)?;
-        // Data of a mesh may lie in a file of their own.
+        // The data of these keywords may be in a separate file.
         let has_data = matches!(keyword.name.as_str(), "NODE" | "ELEMENT" | "NSET" | "ELSET" | "SURFACE");
         match keyword.get("INPUT").filter(|_| has_data) {
             Some(file) => self.include(file),
@@ -63,7 +63,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a file whose path begins where the file that names it lies.
+    /// Reads an included file, whose path is relative to the folder of the file that names it.
     fn include(&mut self, name: &str) -> Result<()> {
         let name = name.trim_matches('"');
         let from = self.open.last().and_then(|path| path.parent()).unwrap_or(Path::new(""));
@@ -78,7 +78,7 @@ impl Reader<'_> {
         if self.open.len() > MOST_DEEP || self.n_included > MOST_INCLUDED {
             return Err(refuse("but too many are already"));
         }
-        // Devices and pipes may never end.
+        // Reading a device or pipe might never end.
         if path.metadata().is_ok_and(|m| !m.is_file()) {
             return Err(refuse("but it is no file"));
         }
@@ -93,7 +93,7 @@ impl Reader<'_> {
     }
 }
 
-/// A keyword line with those behind that it goes on in, as its last comma says.
+/// A keyword line joined with its continuation lines, which follow a trailing comma.
 fn continued<'k>(keyword: &'k str, text: &mut Text<'_>, n: &mut usize) -> Cow<'k, str> {
     let mut whole = Cow::Borrowed(keyword);
     while whole.ends_with(',') {

@@ -1,11 +1,11 @@
-//! What lies within one numbering: a flat file, a part, or an instance.
+//! The contents of one numbering: a flat file, a part, or an instance.
 
 use std::collections::{HashMap, HashSet};
 
 use super::line::{Label, Reference};
 use crate::mesh::CellKind;
 
-/// Nodes, elements, sets and surfaces under numbers and names of their own.
+/// Nodes, elements, sets and surfaces with their own numbers and names.
 #[derive(Clone, Default)]
 pub(super) struct Scope {
     /// The name of a part or instance.
@@ -14,38 +14,38 @@ pub(super) struct Scope {
     pub(super) points: Vec<[f64; 3]>,
     pub(super) element_ids: Vec<u64>,
     pub(super) kinds: Vec<CellKind>,
-    /// Numbers of the nodes of all elements, one element behind the other, in VTK's order.
+    /// Node numbers of all elements, one element after another, in VTK's order.
     pub(super) nodes: Vec<u64>,
     pub(super) node_sets: Sets,
     pub(super) element_sets: Sets,
     pub(super) surfaces: Vec<SurfaceText>,
-    /// Sets that have a section.
+    /// Keys of the element sets that have a section.
     pub(super) with_section: HashSet<String>,
     pub(super) placement: Placement,
 }
 
-/// Sets of nodes or of elements, as the file lays them down.
+/// Node sets or element sets, as defined in the file.
 #[derive(Clone, Default)]
 pub(super) struct Sets {
     pub(super) all: Vec<Set>,
     by_key: HashMap<String, usize>,
-    /// What goes into which set, in the order of the file.
+    /// Which entry goes into which set, in the order of the file.
     pub(super) entries: Vec<(usize, Entry)>,
 }
 
 #[derive(Clone)]
 pub(super) struct Set {
     pub(super) label: Label,
-    /// Whether the preprocessor made it for itself.
+    /// Whether the preprocessor made the set for its own use.
     pub(super) is_internal: bool,
-    /// Whether it has a keyword of its own.
+    /// Whether the set has a keyword of its own.
     pub(super) is_declared: bool,
 }
 
 /// A part of a set.
 #[derive(Clone)]
 pub(super) enum Entry {
-    /// Numbers from `first` to `last`, every `step`, in an instance or here.
+    /// Numbers from `first` to `last` with a step of `step`, in an instance or in this scope.
     Ids { first: u64, last: u64, step: u64, instance: Option<String> },
     /// Another set of the same sort.
     Set(Reference),
@@ -54,7 +54,7 @@ pub(super) enum Entry {
 }
 
 impl Sets {
-    /// The set of a name, new where there is none.
+    /// The index of the set with this name, which is created if necessary.
     pub(super) fn named(&mut self, label: Label) -> usize {
         let next = self.all.len();
         let place = *self.by_key.entry(label.key.clone()).or_insert(next);
@@ -68,7 +68,7 @@ impl Sets {
         self.by_key.get(key).copied()
     }
 
-    /// Adds a number to a set.
+    /// Adds a number to a set, extending the last range where possible.
     pub(super) fn add(&mut self, set: usize, id: u64, in_instance: Option<String>) {
         if let Some((of, Entry::Ids { last, step: 1, instance, .. })) = self.entries.last_mut()
             && *of == set
@@ -82,7 +82,7 @@ impl Sets {
     }
 }
 
-/// A surface as the file lays it down: elements or sets of these, each with the name of a face.
+/// A surface as defined in the file: elements or element sets, each with the name of a face.
 #[derive(Clone)]
 pub(super) struct SurfaceText {
     pub(super) label: Label,
@@ -90,17 +90,18 @@ pub(super) struct SurfaceText {
     pub(super) faces: Vec<(Reference, String)>,
 }
 
-/// How an instance lies: shifted, then turned about an axis.
+/// The placement of an instance: a translation, then a rotation about an axis.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Placement {
     pub(super) shift: [f64; 3],
-    /// Two points of the axis, and degrees by the rule of the right hand from the first to the second.
+    /// Two points of the axis and the angle in degrees, right-handed about the direction from the first to
+    /// the second.
     pub(super) turn: Option<([f64; 3], [f64; 3], f64)>,
 }
 
 impl Placement {
     pub(super) fn apply(&self, p: [f64; 3]) -> [f64; 3] {
-        // A shift by nothing would take the sign of a zero.
+        // Adding zero would change the sign of a negative zero.
         let is_shifted = self.shift != [0.0; 3];
         let p = if is_shifted { std::array::from_fn(|i| p[i] + self.shift[i]) } else { p };
         let Some((a, b, degrees)) = self.turn else { return p };
@@ -121,7 +122,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Scope {
-    /// About how much memory a copy takes.
+    /// Approximate memory of a copy, in bytes.
     pub(super) fn n_bytes(&self) -> usize {
         let entries = self.node_sets.entries.len() + self.element_sets.entries.len();
         let sets = self.node_sets.all.len() + self.element_sets.all.len();

@@ -1,4 +1,4 @@
-//! Which nodes and elements the sets of a file hold.
+//! Resolves the sets of a file to nodes and elements.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -10,13 +10,13 @@ use crate::io::format::Notes;
 use crate::io::tags::Tags;
 use crate::mesh::Cells;
 
-/// Places of points or cells in a mesh, rising, none twice.
+/// Disjoint ascending ranges of indices of points or cells of a mesh.
 pub(super) type Runs = Vec<Range<u32>>;
 
-/// Runs of all sets at most: sets of sets may repeat each other without end.
+/// Maximum total number of runs, since sets of sets may repeat each other without limit.
 pub(super) const MOST_RUNS: usize = 1 << 26;
 
-/// From the numbers of a scope to places in the mesh.
+/// Maps the numbers of a scope to indices in the mesh.
 pub(super) struct Numbering {
     tags: Tags,
     sorted: Vec<u64>,
@@ -24,20 +24,19 @@ pub(super) struct Numbering {
 }
 
 impl Numbering {
-    /// # Errors
-    /// When a number occurs twice.
+    /// Fails if a number occurs twice.
     pub(super) fn new(ids: &[u64], what: &str, first_place: usize) -> Result<Self> {
         let mut sorted = ids.to_vec();
         sorted.sort_unstable();
         Ok(Self { tags: Tags::new(ids, what)?, sorted, first_place: first_place as u32 })
     }
 
-    /// The place of a number in the mesh.
+    /// The index in the mesh of a number of the scope, if it exists.
     pub(super) fn place(&self, id: u64) -> Option<u32> {
         self.tags.place(id).map(|place| self.first_place + place)
     }
 
-    /// Those of the numbers from `first` to `last`, every `step`, that there are.
+    /// Indices of the existing numbers from `first` to `last` with a step of `step`.
     fn between(&self, first: u64, last: u64, step: u64) -> impl Iterator<Item = u32> + '_ {
         let from = self.sorted.partition_point(|&id| id < first);
         let to = self.sorted.partition_point(|&id| id <= last);
@@ -47,11 +46,11 @@ impl Numbering {
     }
 }
 
-/// A scope whose nodes and elements lie in the mesh.
+/// A scope whose nodes and elements are in the mesh.
 pub(super) struct Placed {
     pub(super) nodes: Numbering,
     pub(super) elements: Numbering,
-    /// Its cells in the mesh.
+    /// Indices in the mesh of the cells of this scope.
     pub(super) cells: Range<u32>,
     pub(super) node_sets: Members,
     pub(super) element_sets: Members,
@@ -70,14 +69,14 @@ impl Members {
     }
 }
 
-/// Which of the two sorts of sets.
+/// Whether sets hold nodes or elements.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Sort {
     Nodes,
     Elements,
 }
 
-/// What the sets of a scope may refer to.
+/// Everything that the sets of a scope may refer to.
 pub(super) struct Around<'a> {
     pub(super) here: &'a Placed,
     pub(super) instances: &'a [Placed],
@@ -87,7 +86,7 @@ pub(super) struct Around<'a> {
 }
 
 impl<'a> Around<'a> {
-    /// The scope of an instance, or the own one.
+    /// The scope of an instance, or this scope if `instance` is `None`.
     pub(super) fn scope(&self, instance: Option<&String>) -> Result<&'a Placed> {
         let Some(key) = instance else { return Ok(self.here) };
         self.instance_of_key.get(key).map(|&i| &self.instances[i]).ok_or_else(|| {
@@ -102,7 +101,7 @@ impl<'a> Around<'a> {
         let mut n_runs = 0;
         for entries in sets.entries.chunk_by(|a, b| a.0 == b.0) {
             let set = entries[0].0;
-            // Taken out, so that others can be read meanwhile; a set that names itself adds nothing.
+            // Taken out so that the other sets can be read meanwhile; a set that names itself adds nothing.
             let mut whole = std::mem::take(&mut found[set]);
             let mut gathered = Gathered::default();
             let mut known = HashSet::new();
@@ -145,7 +144,7 @@ impl<'a> Around<'a> {
         Ok(Members { runs: found.into_iter().map(|gathered| gathered.runs).collect(), by_key })
     }
 
-    /// The members of another set of the same scope, or of one of an instance.
+    /// The members of another set of this scope, or of a set of an instance.
     fn other<'f>(
         &'f self,
         sets: &Sets,
@@ -166,7 +165,7 @@ impl<'a> Around<'a> {
 #[derive(Default)]
 struct Gathered {
     runs: Runs,
-    /// How many numbers stand for nothing.
+    /// How many numbers refer to no node or element.
     n_missing: usize,
 }
 
@@ -208,7 +207,7 @@ pub(super) fn no_set(key: &str) -> Error {
         .remedy("the file is damaged: write it again")
 }
 
-/// Runs in rising order, those that touch or overlap made one.
+/// Sorts runs and joins those that touch or overlap.
 pub(super) fn merged(mut runs: Runs) -> Runs {
     runs.sort_unstable_by_key(|run| (run.start, run.end));
     let mut out = Runs::new();

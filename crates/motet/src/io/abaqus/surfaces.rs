@@ -1,4 +1,4 @@
-//! Surfaces as cells: faces of volume cells, and surface cells themselves.
+//! Surfaces as cells: faces of volume cells, and existing surface cells.
 
 use std::collections::{HashMap, HashSet};
 
@@ -11,7 +11,7 @@ use crate::io::format::Notes;
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{Boundary, CellKind, Cells, corners};
 
-/// Corners of a facet in rising order, by which it is known.
+/// The corners of a facet in ascending order, which identify it.
 pub(super) type FacetKey = [u32; 4];
 
 pub(super) fn facet_key(corners: impl IntoIterator<Item = VertexId>) -> FacetKey {
@@ -21,13 +21,13 @@ pub(super) fn facet_key(corners: impl IntoIterator<Item = VertexId>) -> FacetKey
     key
 }
 
-/// Facets that surfaces name, as cells of the mesh or behind these.
+/// The facets that surfaces name, as existing cells of the mesh or as cells appended to it.
 pub(super) struct Facets<'m> {
     cells: &'m Cells,
     /// The faces S1, S2, ... of each kind.
     faces: HashMap<CellKind, Vec<usize>>,
     cell_of: HashMap<FacetKey, u32>,
-    /// Facets of one volume cell alone; found when they are asked for.
+    /// The boundary facets, those of one volume cell only; computed on first use.
     free: Option<HashSet<FacetKey>>,
     pub(super) added: Vec<(CellKind, Vec<VertexId>)>,
     n_runs: usize,
@@ -79,7 +79,8 @@ impl<'m> Facets<'m> {
         Ok(merged(all))
     }
 
-    /// Adds the cells of a face of a cell.
+    /// Adds the cells that stand for a face of a cell; for a solid without a face name, all its boundary
+    /// facets.
     fn face(&mut self, cell: u32, face: &str, surface: &str, runs: &mut Runs) -> Result<()> {
         let kind = self.cells.kinds()[cell as usize];
         match (kind.dim(), face) {
@@ -125,7 +126,7 @@ impl<'m> Facets<'m> {
         free.contains(&key)
     }
 
-    /// The surface cell in the place of a facet, new where there is none.
+    /// The surface cell on a facet, which is appended if there is none.
     fn facet(&mut self, cell: u32, kind: CellKind, place: usize) -> std::ops::Range<u32> {
         let next = (self.cells.len() + self.added.len()) as u32;
         let found = *self.cell_of.entry(self.key(cell, kind, place)).or_insert(next);

@@ -29,7 +29,7 @@ fn ids(mesh: &Mesh, array: &str) -> Vec<i64> {
     mesh.cell_field(array).unwrap().values.to_i64().unwrap()
 }
 
-/// Two tets in one section each, a shell on one of them, numbers with gaps.
+/// Two tets with a section each and a shell on one of them, with gaps in the numbering.
 const FLAT: &str = "\
 *Heading
  two tets, and a shell
@@ -75,13 +75,13 @@ fn a_flat_file_is_read_whatever_its_spelling() {
     );
     assert_eq!(mesh.cells.connectivity().list(0), [0, 1, 2, 3].map(VertexId));
     assert_eq!(mesh.cells.connectivity().list(1), [1, 2, 3, 4].map(VertexId));
-    // S1 of a tet has its first three nodes; seen from outside they turn the other way round.
+    // S1 of a tet is its first three nodes; seen from outside they run the other way around.
     assert_eq!(mesh.cells.connectivity().list(3), [0, 2, 1].map(VertexId));
-    // `every` says least.
+    // `every`, a set of all cells, carries the least information and is not chosen.
     assert_eq!(ids(&mesh, "region"), [1, 2, 0, 0]);
     assert_eq!(mesh.label_names.regions.values().collect::<Vec<_>>(), ["Soft", "Hard"]);
     assert_eq!(ids(&mesh, "patch"), [0, 0, 1, 2]);
-    // Of two sets of all surface cells that with a keyword of its own is meant.
+    // Of two sets of all surface cells, the one declared with its own keyword is taken.
     assert_eq!(mesh.label_names.patches.values().collect::<Vec<_>>(), ["every", "floor"]);
     assert_eq!(ids(&mesh, "elset:every"), [1, 1, 1, 0]);
     assert_eq!(ids(&mesh, "elset:lid"), [0, 0, 1, 0]);
@@ -127,13 +127,13 @@ fn labels_are_sets_that_do_not_overlap_those_with_sections_first() {
     };
     let names = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
     assert_eq!(regions(""), (vec![1, 2, 2], names(&["A", "B"])));
-    // A set for a load reaches fewer cells.
+    // A set for a load covers fewer cells.
     assert_eq!(regions("*ELSET,ELSET=load\n2\n"), (vec![1, 2, 2], names(&["A", "B"])));
     assert_eq!(regions("*ELSET,ELSET=c\n1,2\n*ELSET,ELSET=d\n3\n"), (vec![1, 1, 2], names(&["c", "d"])));
     assert_eq!(regions("*ELSET,ELSET=all\nA,B\n"), (vec![1, 2, 2], names(&["A", "B"])));
     let sections = "*ELSET,ELSET=_s,INTERNAL\nB,A\n*SOLID SECTION,ELSET=_s,MATERIAL=m\n";
     assert_eq!(regions(sections), (vec![1, 1, 1], names(&["_s"])));
-    // One of two that overlap is an array.
+    // One of two overlapping sets becomes an array.
     let mesh = parse(&format!("{head}*ELSET,ELSET=c\n1,2\n*ELSET,ELSET=d\n2,3\n*ELSET,ELSET=e\n3\n")).0;
     assert_eq!(ids(&mesh, "region"), [1, 1, 2]);
     assert_eq!(ids(&mesh, "elset:d"), [0, 1, 1]);
@@ -194,7 +194,7 @@ fn instances_lie_where_they_are_put() {
     assert_eq!(nodes("nset:ref"), [0, 0, 0, 0, 0, 0, 0, 0, 1]);
     assert_eq!(nodes("nset:mixed"), [0, 1, 0, 0, 0, 0, 0, 1, 0]);
     assert_eq!(nodes("nset:Two.tip"), [0, 0, 0, 0, 0, 0, 0, 1, 0]);
-    // A part without an instance lies as it is, and one instance needs no name.
+    // A part without an instance is used as it is, and a single instance needs no name prefix.
     let alone = &PARTS[..PARTS.find("*Assembly").unwrap()];
     assert_eq!(parse(alone).0.label_names.regions[&1], "body");
     assert!(told(&PARTS.replace("part=BAR", "part=none")).contains("part `none`, which was not there yet"));
@@ -213,7 +213,7 @@ fn copies_without_end_are_refused() {
 
 #[test]
 fn faces_of_solids_are_those_that_the_manual_draws() {
-    // Corners of the unit cube in the order of C3D8; the wedge and the pyramid take some of them.
+    // Corners of the unit cube in the order of C3D8; the wedge and the pyramid use some of them.
     let nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n";
     for (element, faces) in [
         ("C3D8\n1,1,2,3,4,5,6,7,8", &["1234", "5678", "1256", "2367", "3478", "1458"][..]),
@@ -244,7 +244,7 @@ fn elements_of_many_nodes_go_on_over_lines() {
     let mesh = parse(&text).0;
     assert_eq!(mesh.cells.kinds()[..2], [CellKind::QUADRATIC_HEXAHEDRON; 2]);
     assert_eq!(mesh.cells.connectivity().list(0), std::array::from_fn::<_, 20, _>(|i| VertexId(i as u32)));
-    // From end to end there, the middle last here.
+    // Abaqus numbers the nodes from end to end; VTK puts the middle node last.
     assert_eq!(mesh.cells.connectivity().list(2), [0, 2, 1].map(VertexId));
     let error = told(&text.replace(",19,20\n2", ",19,20,21\n2"));
     assert!(error.contains("element 1 of type C3D20R has 20 nodes, but 21 are given"), "{error}");
@@ -340,7 +340,7 @@ fn what_is_wrong_is_told_with_its_line() {
         let error = told(text);
         assert!(error.contains(words), "{text:?}: {error}");
     }
-    // As large as it may be said to be, a range holds what there is.
+    // However large its stated end, a range holds only the nodes that exist.
     let mesh = parse("*NODE\n1\n5\n*NSET,NSET=a,GENERATE\n1,9223372036854775807,4\n").0;
     assert_eq!(mesh.point_field("nset:a").unwrap().values, vec![1u8, 1].into());
 }
@@ -367,7 +367,7 @@ fn a_file_cut_off_or_damaged_anywhere_is_no_panic() {
     }
 }
 
-/// Two tets with a triangle between and one on the outside.
+/// Two tets with a triangle between them and one on the outside.
 fn labelled() -> Mesh {
     let mut cells = Cells::new();
     cells.push(CellKind::TETRA, [0, 1, 2, 3].map(VertexId));
@@ -397,7 +397,7 @@ fn a_mesh_comes_back_with_its_labels_and_sets() {
     let (back, notes) = parse(&text);
     assert!(notes.is_empty(), "{notes:?}");
     assert_eq!(back, mesh, "{text}");
-    // The triangle between faces away from the second tet, which sees it as its S1.
+    // The triangle between the tets faces away from the second tet, of which it is S1.
     assert!(text.contains("*SURFACE, TYPE=ELEMENT, NAME=PATCH_4\n3, S1\n"), "{text}");
     assert!(text.contains("*SURFACE, TYPE=ELEMENT, NAME=\"THE WALL\"\n1, S1\n"), "{text}");
 }

@@ -1,4 +1,4 @@
-//! Writing: nodes, elements by kind, sets, surfaces.
+//! Writes nodes, elements by kind, sets and surfaces.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Write as _;
@@ -15,15 +15,15 @@ use crate::io::text::push_float;
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{CellKind, Field, Labels, Mesh, corners, unused_name};
 
-/// Entries of a line at most.
+/// Maximum number of entries in a line.
 const MOST_IN_LINE: usize = 16;
 
-/// Characters of a name at most.
+/// Maximum number of characters in a name.
 const LONGEST_NAME: usize = 80;
 
-/// Names, and the places that each stands for.
+/// Set names with the indices of their members.
 type Sets = Vec<(String, Vec<usize>)>;
-/// The name of each label, and its cells.
+/// The name and the cells of each label.
 type ByLabel = BTreeMap<i32, (String, Vec<usize>)>;
 
 pub(super) fn write(mesh: &Mesh) -> Result<Written> {
@@ -78,7 +78,7 @@ fn abaqus_to_vtk(kind: CellKind) -> Vec<usize> {
     inverse
 }
 
-/// Numbers over as many lines as they need, a comma where they go on.
+/// Writes numbers over as many lines as needed; a trailing comma continues a line.
 fn rows(out: &mut Vec<u8>, numbers: impl Iterator<Item = usize>) {
     for (i, number) in numbers.enumerate() {
         if i > 0 {
@@ -105,7 +105,7 @@ fn by_label(labels: Option<Labels>, prefix: &str) -> ByLabel {
     all
 }
 
-/// Labels, then arrays, as sets of elements.
+/// Element sets made of labels and of `elset:` arrays, in this order.
 fn element_sets(mesh: &Mesh, patches: &ByLabel, lost: &mut Vec<String>) -> Sets {
     let regions = by_label(mesh.regions(), REGION);
     let mut sets = Sets::new();
@@ -129,7 +129,7 @@ fn element_sets(mesh: &Mesh, patches: &ByLabel, lost: &mut Vec<String>) -> Sets 
         }
     }
     for (name, cells) in of_arrays(&mesh.cell_data, ELSET) {
-        // Labels and the array of one set, which has curves besides.
+        // The array holds the cells of a label, and curves besides: both are one set.
         let can_have_label = |&&cell: &&usize| mesh.cells.kinds()[cell].dim() > Some(1);
         if let Some(&place) = place_of.get(&name)
             && cells.iter().filter(can_have_label).eq(&sorted(&sets[place].1))
@@ -153,7 +153,7 @@ fn sorted(cells: &[usize]) -> Vec<usize> {
     cells
 }
 
-/// What arrays of 0 and 1 mark, by their names without the prefix.
+/// The sets marked by arrays of 0 and 1, under the array names without the prefix.
 fn of_arrays(fields: &[Field], prefix: &str) -> Sets {
     let name = |f: &Field| f.name.strip_prefix(prefix).unwrap_or_default().to_owned();
     let marked =
@@ -161,7 +161,7 @@ fn of_arrays(fields: &[Field], prefix: &str) -> Sets {
     fields.iter().filter_map(|f| Some((name(f), marked(f)?))).collect()
 }
 
-/// The values of an array that stands for a set.
+/// The values of an array that stands for a set; `None` for other arrays.
 fn marks(field: &Field, prefix: &str) -> Option<Vec<i64>> {
     let is_named = field.name.len() > prefix.len() && field.name.starts_with(prefix);
     let values =
@@ -172,21 +172,21 @@ fn marks(field: &Field, prefix: &str) -> Option<Vec<i64>> {
 fn sets(out: &mut Vec<u8>, keyword: &str, sets: &Sets) {
     for ((_, places), name) in sets.iter().zip(written_names(sets)) {
         let _ = writeln!(out, "*{keyword}, {keyword}={name}");
-        // A set without members has no line.
+        // A set without members has no data line.
         if !places.is_empty() {
             rows(out, places.iter().map(|place| place + 1));
         }
     }
 }
 
-/// Names as a file has them: case tells none apart without quotes.
+/// Names as written to the file; names that differ only in case are quoted.
 fn written_names(sets: &Sets) -> Vec<String> {
     let mut n_alike: HashMap<String, usize> = HashMap::new();
     sets.iter().for_each(|(name, _)| *n_alike.entry(name.to_ascii_uppercase()).or_default() += 1);
     sets.iter().map(|(name, _)| written(name, n_alike[&name.to_ascii_uppercase()] > 1)).collect()
 }
 
-/// Surfaces of which every cell is a facet of a volume cell.
+/// Writes the surfaces of which every cell is a facet of a volume cell.
 fn surfaces(out: &mut Vec<u8>, mesh: &Mesh, sets: &Sets, lost: &mut Vec<String>) {
     if sets.is_empty() {
         return;
@@ -210,12 +210,12 @@ fn surfaces(out: &mut Vec<u8>, mesh: &Mesh, sets: &Sets, lost: &mut Vec<String>)
     }
 }
 
-/// A facet of a volume cell, counted from 1 as S1, S2, ...
+/// A facet of a volume cell, with its number counted from 1 as in S1, S2, ...
 #[derive(Clone, Copy)]
 struct Side {
     cell: usize,
     number: usize,
-    /// Whether it turns as the surface cell does.
+    /// Whether the facet has the orientation of the surface cell.
     turns_alike: bool,
 }
 
@@ -227,8 +227,8 @@ fn ring(mesh: &Mesh, cell: usize) -> &[VertexId] {
     corners(mesh.cells.kinds()[cell], mesh.cells.connectivity().list(cell))
 }
 
-/// For each place of surface cells the first of these, and the volume cell that it lies on: the first that it
-/// faces away from.
+/// For each facet with surface cells, the first of these and the volume cell that it lies on: preferably the
+/// first that it faces away from.
 fn sides_of(mesh: &Mesh) -> HashMap<FacetKey, (usize, Option<Side>)> {
     let mut sides = HashMap::new();
     for cell in (0..mesh.cells.len()).filter(|&cell| mesh.cells.kinds()[cell].dim() == Some(2)) {
@@ -250,14 +250,14 @@ fn sides_of(mesh: &Mesh) -> HashMap<FacetKey, (usize, Option<Side>)> {
     sides
 }
 
-/// Whether two rings of the same vertices run the same way round.
+/// Whether two rings of the same vertices have the same orientation.
 fn turn_alike(a: &[VertexId], b: &[VertexId]) -> bool {
     b.iter().position(|v| *v == a[0]).is_some_and(|at| b[(at + 1) % b.len()] == a[1])
 }
 
 fn say_what_is_lost(mesh: &Mesh, lost: &mut Vec<String>) {
     let mut labels = cell_labels(mesh, None);
-    // Sets of curves would come back as arrays of another name.
+    // Sets of curves would be read back as arrays of another name.
     let kinds = mesh.cells.kinds();
     labels.iter_mut().zip(kinds).filter(|(_, kind)| kind.dim() < Some(2)).for_each(|(label, _)| *label = 0);
     let is_set = |f: &&Field, prefixes: &[&str]| prefixes.iter().any(|p| marks(f, p).is_some());

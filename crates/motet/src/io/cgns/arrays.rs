@@ -1,4 +1,4 @@
-//! Solutions as arrays: values of points, of cells, and of some elements; components of vectors come together.
+//! Solutions as arrays: values on points, on cells, or on some elements; components of vectors are combined.
 
 use std::collections::BTreeMap;
 
@@ -9,26 +9,26 @@ use crate::io::cgns::node::Node;
 use crate::io::format::Notes;
 use crate::mesh::{CellKind, Field, Values};
 
-/// Arrays at most: each takes a value for each point or cell, whatever the file has.
+/// Maximum number of arrays: each takes a value for each point or cell, however few the file holds.
 const MOST_ARRAYS: usize = 1000;
 
-/// Where the points and cells of a zone stand in the mesh.
+/// The indices in the mesh of the points and cells of a zone.
 pub(super) struct Places<'a> {
     pub(super) first_point: usize,
     pub(super) n_points: usize,
     pub(super) spans: &'a [Span],
     pub(super) kinds: &'a [CellKind],
-    /// Of which dimension cells are that a solution of cells is on.
+    /// Dimension of the cells that a cell solution is defined on.
     pub(super) cell_dim: usize,
 }
 
-/// The arrays on points or on cells, as they are collected zone by zone.
+/// Arrays on points or on cells, collected zone by zone.
 #[derive(Default)]
 pub(super) struct Arrays {
     by_name: BTreeMap<String, Column>,
 }
 
-/// Values, and the row of each.
+/// Values, and the row of each value.
 struct Column {
     values: Values,
     rows: Vec<u32>,
@@ -42,13 +42,13 @@ pub(super) struct Solutions {
 }
 
 impl Solutions {
-    /// Takes the solutions of a zone.
+    /// Reads the solutions of a zone.
     pub(super) fn take(&mut self, zone: &Node, places: &Places<'_>, notes: &Notes) -> Result<()> {
         let is_known = |node: &Node| matches!(node.label.as_str(), "FlowSolution_t" | "UserDefinedData_t");
         for solution in zone.children()?.into_iter().filter(is_known) {
             let is_on_points = is_on_points(&solution)?;
             let some = Numbers::of(&solution, "PointList", "PointRange")?;
-            // What users define is a solution where it says on what it is.
+            // User-defined data is a solution if it names the entities that it is defined on.
             if some.is_none() && solution.label != "FlowSolution_t" {
                 continue;
             }
@@ -127,7 +127,7 @@ impl Arrays {
         }
     }
 
-    /// The arrays, a row for each of `n` points or cells; where there is no value, it is none, of whole numbers 0.
+    /// The arrays, with a row for each of `n` points or cells; a missing value is NaN, or 0 for integers.
     pub(super) fn finish(self, n: usize) -> Vec<Field> {
         let scalars = self.by_name.into_iter().map(|(name, column)| (name, column.spread(n))).collect();
         with_vectors(scalars, n)
@@ -135,7 +135,8 @@ impl Arrays {
 }
 
 impl Column {
-    /// Adds values, in double precision where they are of another type. False where they are no numbers.
+    /// Appends values, converted to double precision if their types differ. Returns false if they are not
+    /// numbers.
     fn append(&mut self, more: &Values) -> bool {
         if self.values.append(more) {
             return true;
@@ -178,7 +179,7 @@ fn blank_of(values: &Values) -> Values {
     }
 }
 
-/// Makes vectors of scalars that are called alike but for X, Y and Z at the end.
+/// Combines scalars whose names differ only in a final X, Y or Z into vectors.
 fn with_vectors(mut scalars: BTreeMap<String, Values>, n: usize) -> Vec<Field> {
     let stems: Vec<String> =
         scalars.keys().filter_map(|name| name.strip_suffix('X')).map(str::to_owned).collect();
@@ -196,7 +197,7 @@ fn with_vectors(mut scalars: BTreeMap<String, Values>, n: usize) -> Vec<Field> {
     fields
 }
 
-/// A vector of three scalars; `None` where they are of different types.
+/// A vector of three scalars; `None` if their types differ.
 fn vector(name: &str, [x, y, z]: [&Values; 3], n: usize) -> Option<Field> {
     let mut values = x.clone();
     if !values.append(y) || !values.append(z) {

@@ -1,11 +1,11 @@
-//! What meshio writes under this ending: groups without labels, types and sizes, in which tets are.
+//! Files that meshio writes with this extension: groups without labels, types and sizes, which hold tets.
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::cgns::node::Node;
 use crate::io::cgns::zone::columns;
 use crate::mesh::{CellKind, Cells, Mesh};
 
-/// The mesh, where the file is one of these.
+/// Reads the mesh; `None` if the file was not written by meshio.
 pub(super) fn read(root: &Node) -> Result<Option<Mesh>> {
     let is_bare = |node: &Node| node.label.is_empty();
     let Some(base) = root.child("Base")?.filter(is_bare) else { return Ok(None) };

@@ -1,4 +1,4 @@
-//! The elements of a zone as cells: polyhedra from their polygons, and of these those that are cells themselves.
+//! The elements of a zone as cells: polyhedra are built from polygons, some of which are cells themselves.
 
 use crate::base::{Csr, Result, VertexId};
 use crate::io::cells_of_faces;
@@ -7,15 +7,15 @@ use crate::io::cgns::elements::{Body, Section};
 use crate::io::cgns::zone::Zone;
 use crate::mesh::{CellKind, Cells};
 
-/// In place of a cell.
+/// Marks an element without a cell.
 pub(super) const NOWHERE: u32 = u32::MAX;
 
-/// Where the elements of a section went.
+/// The cells made of the elements of a section.
 pub(super) struct Span {
     pub(super) name: String,
     /// The number of the first element.
     pub(super) first: i64,
-    /// The cell of each, [`NOWHERE`] for those that are none.
+    /// The cell of each element, [`NOWHERE`] for elements that are not cells.
     pub(super) places: Vec<u32>,
 }
 
@@ -25,19 +25,19 @@ impl Span {
         self.first + self.places.len() as i64 - 1
     }
 
-    /// The cells that there are.
+    /// The cells of those elements that have one.
     pub(super) fn cells(&self) -> impl Iterator<Item = usize> + '_ {
         self.places.iter().filter(|&&place| place != NOWHERE).map(|&place| place as usize)
     }
 
-    /// The cell of an element of this section.
+    /// The cell of an element of this section, if it has one.
     pub(super) fn cell(&self, number: i64) -> Option<usize> {
         let place = *self.places.get(usize::try_from(number - self.first).ok()?)?;
         (place != NOWHERE).then_some(place as usize)
     }
 }
 
-/// Adds the elements of a zone to `cells`, its points behind `shift` others.
+/// Appends the elements of a zone to `cells`; `shift` points precede those of the zone.
 pub(super) fn place(zone: &Zone, shift: u32, cells: &mut Cells) -> Result<Vec<Span>> {
     let faces = Faces { zone };
     let mut room = faces.room();
@@ -96,8 +96,8 @@ struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    /// For each section which of its polygons are cells: where polyhedra are made of them, those that a boundary
-    /// condition names; else all.
+    /// For each section, which of its polygons are cells: all of them, or where polygons bound polyhedra,
+    /// those that a boundary condition names.
     fn are_cells(&self) -> Vec<Vec<bool>> {
         let sections = &self.zone.sections;
         let all = !sections.iter().any(|section| matches!(section.body, Body::Polyhedra(_)));
@@ -120,7 +120,7 @@ impl Faces<'_> {
         are_cells
     }
 
-    /// So many nodes the faces of all polyhedra have at most: two share a face.
+    /// Upper bound on the nodes of the faces of all polyhedra together: at most two polyhedra share a face.
     fn room(&self) -> usize {
         let items = |section: &Section| match &section.body {
             Body::Faces(lists) => lists.items().len(),
@@ -129,7 +129,7 @@ impl Faces<'_> {
         self.zone.sections.iter().map(items).sum::<usize>().saturating_mul(2)
     }
 
-    /// The faces of a polyhedron, turned outward.
+    /// The faces of a polyhedron, oriented outward. Subtracts their nodes from `room`.
     fn rings(&self, numbers: &[i64], shift: u32, room: &mut usize) -> Result<Vec<Vec<VertexId>>> {
         if numbers.len() < 4 {
             return Err(self.zone.node.error(format!("a polyhedron of {} polygons", numbers.len())));

@@ -1,4 +1,4 @@
-//! Which elements or points a boundary condition names.
+//! The elements or points that a boundary condition names.
 
 use crate::base::Result;
 use crate::io::cgns::node::Node;
@@ -11,7 +11,7 @@ pub(super) struct Condition {
     pub(super) members: Members,
 }
 
-/// What a condition or a solution is on.
+/// What a condition or a solution is defined on.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Members {
     /// Elements, by their numbers.
@@ -20,17 +20,17 @@ pub(super) enum Members {
     Points(Numbers),
 }
 
-/// Numbers from 1 on.
+/// Numbers of elements or points, from 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Numbers {
-    /// One by one.
+    /// Individual numbers.
     List(Vec<i64>),
-    /// From the first to the last.
+    /// From the first number to the last, inclusive.
     Range(i64, i64),
 }
 
 impl Numbers {
-    /// The numbers between two others.
+    /// The numbers from `first` to `last`, inclusive.
     pub(super) fn within(&self, first: i64, last: i64) -> Box<dyn Iterator<Item = i64> + '_> {
         match self {
             Self::List(all) => Box::new(all.iter().copied().filter(move |n| (first..=last).contains(n))),
@@ -38,7 +38,7 @@ impl Numbers {
         }
     }
 
-    /// Reads what a node names; `None` where it says nothing.
+    /// Reads the list or range of a node; `None` if it has neither.
     pub(super) fn of(node: &Node, list: &str, range: &str) -> Result<Option<Self>> {
         if let Some(list) = node.child(list)? {
             return Ok(Some(Self::List(list.ints()?)));
@@ -51,7 +51,7 @@ impl Numbers {
     }
 }
 
-/// Whether a condition or a solution is on points: where nothing is said, it is.
+/// Whether a condition or solution is on points, which is the default.
 pub(super) fn is_on_points(node: &Node) -> Result<bool> {
     Ok(node.text_of("GridLocation_t")?.is_none_or(|place| place == "Vertex"))
 }
@@ -79,6 +79,6 @@ fn members(node: &Node) -> Result<Option<Members>> {
         let is_on_points = is_on_points(node)?;
         return Ok(Some(if is_on_points { Members::Points(numbers) } else { Members::Elements(numbers) }));
     }
-    // Before version 3 elements were named so.
+    // The form used before version 3.
     Ok(Numbers::of(node, "ElementList", "ElementRange")?.map(Members::Elements))
 }

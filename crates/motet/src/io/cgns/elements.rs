@@ -1,4 +1,4 @@
-//! A section of elements: the type of each, and its nodes or faces.
+//! Sections of elements: the type of each element, and its nodes or faces.
 
 use crate::base::{Csr, Result, VertexId};
 use crate::io::cgns::kinds::{ElementType, MIXED, NFACE, NGON};
@@ -6,26 +6,26 @@ use crate::io::cgns::node::Node;
 use crate::io::format::Notes;
 use crate::mesh::CellKind;
 
-/// Elements that stand together, numbered through.
+/// A run of consecutively numbered elements.
 pub(super) struct Section {
     pub(super) name: String,
-    /// The number of the first one; the first of a zone is 1.
+    /// The number of the first element; the first of a zone is 1.
     pub(super) first: i64,
     pub(super) body: Body,
 }
 
-/// What the elements are.
+/// The elements of a section.
 pub(super) enum Body {
-    /// For each its kind, and its nodes in VTK's order; `None` for those that are no cells here.
+    /// The kind of each element and its nodes in VTK's order; `None` for elements without a cell kind here.
     Cells(Vec<Option<CellKind>>, Csr<u32>),
     /// Polygons.
     Faces(Csr<u32>),
-    /// The numbers of the polygons of each polyhedron, below zero where the polygon is turned inward.
+    /// The numbers of the polygons of each polyhedron, negative where the polygon faces inward.
     Polyhedra(Csr<i64>),
 }
 
 impl Section {
-    /// How many elements there are.
+    /// Number of elements.
     pub(super) fn len(&self) -> usize {
         match &self.body {
             Body::Cells(kinds, _) => kinds.len(),
@@ -34,7 +34,7 @@ impl Section {
         }
     }
 
-    /// Reads a section of a zone that has so many points.
+    /// Reads a section of a zone with `n_points` points.
     pub(super) fn read(node: &Node, n_points: usize, notes: &Notes) -> Result<Self> {
         let number = node.ints()?.first().copied().unwrap_or(0);
         let (first, n) = range(node)?;
@@ -49,7 +49,7 @@ impl Section {
     }
 }
 
-/// The number of the first element, and how many there are.
+/// The number of the first element, and the number of elements.
 fn range(node: &Node) -> Result<(i64, usize)> {
     let ends = node.needed("ElementRange")?.ints()?;
     let &[first, last] = ends.as_slice() else {
@@ -99,7 +99,7 @@ impl Source<'_> {
         out.finish(notes)
     }
 
-    /// Elements of several types, a type before the nodes of each.
+    /// Elements of several types; a type number precedes the nodes of each.
     fn mixed(&self, notes: &Notes) -> Result<Body> {
         let mut out = Cells::default();
         let mut rest = self.ids.as_slice();
@@ -117,7 +117,7 @@ impl Source<'_> {
         out.finish(notes)
     }
 
-    /// Lists of whatever lengths: with where each begins, or, as it was before version 4, with its length before each.
+    /// Lists of varying lengths: with start offsets, or, before version 4, with the length before each list.
     fn lists<T>(&self, of: impl Fn(i64) -> Result<T>) -> Result<Csr<T>> {
         let mut lists = Csr::default();
         let mut push = |ids: &[i64]| {
@@ -159,7 +159,7 @@ impl Source<'_> {
     }
 }
 
-/// Cells as they come.
+/// The cells collected so far.
 #[derive(Default)]
 struct Cells {
     kinds: Vec<Option<CellKind>>,

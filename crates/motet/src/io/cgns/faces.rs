@@ -1,4 +1,4 @@
-//! A mesh with polyhedra as faces and cells of faces: every face once, those that are surface cells first.
+//! A mesh with polyhedra as faces and cells of faces: each face once, surface cells first.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use crate::io::cgns::parts::Part;
 use crate::mesh::adjacency::{FacetUse, Facets};
 use crate::mesh::{CellKind, Mesh, corners};
 
-/// Kinds of cells that are no fixed type of elements, so that the mesh is written face by face.
+/// Kinds of cells without a fixed element type, which require the mesh to be written face by face.
 pub(super) fn needs_faces(kind: CellKind) -> bool {
     matches!(
         kind,
@@ -15,7 +15,7 @@ pub(super) fn needs_faces(kind: CellKind) -> bool {
     )
 }
 
-/// Kinds of cells of which a mesh of faces can be: all sides straight.
+/// Kinds of cells that a mesh of faces can hold: those with straight edges.
 pub(super) fn holds(kind: CellKind) -> bool {
     needs_faces(kind)
         || matches!(
@@ -31,11 +31,11 @@ pub(super) fn holds(kind: CellKind) -> bool {
         )
 }
 
-/// The faces of a mesh, and the faces of its cells.
+/// The faces of a mesh, and the faces of each of its cells.
 pub(super) struct Faces {
-    /// The ring of each: surface cells in the order of the parts, then all others.
+    /// The ring of each face: surface cells in the order of the parts, then all others.
     pub(super) rings: Csr<u32>,
-    /// For each volume cell the numbers of its faces, counted from 1, below zero where one is turned inward.
+    /// For each volume cell the numbers of its faces, from 1, negative where the face is oriented inward.
     pub(super) of_cells: Vec<Vec<i64>>,
 }
 
@@ -81,14 +81,14 @@ impl Faces {
     }
 }
 
-/// The different corners of a ring, rising: a collapsed quad is the triangle that it meets.
+/// The distinct corners of a ring, ascending; a collapsed quad has the key of the triangle that it meets.
 fn key(ring: &[u32]) -> Vec<u32> {
     let mut key = rising_list(ring);
     key.dedup();
     key
 }
 
-/// Whether two rings of the same corners run the same way round.
+/// Whether two rings of the same corners have the same orientation.
 fn turn_alike(a: &[u32], b: &[u32]) -> bool {
     b.iter().position(|v| *v == a[0]).is_some_and(|at| b[(at + 1) % b.len()] == a[1])
 }

@@ -12,7 +12,7 @@ pub(super) struct Families(BTreeMap<String, Family>);
 /// A family.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Family {
-    /// What people call it.
+    /// The name given by the user.
     pub(super) name: String,
     pub(super) number: Option<i32>,
 }
@@ -23,8 +23,8 @@ impl Families {
         let names: Vec<&str> = nodes.iter().map(|node| node.name.as_str()).collect();
         let mut all = BTreeMap::new();
         for node in &nodes {
-            // Gmsh names the family after its own entity, and has the name that the user gave within. Where that is
-            // a family too, it is one of families, and not another name for this.
+            // Gmsh names the family after its own entity, and stores the user's name inside it. If that name
+            // is itself a family, this is a family of families and the name no alias.
             let within = node.text_of("FamilyName_t")?;
             let within = within.filter(|name| !name.is_empty() && !names.contains(&name.as_str()));
             let number = match node.child_of("Ordinal_t")? {
@@ -42,9 +42,9 @@ impl Families {
         self.0.get(name)
     }
 
-    /// What a family is called whose name something has; the name itself where there is no such family.
+    /// The family with this name; if there is none, a family with just this name.
     pub(super) fn named(&self, name: &str) -> Family {
-        // In a base within a base names are paths.
+        // In nested families names are paths.
         let last = name.rsplit('/').next().unwrap_or(name);
         let found = self.get(name).or_else(|| self.get(last));
         found.cloned().unwrap_or_else(|| Family { name: last.to_owned(), number: None })

@@ -1,22 +1,22 @@
-//! Types of elements: their numbers in files, the kind of cell of each, and the order of its nodes.
+//! Element types: their numbers in files, the cell kind of each, and the order of its nodes.
 
 use crate::io::node_order::{Nodes, vtk_to_other};
 use crate::mesh::CellKind;
 
-/// Elements of several types.
+/// A section with elements of several types.
 pub(super) const MIXED: i64 = 20;
-/// Polygons.
+/// A section of polygons.
 pub(super) const NGON: i64 = 22;
-/// Polyhedra, by their polygons.
+/// A section of polyhedra, each a list of polygons.
 pub(super) const NFACE: i64 = 23;
 
-/// A type of elements that have the same number of nodes.
+/// An element type with a fixed number of nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ElementType {
     pub(super) number: i64,
     pub(super) name: &'static str,
     pub(super) n_nodes: usize,
-    /// `None` for those of order three and four, of which there are no cells here.
+    /// `None` for types of order three and four without a cell kind here.
     pub(super) kind: Option<CellKind>,
 }
 
@@ -28,7 +28,7 @@ const fn passed(number: i64, name: &'static str, n_nodes: usize) -> ElementType 
     ElementType { number, name, n_nodes, kind: None }
 }
 
-/// SIDS, "ElementType_t".
+/// Element types in the order of SIDS, "ElementType_t".
 const TYPES: &[ElementType] = &[
     row(2, "NODE", 1, CellKind::VERTEX),
     row(3, "BAR_2", 2, CellKind::LINE),
@@ -85,17 +85,17 @@ const TYPES: &[ElementType] = &[
 ];
 
 impl ElementType {
-    /// The type of a number.
+    /// The type with this number.
     pub(super) fn of(number: i64) -> Option<Self> {
         TYPES.iter().find(|t| t.number == number).copied()
     }
 
-    /// The type that cells of a kind, of so many vertices, are written as.
+    /// The type that cells of a kind with this number of vertices are written as.
     pub(super) fn of_kind(kind: CellKind, n_vertices: usize) -> Option<Self> {
         TYPES.iter().find(|t| t.kind == Some(kind) && t.n_nodes == n_vertices).copied()
     }
 
-    /// For each node in VTK's order, its place in that of CGNS.
+    /// For each node in VTK's order, its position in CGNS's order.
     pub(super) fn vtk_to_cgns(self) -> Vec<usize> {
         let order = |theirs| vtk_to_other(self.kind.unwrap_or(CellKind::EMPTY), self.n_nodes, theirs);
         match self.number {
@@ -103,7 +103,7 @@ impl ElementType {
             16 => order(WEDGE),
             18 => order(HEXAHEDRON.split_at(12).0),
             19 => order(HEXAHEDRON),
-            // The others are in the same order.
+            // The other types have the same order in both.
             _ => (0..self.n_nodes).collect(),
         }
     }
@@ -125,7 +125,7 @@ const WEDGE: Nodes = &[
     &[2, 0, 5, 3],
 ];
 
-/// The same, "Hexahedral Elements".
+/// SIDS, "Unstructured Grid Element Numbering Conventions", "Hexahedral Elements".
 const HEXAHEDRON: Nodes = &[
     &[0, 1],
     &[1, 2],
