@@ -1,4 +1,5 @@
-//! Regions and patches: from boundary conditions, and for cells that none names, from families, zones and sections.
+//! Regions and patches: from boundary conditions, and for cells that no condition names, from families, zones
+//! and sections.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -10,30 +11,30 @@ use crate::io::cgns::names::bare;
 use crate::io::format::Notes;
 use crate::mesh::{CellKind, Field, Mesh};
 
-/// What of a zone gives labels to its cells.
+/// The parts of a zone that give labels to its cells.
 pub(super) struct Labelled<'a> {
     pub(super) zone: &'a str,
     pub(super) family: Option<&'a str>,
     pub(super) conditions: &'a [Condition],
     pub(super) spans: &'a [Span],
-    /// How many points stand before its own, and how many are its own.
+    /// The number of points before those of this zone, and the number of its points.
     pub(super) points: (usize, usize),
 }
 
-/// In place of a label.
+/// Marks a cell without a label.
 const NONE: u32 = u32::MAX;
 
 /// Labels of the cells of one dimension.
 struct Labels {
     dim: usize,
-    /// Whether cells of this dimension fill the zones, and do not bound them.
+    /// Whether cells of this dimension fill the zones, rather than bound them.
     fills: bool,
     of_cells: Vec<u32>,
     families: Vec<Family>,
     by_name: HashMap<String, u32>,
 }
 
-/// Labels the cells of a mesh of zones.
+/// Labels the cells of a mesh that was joined from zones.
 pub(super) fn set_labels(
     mesh: &mut Mesh,
     zones: &[Labelled<'_>],
@@ -69,7 +70,7 @@ impl Labels {
         label
     }
 
-    /// Whether a cell is of this dimension.
+    /// Whether a cell has the dimension of these labels.
     fn is_ours(&self, mesh: &Mesh, cell: usize) -> bool {
         mesh.cells.kinds()[cell].dim() == Some(self.dim)
     }
@@ -89,7 +90,7 @@ impl Labels {
                 };
                 zone.spans.iter().flat_map(of).filter(|&cell| self.is_ours(mesh, cell)).collect()
             }
-            // Points say which surface is meant, and no more.
+            // Points only identify a surface.
             Members::Points(_) if self.dim == 3 => return,
             Members::Points(numbers) => {
                 let cells = self.on_points(mesh, zone, numbers);
@@ -116,7 +117,7 @@ impl Labels {
         }
     }
 
-    /// The surface cells all of whose vertices are among some points.
+    /// The unlabelled cells of this dimension all of whose vertices are among the given points.
     fn on_points(&self, mesh: &Mesh, zone: &Labelled<'_>, numbers: &Numbers) -> Vec<usize> {
         let (shift, n) = zone.points;
         let mut is_named = vec![false; n];
@@ -130,7 +131,7 @@ impl Labels {
             .collect()
     }
 
-    /// Labels cells that no condition names.
+    /// Labels the cells of sections that no condition touches.
     fn take_rest(&mut self, mesh: &Mesh, zone: &Labelled<'_>, are_several: bool, families: &Families) {
         let ours = |span: &Span| -> Vec<usize> {
             span.cells().filter(|&cell| mesh.cells.kinds()[cell].dim() == Some(self.dim)).collect()
@@ -156,7 +157,7 @@ impl Labels {
         }
     }
 
-    /// Puts the labels into the mesh, if there are any.
+    /// Stores the labels in the mesh, if there are any.
     fn put(self, mesh: &mut Mesh, array: &str) {
         if self.families.is_empty() {
             return;
@@ -184,7 +185,8 @@ impl Labels {
     }
 }
 
-/// Whether each section holds one kind of cells, and no two the same: then they say nothing but kinds.
+/// Whether each section holds a single kind of cells, different from those of the others; such sections carry
+/// no label information.
 fn are_by_kind(mesh: &Mesh, spans: &[(&Span, Vec<usize>)]) -> bool {
     let mut seen: Vec<CellKind> = Vec::new();
     spans.iter().all(|(_, cells)| {

@@ -1,7 +1,7 @@
 //! CGNS (`.cgns`): meshes and solutions of computational fluid dynamics, in HDF5.
 //!
-//! The layout is that of the CGNS documentation: "Standard Interface Data Structures" (SIDS) says which nodes there are, "SIDS-to-HDF5
-//! File Mapping" how they lie in a file. Of unstructured meshes this is known:
+//! The layout follows the CGNS documentation: "Standard Interface Data Structures" (SIDS) defines the nodes,
+//! "SIDS-to-HDF5 File Mapping" their storage. Of unstructured meshes these nodes are supported:
 //!
 //! ```text
 //! CGNSBase_t            dimensions of cells and of space
@@ -26,15 +26,15 @@
 //! | `cells` | the elements of a zone as cells |
 //! | `labels` | regions and patches from conditions, families, sections and zones |
 //! | `arrays` | solutions as arrays |
-//! | `seams` | points in which zones meet |
-//! | `bare` | what meshio writes |
-//! | `read` | a mesh in |
-//! | `tree` | nodes to be written |
+//! | `seams` | points where zones meet |
+//! | `bare` | files written by meshio |
+//! | `read` | reads a mesh |
+//! | `tree` | nodes for writing |
 //! | `parts` | the cells of a mesh, label by label |
 //! | `faces` | a mesh with polyhedra as faces and cells of faces |
 //! | `names` | names that CGNS can hold |
 //! | `solutions` | arrays as solutions |
-//! | `write` | a mesh out |
+//! | `write` | writes a mesh |
 
 mod arrays;
 mod bare;

@@ -1,23 +1,23 @@
-//! Names that CGNS can hold: 32 bytes at most, no slash, and none twice beside one another.
+//! Names that CGNS can hold: at most 32 bytes, no slash, unique among siblings.
 
 use crate::mesh::unused_name;
 
-/// Bytes of a name at most.
+/// Maximum length of a name in bytes.
 pub(super) const LONGEST: usize = 32;
 
-/// The name of a label that has none.
+/// The default name of a label without a name.
 pub(super) fn bare(dim: usize, number: i32) -> String {
     format!("{}_{number}", if dim == 3 { "Region" } else { "Patch" })
 }
 
-/// The name, or one near it that CGNS can hold; none of `taken`.
+/// The name, or a similar one that CGNS can hold, distinct from all of `taken`.
 pub(super) fn valid(name: &str, taken: &[String]) -> String {
     let clean: String = name.chars().map(|c| if matches!(c, '/' | '\0') { '_' } else { c }).collect();
     let clean = clean.trim();
     let clean = if clean.is_empty() || clean == "." || clean == ".." { "unnamed" } else { clean };
     let mut longest = LONGEST;
     loop {
-        // A number behind it takes room.
+        // Leave space for the number that makes the name unique.
         let name = unused_name(cut(clean, longest), |name| taken.iter().any(|t| t == name));
         if name.len() <= LONGEST {
             return name;
@@ -26,7 +26,7 @@ pub(super) fn valid(name: &str, taken: &[String]) -> String {
     }
 }
 
-/// The name, cut off where it has more bytes than `most`.
+/// The name, truncated to at most `most` bytes.
 pub(super) fn cut(name: &str, most: usize) -> &str {
     let end = (0..=most.min(name.len())).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
     &name[..end]

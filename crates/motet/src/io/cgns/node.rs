@@ -1,11 +1,12 @@
-//! The tree of nodes: each a group of HDF5 with a name, a label that says what it is, children, and an array called ` data`.
+//! The node tree: each node is an HDF5 group with a name, a label that states its type, children, and an
+//! array called ` data`.
 
 use crate::base::{Error, Result};
 use crate::io::hdf::{Array, Group, is_hdf5, open};
 use crate::mesh::Values;
 
-/// How files of the older form begin, which is no HDF5: behind four bytes that `what` of Unix looks for, or those with their
-/// highest bits set.
+/// Signature of the older, non-HDF5 form. It follows the four bytes that the Unix command `what` searches
+/// for, which may have their highest bits set.
 const ADF: &[u8] = b"ADF Database Version";
 
 /// A node of the tree.
@@ -16,7 +17,7 @@ pub(super) struct Node {
 }
 
 impl Node {
-    /// The node whose children are the bases.
+    /// Opens the root node, whose children are the bases.
     pub(super) fn root(bytes: &[u8]) -> Result<Self> {
         if bytes.get(4..).is_some_and(|rest| rest.starts_with(ADF)) {
             return Err(Error::input("is a CGNS file of the older form ADF, of which only HDF5 is read")
@@ -28,31 +29,30 @@ impl Node {
         Ok(Self { name: String::new(), label: String::new(), group: open(bytes)? })
     }
 
-    /// Where it stands in the file.
+    /// The path of the node in the file.
     pub(super) fn place(&self) -> &str {
         self.group.place()
     }
 
     /// All children, sorted by name.
     ///
-    /// # Errors
-    /// When one stands for a node of another place: what it says is not here.
+    /// Fails if a child is a link to a node elsewhere, since links are not followed.
     pub(super) fn children(&self) -> Result<Vec<Self>> {
         let of = |name: &String| self.child(name).transpose();
         self.group.groups().iter().filter_map(of).collect()
     }
 
-    /// All children of a label, sorted by name.
+    /// All children with a label, sorted by name.
     pub(super) fn children_of(&self, label: &str) -> Result<Vec<Self>> {
         Ok(self.children()?.into_iter().filter(|node| node.label == label).collect())
     }
 
-    /// The first child of a label, by name.
+    /// The first child with a label, by name.
     pub(super) fn child_of(&self, label: &str) -> Result<Option<Self>> {
         Ok(self.children_of(label)?.into_iter().next())
     }
 
-    /// The child of a name, if there is one.
+    /// The child with a name, if there is one.
     pub(super) fn child(&self, name: &str) -> Result<Option<Self>> {
         let Some(group) = self.group.group(name)? else { return Ok(None) };
         if group.text("type") == Some("LK") {
@@ -64,27 +64,27 @@ impl Node {
         Ok(Some(Self { name: name.to_owned(), label, group }))
     }
 
-    /// The child of a name, which must be there.
+    /// The child with a name; an error if it is missing.
     pub(super) fn needed(&self, name: &str) -> Result<Self> {
         self.child(name)?.ok_or_else(|| self.error(format!("the node {name} is missing")))
     }
 
-    /// Its array, if it has one.
+    /// The array of the node, if it has one.
     pub(super) fn array(&self) -> Result<Option<Array>> {
         self.group.array(" data")
     }
 
-    /// Its values, which must be there.
+    /// The values of the node; an error if it has none.
     pub(super) fn values(&self) -> Result<Values> {
         self.array()?.ok_or_else(|| self.error("a node without values"))?.all()
     }
 
-    /// Its values as whole numbers.
+    /// The values of the node as integers.
     pub(super) fn ints(&self) -> Result<Vec<i64>> {
         self.values()?.to_i64().ok_or_else(|| self.error("whole numbers are expected"))
     }
 
-    /// Its values as a text; empty where there are none.
+    /// The values of the node as text; empty if it has none.
     pub(super) fn text(&self) -> Result<String> {
         let Some(array) = self.array()? else { return Ok(String::new()) };
         let bytes: Vec<u8> = match array.all()? {
@@ -96,7 +96,7 @@ impl Node {
         Ok(String::from_utf8_lossy(&bytes).trim_end_matches(['\0', ' ']).to_owned())
     }
 
-    /// The text of the first child of a label; `None` where there is none.
+    /// The text of the first child with a label; `None` if there is no such child.
     pub(super) fn text_of(&self, label: &str) -> Result<Option<String>> {
         self.child_of(label)?.map(|node| node.text()).transpose()
     }

@@ -1,4 +1,4 @@
-//! The cells of a mesh label by label, as sections hold them: those of the highest dimension first.
+//! The cells of a mesh grouped by label, as sections store them: those of the highest dimension first.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use crate::io::cgns::kinds::ElementType;
 use crate::io::cgns::names::{bare, valid};
 use crate::mesh::{CellKind, Labels, Mesh};
 
-/// Names of other nodes beside sections, families and conditions.
+/// Names of nodes beside those of sections, families and conditions.
 pub(super) const ZONE: &str = "Zone";
 pub(super) const POINT_DATA: &str = "PointData";
 pub(super) const CELL_DATA: &str = "CellData";
@@ -19,16 +19,16 @@ const RESERVED: [&str; 8] =
 pub(super) struct Part {
     pub(super) dim: usize,
     pub(super) number: i32,
-    /// The name of its section, its family and its condition.
+    /// The name of the section, the family and the boundary condition.
     pub(super) name: String,
-    /// Whether its label is to be found again: it has a family.
+    /// Whether the part has a family, so that its label can be recovered on reading.
     pub(super) has_label: bool,
-    /// In the order of the mesh.
+    /// Indices of the cells, in the order of the mesh.
     pub(super) cells: Vec<usize>,
 }
 
 impl Part {
-    /// The type of all its cells; `None` where they are of several.
+    /// The type of all its cells; `None` if they are of several types.
     pub(super) fn element_type(&self, mesh: &Mesh) -> Option<ElementType> {
         let kind_of = |cell: usize| mesh.cells.kinds()[cell];
         let kind = kind_of(*self.cells.first()?);
@@ -41,14 +41,14 @@ pub(super) fn element_type(kind: CellKind) -> Option<ElementType> {
     ElementType::of_kind(kind, kind.n_vertices()?)
 }
 
-/// The cells of a mesh by dimension and label, each part where its first cell stands.
+/// The cells of a mesh by dimension and label; parts of one dimension are ordered by their first cells.
 pub(super) fn parts(mesh: &Mesh, lost: &mut Vec<String>) -> Vec<Part> {
     let mut taken: Vec<String> = RESERVED.map(str::to_owned).to_vec();
     let mut parts = Vec::new();
     let named = [(3, mesh.regions(), "Volume"), (2, mesh.patches(), "Surface")];
     let unnamed = [(1, None, "Curves"), (0, None, "Points")];
     for (dim, labels, rest) in named.into_iter().chain(unnamed) {
-        // What has no label is to have none when it is read.
+        // Cells without a label must have none when read back.
         let has_labels = labels.is_some() || dim == 2;
         for (number, cells) in by_label(mesh, dim, labels.as_ref()) {
             let called = labels.as_ref().and_then(|l| l.names.get(&number)).filter(|name| !name.is_empty());

@@ -1,4 +1,4 @@
-//! A mesh in.
+//! Reads a mesh.
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::cgns::arrays::{Places, Solutions};
@@ -66,7 +66,7 @@ impl Joined {
     }
 }
 
-/// Adds a zone to the mesh.
+/// Appends a zone to the mesh.
 fn join(
     mesh: &mut Mesh,
     solutions: &mut Solutions,
@@ -87,7 +87,8 @@ fn join(
     Ok(Joined { zone, spans, points: (first_point, n_points), seams })
 }
 
-/// Makes one of points in which zones meet, and says where they meet otherwise.
+/// Merges the points where zones meet, and adds a note where their correspondence is not given or does not
+/// hold.
 fn join_zones(mesh: &mut Mesh, zones: &[Joined], notes: &Notes) {
     let mut pairs = Vec::new();
     let mut is_open = false;

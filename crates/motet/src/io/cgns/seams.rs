@@ -1,4 +1,4 @@
-//! Points in which zones meet, one to one: two that the file says are one become one.
+//! Points where zones meet one to one: those that the file declares identical are merged.
 
 use crate::base::{Result, Sets, VertexId};
 use crate::geometry::vector::distance;
@@ -6,10 +6,11 @@ use crate::io::cgns::conditions::{Numbers, is_on_points};
 use crate::io::cgns::node::Node;
 use crate::mesh::Mesh;
 
-/// Points that are one are at most so far apart, by the extent of the mesh: files have coordinates of seven digits.
+/// Maximum distance of identical points, relative to the extent of the mesh: files may have seven-digit
+/// coordinates.
 const FARTHEST: f64 = 1e-6;
 
-/// Points of a zone, and those of another with which they are one.
+/// Points of a zone and the identical points of another zone.
 pub(super) struct Seam {
     /// The name of the other zone.
     pub(super) other: String,
@@ -17,7 +18,7 @@ pub(super) struct Seam {
     other_points: Vec<i64>,
 }
 
-/// The seams of a zone; `None` for each that does not say which points are one.
+/// The seams of a zone; `None` for each that does not pair points.
 pub(super) fn seams(zone: &Node) -> Result<Vec<Option<Seam>>> {
     let mut all = Vec::new();
     for connectivity in zone.children_of("ZoneGridConnectivity_t")? {
@@ -34,7 +35,7 @@ pub(super) fn seams(zone: &Node) -> Result<Vec<Option<Seam>>> {
 
 fn seam(node: &Node) -> Result<Option<Seam>> {
     let is_one_to_one = node.text_of("GridConnectivityType_t")?.as_deref() == Some("Abutting1to1");
-    // Such as the two sides of a periodic flow, which are no one place.
+    // For example the two sides of a periodic flow, which do not coincide.
     let has_property = node.child_of("GridConnectivityProperty_t")?.is_some();
     if !is_one_to_one || has_property || !is_on_points(node)? {
         return Ok(None);
@@ -50,7 +51,8 @@ fn seam(node: &Node) -> Result<Option<Seam>> {
 }
 
 impl Seam {
-    /// The points that are one, by where the points of both zones stand in the mesh and how many they are.
+    /// The pairs of identical points, as indices in the mesh, given the first index and the number of points
+    /// of each zone.
     pub(super) fn pairs(&self, own: (usize, usize), other: (usize, usize)) -> impl Iterator<Item = [u32; 2]> {
         let place = |(first, n): (usize, usize), number: i64| {
             let at = usize::try_from(number).ok().and_then(|number| number.checked_sub(1));
@@ -61,7 +63,7 @@ impl Seam {
     }
 }
 
-/// Makes one point of each pair at one place; how many pairs are at two.
+/// Merges each pair of points that coincide; returns the number of pairs that do not.
 pub(super) fn join_points(mesh: &mut Mesh, pairs: &[[u32; 2]]) -> usize {
     let Some([low, high]) = mesh.bounds() else { return pairs.len() };
     let farthest = FARTHEST * distance(low, high);
@@ -75,7 +77,7 @@ pub(super) fn join_points(mesh: &mut Mesh, pairs: &[[u32; 2]]) -> usize {
             n_apart += 1;
         }
     }
-    // Of points that are one the first stays.
+    // The first of merged points is kept.
     let mut kept = Vec::new();
     let mut new: Vec<VertexId> = Vec::with_capacity(mesh.points.len());
     for v in 0..mesh.points.len() {

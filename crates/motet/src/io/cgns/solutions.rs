@@ -1,4 +1,4 @@
-//! Arrays as solutions: a scalar each, vectors in three.
+//! Arrays as solutions: each scalar is an array, each vector three.
 
 use crate::io::cell_labels::{cell_labels, say_all};
 use crate::io::cgns::names::{LONGEST, cut, valid};
@@ -8,7 +8,7 @@ use crate::io::cgns::write::Ints;
 use crate::io::select::lost_arrays;
 use crate::mesh::{Field, Mesh, Values};
 
-/// The solutions of a mesh, whose first surface cell has the number `first_face`.
+/// The solution nodes of a mesh whose first surface cell has the number `first_face`.
 pub(super) fn solutions(
     mesh: &Mesh,
     parts: &[Part],
@@ -37,7 +37,7 @@ pub(super) fn solutions(
         let faces = of_dim(2);
         on_faces.extend(cells.iter().map(|f| picked(f, &faces)).filter(says_something));
         let range = ints.values([first_face, first_face + faces.len() as i64 - 1]);
-        // Under names that they have in the cells, which was told there.
+        // These arrays have the same names as on the cells, for which losses were already reported.
         all.extend(solution(FACE_DATA, "FaceCenter", Some(range), &on_faces, &mut Vec::new()));
     }
     let lower: Vec<usize> = (0..cell_dim.min(2)).flat_map(of_dim).collect();
@@ -49,7 +49,7 @@ pub(super) fn solutions(
     all
 }
 
-/// Whether there are values other than those that a reader puts where there are none.
+/// Whether any value differs from the default for missing values (NaN, or 0 for integers).
 fn says_something(field: &Field) -> bool {
     match &field.values {
         Values::F32(values) => values.iter().any(|x| !x.is_nan()),
@@ -58,7 +58,7 @@ fn says_something(field: &Field) -> bool {
     }
 }
 
-/// The array in a type that CGNS has; `None` where it has none.
+/// The array converted to a type that CGNS supports; `None` if there is no such type.
 fn known(field: &Field, what: &str, lost: &mut Vec<String>) -> Option<Field> {
     let short = || -> Option<Vec<i32>> {
         field.values.to_i64()?.into_iter().map(|x| i32::try_from(x).ok()).collect()
@@ -82,7 +82,7 @@ fn known(field: &Field, what: &str, lost: &mut Vec<String>) -> Option<Field> {
     Some(Field { name: field.name.clone(), components: field.components, values })
 }
 
-/// A solution; none where there are no arrays.
+/// A solution node; `None` if there are no arrays with values.
 fn solution(
     name: &str,
     location: &str,
@@ -92,7 +92,7 @@ fn solution(
 ) -> Option<Tree> {
     let has_rows = |f: &&Field| f.n_rows() > 0;
     fields.iter().find(has_rows)?;
-    // The libraries of CGNS refuse solutions on a part of the faces.
+    // The CGNS libraries reject solutions on a subset of the faces.
     let label = if range.is_some() { "UserDefinedData_t" } else { "FlowSolution_t" };
     let mut node = Tree::new(name, label);
     node.child(Tree::with_text("GridLocation", "GridLocation_t", location));

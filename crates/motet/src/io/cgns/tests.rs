@@ -1,4 +1,4 @@
-//! There and back, forms that others write, and files that are damaged or wrong.
+//! Round trips, variants written by other programs, and damaged or invalid files.
 
 use std::path::Path;
 
@@ -43,7 +43,7 @@ fn points(n: usize) -> Vec<[f64; 3]> {
     (0..n).map(|i| [0, 1, 2].map(|axis| (0.1 + i as f64) * 0.7f64.powi(axis))).collect()
 }
 
-/// Two regions of several kinds, two patches, a surface without label, curves and a point.
+/// Two regions of several kinds, two patches, an unlabelled surface, a curve and a point.
 fn mixed() -> Mesh {
     let mut cells = Cells::new();
     cells.push(CellKind::TETRA, ids(&[0, 1, 2, 3]));
@@ -79,7 +79,7 @@ fn mixed_cells_labels_and_arrays_come_back() {
     let Values::F32(p) = &back.point_data[0].values else { panic!("another type") };
     assert!(p[0].is_nan() && p[2].is_sign_negative());
     back.point_data[0] = mesh.point_data[0].clone();
-    // NaN is no number that equals itself.
+    // NaN does not compare equal to itself.
     assert_eq!(format!("{back:?}"), format!("{mesh:?}"));
 }
 
@@ -97,12 +97,12 @@ fn every_kind_comes_back_with_its_nodes_in_their_order() {
     }
 }
 
-/// A polyhedron, tets beside it that share faces with it, a polygon and a triangle of its hull.
+/// A polyhedron, a tet that shares a face with it, and a polygon and triangles on their boundary.
 fn polyhedral() -> Mesh {
     let mut cells = Cells::new();
     let prism = [&[0u32, 2, 1][..], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]];
     let mut faces = Csr::default();
-    // A corner of one edge split, so that this is no wedge.
+    // One edge has a vertex inside it, so that this is not a wedge.
     faces.push(ids(&[0, 2, 1, 6]));
     prism[1..2].iter().chain(&prism[3..]).for_each(|face| faces.push(ids(face)));
     faces.push(ids(&[0, 6, 1, 4, 3]));
@@ -138,7 +138,7 @@ fn polyhedra_come_back_with_their_faces() {
         assert!((before[same] - after).abs() < 1e-12 && after > 0.0, "{}: {after}", kind.label());
     }
     assert_eq!(back.points, mesh.points);
-    // Polygons stand before what is made of them.
+    // Polygons come before the cells made of them.
     let patch = back.cell_field("patch").unwrap();
     assert_eq!(patch.values, Values::I32(vec![1, 2, 0, 0, 0]));
     assert_eq!(back.cell_field("region").unwrap().values, Values::I32(vec![0, 0, 0, 1, 2]));
@@ -225,7 +225,7 @@ fn section(name: &str, number: i32, range: [i32; 2], ids: &[i32]) -> Tree {
     section
 }
 
-/// A zone of five points.
+/// A zone with five points.
 fn zone(name: &str, children: Vec<Tree>) -> Tree {
     let mut zone = int(name, "Zone_t", &[5, 2, 0]);
     zone.child(Tree::with_text("ZoneType", "ZoneType_t", "Unstructured"));
@@ -294,7 +294,7 @@ fn sections_and_zones_are_labels_where_nothing_else_is() {
     let one = |name, i: i32| section(name, 10, [i, i], &[1, 2, 3, 4]);
     let (mesh, _) = parse(&file(vec![zone("Zone", vec![one("b", 1), one("a", 2)])])).unwrap();
     assert_eq!(mesh.label_names.regions.values().collect::<Vec<_>>(), ["b", "a"]);
-    // One section for each kind says nothing of regions.
+    // Sections by kind carry no information about regions.
     let pyramid = section("Pyramids", 12, [3, 3], &[1, 2, 3, 4, 5]);
     let (mesh, _) = parse(&file(vec![zone("Zone", vec![tets(), pyramid])])).unwrap();
     assert!(mesh.cell_field("region").is_none() && mesh.label_names.regions.is_empty());
@@ -342,7 +342,7 @@ fn lists_come_with_offsets_or_with_counts() {
     let new = parse(&file(vec![zone("Zone", vec![new, new_cells])])).unwrap();
     assert_eq!(old, new);
     assert_eq!(new.0.cells.counts(), [(CellKind::TETRA, 1)]);
-    // Without polyhedra the polygons are the mesh.
+    // Without polyhedra the polygons themselves are the cells.
     let alone = section("Polygons", 22, [1, 4], &polygons);
     let alone = parse(&file(vec![zone("Zone", vec![alone])])).unwrap().0;
     assert_eq!(alone.cells.counts(), [(CellKind::TRIANGLE, 4)]);

@@ -1,13 +1,13 @@
-//! Nodes to be written, as files have them: "SIDS-to-HDF5 File Mapping", "Node Structure".
+//! Nodes for writing, in the form of "SIDS-to-HDF5 File Mapping", "Node Structure".
 
 use crate::base::Result;
 use crate::io::hdf::{Attribute, Node as Group, Packing};
 use crate::mesh::Values;
 
-/// Room for a name or label, and a zero.
+/// Width of a name or label, including a terminating zero.
 const WIDTH: u32 = 33;
 
-/// A node to be written.
+/// A node for writing.
 pub(super) struct Tree {
     group: Group,
 }
@@ -24,7 +24,8 @@ impl Tree {
         Self::shaped(name, label, values, &[n])
     }
 
-    /// A node with values of a shape; the last dimension is the first of the documentation, which counts as Fortran does.
+    /// A node with values of a given shape, in C order; the documentation lists dimensions in Fortran order,
+    /// reversed.
     pub(super) fn shaped(name: &str, label: &str, values: Values, shape: &[usize]) -> Self {
         let mut node = Self::of_type(name, label, type_of(&values));
         node.group.array(" data", values, shape, Packing::Plain);
@@ -38,12 +39,12 @@ impl Tree {
         node
     }
 
-    /// The first and the last number of a range.
+    /// A range: its first and last number.
     pub(super) fn range(name: &str, ends: Values) -> Self {
         Self::shaped(name, "IndexRange_t", ends, &[2, 1])
     }
 
-    /// A node of a type that says itself what it is, such as a link.
+    /// A node with an explicit type, such as a link.
     #[cfg(test)]
     pub(super) fn with_type(name: &str, label: &str, kind: &str) -> Self {
         Self::of_type(name, label, kind)
@@ -52,7 +53,7 @@ impl Tree {
     fn of_type(name: &str, label: &str, kind: &str) -> Self {
         let mut group = Group::new(name);
         head(&mut group, name, label, kind);
-        // The documentation says no more of it than that the libraries write 1.
+        // The documentation only states that the libraries write 1.
         group.attribute("flags", Attribute::ShortInts(vec![1]));
         Self { group }
     }
@@ -67,14 +68,14 @@ impl Tree {
         children.into_iter().for_each(|child| self.child(child));
     }
 
-    /// The file of these nodes.
+    /// The file with these nodes under its root.
     pub(super) fn file(nodes: Vec<Self>) -> Result<Vec<u8>> {
         let mut root = Group::new("");
         head(&mut root, "HDF5 MotherNode", "Root Node of HDF5 File", "MT");
         root.array(" format", characters(b"IEEE_LITTLE_32", 15), &[15], Packing::Plain);
         root.array(" hdf5version", characters(b"HDF5 Version 1.8.0", 33), &[33], Packing::Plain);
         nodes.into_iter().for_each(|node| root.group(node.group));
-        // The libraries of CGNS refuse newer forms.
+        // The CGNS libraries reject newer file formats.
         root.into_file_of_1_8()
     }
 }
@@ -85,7 +86,7 @@ fn head(group: &mut Group, name: &str, label: &str, kind: &str) {
     }
 }
 
-/// Characters as files have them, zeros behind them up to `n`.
+/// Text as stored in files, padded with zeros to `n` bytes.
 fn characters(text: &[u8], n: usize) -> Values {
     let mut all: Vec<i8> = text.iter().map(|&c| c as i8).collect();
     all.resize(n.max(all.len()), 0);

@@ -1,4 +1,4 @@
-//! A mesh out: one base, one zone, and in it a section for each region and each patch.
+//! Writes a mesh: one base, one zone, and in it a section for each region and patch.
 
 use crate::base::{Csr, Result};
 use crate::io::cgns::faces::{self, Faces, needs_faces};
@@ -10,10 +10,11 @@ use crate::io::format::{WriteOptions, Written};
 use crate::io::select::keep_cells;
 use crate::mesh::{Mesh, Values};
 
-/// The version that files say they are of: the oldest whose libraries take lists with their offsets, as all later ones do.
+/// The declared version of the files: the oldest one whose libraries accept lists with offsets, as all later
+/// ones do.
 const VERSION: f32 = 3.4;
 
-/// There is no choice of compression: the libraries of CGNS refuse forms of HDF5 that hold what is packed by this one.
+/// Writes uncompressed data: the CGNS libraries reject the HDF5 format that the compression used here needs.
 pub(super) fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     let of_faces = mesh.cells.kinds().iter().any(|&kind| needs_faces(kind));
     let (mesh, mut lost) = keep_cells(mesh, "CGNS", |kind| match of_faces {
@@ -22,7 +23,7 @@ pub(super) fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     });
     let cell_dim = mesh.cells.dim().unwrap_or(1).max(1);
     let parts = parts(&mesh, &mut lost);
-    // Where cells are made of faces, these stand before them.
+    // Where cells are made of faces, the faces come first.
     let is_first = |part: &&Part| of_faces && part.dim == 2;
     let (first, then): (Vec<&Part>, Vec<&Part>) = parts.iter().partition(is_first);
     let order: Vec<usize> =
@@ -69,19 +70,19 @@ fn coordinates(mesh: &Mesh) -> Tree {
     grid
 }
 
-/// A family, so that the name of a section is known to be that of a label, with its number.
+/// A family, which marks the name of a section as that of a label and stores the number of the label.
 fn family(part: &Part) -> Tree {
     let mut family = Tree::new(&part.name, "Family_t");
     if part.dim == 2 {
         family.child(Tree::with_text("FamilyBC", "FamilyBC_t", "UserDefined"));
-        // Gmsh makes a physical group of what stands here.
+        // Gmsh turns this name into a physical group.
         family.child(Tree::with_text(&part.name, "FamilyName_t", &part.name));
     }
     family.child(Tree::with("Ordinal", "Ordinal_t", Values::I32(vec![part.number])));
     family
 }
 
-/// Boundary conditions: one for each patch.
+/// Boundary conditions, one for each patch.
 fn conditions(parts: &[Part], ranges: &[(i64, i64)], ints: Ints) -> Option<Tree> {
     let mut all = Tree::new("ZoneBC", "ZoneBC_t");
     let mut patches = parts.iter().zip(ranges).filter(|(part, _)| part.dim == 2).peekable();
@@ -96,7 +97,7 @@ fn conditions(parts: &[Part], ranges: &[(i64, i64)], ints: Ints) -> Option<Tree>
     Some(all)
 }
 
-/// How wide whole numbers are: 32 bits where that is enough, which every library reads.
+/// Width of integers: 32 bits where sufficient, which every library reads.
 #[derive(Clone, Copy)]
 pub(super) struct Ints {
     wide: bool,
@@ -104,7 +105,7 @@ pub(super) struct Ints {
 
 impl Ints {
     fn of(mesh: &Mesh) -> Self {
-        // Faces of cells, their corners and a number before each are no more than this.
+        // Upper bound for the faces of cells with their corners and a count for each.
         let most = mesh.cells.connectivity().items().len().saturating_mul(8).max(mesh.points.len());
         Self { wide: i32::try_from(most).is_err() }
     }
@@ -117,24 +118,24 @@ impl Ints {
     }
 }
 
-/// Sections as they are numbered through.
+/// Sections, whose elements are numbered consecutively.
 struct Numbered {
     ints: Ints,
     next: i64,
     sections: Vec<Tree>,
-    /// The numbers of the first and the last element of each part.
+    /// The numbers of the first and last element of each part.
     ranges: Vec<(i64, i64)>,
 }
 
 impl Numbered {
-    /// Every part as a section of its own.
+    /// Adds a section for each part.
     fn all_cells(&mut self, mesh: &Mesh, parts: &[Part]) {
         for (i, part) in parts.iter().enumerate() {
             self.ranges[i] = self.cells(mesh, part);
         }
     }
 
-    /// Polygons, then polyhedra made of them, then what has neither.
+    /// Adds polygons, then polyhedra made of them, then all other cells.
     fn all_faces(&mut self, mesh: &Mesh, parts: &[Part]) -> Result<()> {
         let faces = Faces::of(mesh, parts)?;
         let mut rings = faces.rings.iter();
@@ -160,7 +161,7 @@ impl Numbered {
         Ok(())
     }
 
-    /// Cells of one type, or of several with their types.
+    /// Adds the cells of a part: a section of one type, or a mixed section with a type for each cell.
     fn cells(&mut self, mesh: &Mesh, part: &Part) -> (i64, i64) {
         let of_cell = |cell: usize| element_type(mesh.cells.kinds()[cell]);
         let ids = |cell: usize, element: ElementType| {
@@ -214,7 +215,7 @@ impl Numbered {
     }
 }
 
-/// For each node in the order of CGNS, its place in VTK's.
+/// For each node in CGNS's order, its position in VTK's order.
 fn cgns_to_vtk(element: ElementType) -> Vec<usize> {
     let order = element.vtk_to_cgns();
     let mut inverse = vec![0; order.len()];

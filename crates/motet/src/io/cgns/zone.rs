@@ -1,4 +1,4 @@
-//! A zone: its points, its elements, and its boundary conditions.
+//! Zones: points, elements and boundary conditions.
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::io::cgns::conditions::{Condition, conditions};
@@ -7,11 +7,11 @@ use crate::io::cgns::node::Node;
 use crate::io::format::Notes;
 use crate::mesh::Values;
 
-/// What a zone holds, solutions left out.
+/// The contents of a zone, without solutions.
 pub(super) struct Zone {
     pub(super) node: Node,
     pub(super) points: Vec<Point>,
-    /// Rising by the numbers of their elements.
+    /// Sections in ascending order of their element numbers.
     pub(super) sections: Vec<Section>,
     pub(super) conditions: Vec<Condition>,
     pub(super) family: Option<String>,
@@ -46,9 +46,9 @@ impl Zone {
     }
 }
 
-/// The points of a zone; coordinates that a plane mesh lacks are zero.
+/// The points of a zone; missing coordinates, as in plane meshes, are zero.
 fn points(zone: &Node, n: usize) -> Result<Vec<Point>> {
-    // A mesh that moves has more than one, of which this is the first.
+    // A moving mesh has several coordinate nodes; this is the first.
     let named = zone.child("GridCoordinates")?;
     let grid = match named {
         Some(grid) => Some(grid),
@@ -58,7 +58,7 @@ fn points(zone: &Node, n: usize) -> Result<Vec<Point>> {
     columns(&grid, Some(n))
 }
 
-/// Points from a column for each axis; all of as many as `n`, or else as the first.
+/// Points from a column for each axis, all with `n` values, or by default with as many as the first.
 pub(super) fn columns(grid: &Node, n: Option<usize>) -> Result<Vec<Point>> {
     let mut columns: Vec<Option<Vec<f64>>> = Vec::new();
     let mut n = n;
