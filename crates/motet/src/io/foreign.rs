@@ -1,10 +1,10 @@
-//! Files of other programs that motet does not read: named for what they are, with the program that turns them into one it does.
+//! Files of other programs that motet does not read: reports what they are, and a program that converts them.
 
 use std::path::Path;
 
 use crate::base::{Error, Result};
 
-/// What such a file is, and how it becomes one that can be read; `FILE` stands for its name.
+/// A foreign file type and how to convert it; `FILE` in the remedy stands for the name of the file.
 struct Foreign {
     name: &'static str,
     endings: &'static [&'static str],
@@ -80,7 +80,7 @@ const FOREIGN: &[Foreign] = &[
     },
 ];
 
-/// The error for a file of another program, known by its ending; `None` where it is not.
+/// The error for a file of another program, recognized by its extension; `None` for other extensions.
 pub(super) fn by_ending(path: &Path) -> Option<Error> {
     let name = path.file_name()?.to_string_lossy().to_lowercase();
     FOREIGN
@@ -96,7 +96,7 @@ fn unread(what: &str, remedy: &str, path: &Path) -> Error {
         .remedy(remedy.replace("FILE", &file))
 }
 
-/// Refuses content that is another program's, whatever the ending says; `endings` are those of the format that it should be in.
+/// Rejects content of another program, whatever the extension; `endings` are those of the expected format.
 pub(super) fn refuse(path: &Path, bytes: &[u8], endings: &[&str]) -> Result<()> {
     let is = |ending: &str| endings.contains(&ending);
     let start = bytes.trim_ascii_start();

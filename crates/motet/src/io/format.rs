@@ -1,4 +1,4 @@
-//! What a file format is: a reader and a writer, what they are given, and what they give back.
+//! File formats: a reader and a writer, their inputs and their results.
 
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -6,24 +6,24 @@ use std::sync::{Mutex, PoisonError};
 use crate::base::Result;
 use crate::mesh::Mesh;
 
-/// What a reader gets: the whole file, and its path for formats that lie in several files.
+/// Input of a reader: the whole file, and its path for formats that consist of several files.
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
-    /// Where the file lies.
+    /// Path of the file.
     pub path: &'a Path,
-    /// Its content.
+    /// Content of the file.
     pub bytes: &'a [u8],
-    /// Where a reader says what it passed over.
+    /// Receives what the reader skips.
     pub notes: &'a Notes,
 }
 
-/// What a reader passed over, each in a sentence for the user: sections that
-/// motet does not know, texture coordinates, a second label on one cell.
+/// Messages for the user about what a reader skipped: unknown sections, texture coordinates, a second label
+/// on one cell.
 #[derive(Debug, Default)]
 pub struct Notes(Mutex<Vec<String>>);
 
 impl Notes {
-    /// Adds a sentence, unless it has been said.
+    /// Adds a message, unless it is already present.
     pub fn add(&self, note: impl Into<String>) {
         let mut notes = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let note = note.into();
@@ -32,16 +32,16 @@ impl Notes {
         }
     }
 
-    /// All sentences, in the order in which they came.
+    /// All messages, in the order in which they were added.
     pub fn into_vec(self) -> Vec<String> {
         self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// How numbers are laid down, where a format leaves the choice.
+/// How numbers are stored, if the format offers a choice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Encoding {
-    /// Text; numbers with as many digits as bring them back bit for bit.
+    /// Text; numbers with enough digits to be recovered bit for bit.
     Ascii,
     /// Base64 inside the elements (XML formats); binary elsewhere.
     Base64,
@@ -50,12 +50,12 @@ pub enum Encoding {
     Binary,
 }
 
-/// How blocks are compressed, where a format can.
+/// How blocks are compressed, if the format supports it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
-    /// Not at all.
+    /// No compression.
     None,
-    /// zlib, which every reader knows.
+    /// zlib, which every reader supports.
     #[default]
     Zlib,
     /// lz4: faster, larger.
@@ -64,10 +64,10 @@ pub enum Compression {
     Lzma,
 }
 
-/// What the user may choose when writing.
+/// Options for writing.
 #[derive(Clone, Debug, Default)]
 pub struct WriteOptions {
-    /// How numbers are laid down.
+    /// How numbers are stored.
     pub encoding: Encoding,
     /// How blocks are compressed.
     pub compression: Compression,
@@ -75,38 +75,38 @@ pub struct WriteOptions {
     pub version: Option<String>,
 }
 
-/// What a writer made: one or more files, and what the format could not hold.
+/// Result of a writer: one or more files, and what the format could not hold.
 #[derive(Clone, Debug, Default)]
 pub struct Written {
-    /// File ending (with dot) and content; the ending replaces that of the path asked for.
-    /// An empty ending means the path itself. For a format that is a folder: the path within it.
+    /// Extension (with dot) and content of each file; the extension replaces that of the requested path, and
+    /// an empty one stands for the path itself. For a format that is a folder: the path within the folder.
     pub files: Vec<(String, Vec<u8>)>,
-    /// What the format cannot hold, each in a sentence for the user.
+    /// What the format cannot hold, one message for the user each.
     pub lost: Vec<String>,
 }
 
 impl Written {
-    /// A single file, nothing lost.
+    /// A single file without losses.
     pub fn one(bytes: Vec<u8>) -> Self {
         Self { files: vec![(String::new(), bytes)], lost: Vec::new() }
     }
 }
 
-/// A reader: the whole file in, a mesh out.
+/// A reader: takes the whole file, returns a mesh.
 pub type Read = fn(&Input<'_>) -> Result<Mesh>;
-/// A writer: a mesh in, the content of one or more files out.
+/// A writer: takes a mesh, returns the content of one or more files.
 pub type Write = fn(&Mesh, &WriteOptions) -> Result<Written>;
 
 /// A file format.
 #[derive(Clone, Copy)]
 pub struct Format {
-    /// Its name, for messages.
+    /// Name of the format, for messages.
     pub name: &'static str,
-    /// File endings, with the dot, in lower case; `/` for a format that is a folder.
+    /// File extensions, with the dot, in lower case; `/` for a format that is a folder.
     pub endings: &'static [&'static str],
-    /// How it is read.
+    /// The reader; `None` if the format cannot be read.
     pub read: Option<Read>,
-    /// How it is written.
+    /// The writer; `None` if the format cannot be written.
     pub write: Option<Write>,
 }
 

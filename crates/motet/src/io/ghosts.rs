@@ -1,4 +1,5 @@
-//! Cells that a part of a parallel run has of its neighbours, or that are hidden: they are no part of the mesh.
+//! Ghost cells, which a part of a parallel run copies from its neighbours, and hidden cells: not part of the
+//! mesh.
 
 use crate::base::{CellId, VertexId};
 use crate::io::format::Notes;
@@ -6,13 +7,13 @@ use crate::io::select::of_cells;
 use crate::io::weld::keep_points;
 use crate::mesh::Mesh;
 
-/// VTK's arrays: bits of `vtkGhostType` (since VTK 7), how many layers away in `vtkGhostLevels` (before).
+/// VTK's arrays: flags in `vtkGhostType` (since VTK 7), layer number in `vtkGhostLevels` (before).
 const TYPE: &str = "vtkGhostType";
 const LEVELS: &str = "vtkGhostLevels";
-/// `DUPLICATECELL` and `HIDDENCELL`.
+/// The flags `DUPLICATECELL` and `HIDDENCELL`.
 const LEFT_OUT: i64 = 1 | 32;
 
-/// Leaves out ghost cells and the points that only they use, and says so.
+/// Removes ghost cells and the points that only they use, and adds a note.
 pub(super) fn leave_out(mesh: &mut Mesh, notes: &Notes) {
     let Some(is_ghost) = ghosts(mesh) else { return };
     let n = is_ghost.iter().filter(|&&is| is).count();

@@ -1,4 +1,4 @@
-//! Files packed by gzip, unpacked as far as there is room.
+//! Decompresses gzip files, up to a memory limit.
 
 use std::io::Read as _;
 
@@ -7,15 +7,14 @@ use flate2::read::MultiGzDecoder;
 use crate::base::{Error, Result};
 use crate::io::room::Room;
 
-/// Whether these bytes begin as those of a packed file.
+/// Whether the bytes begin with the gzip signature.
 pub(super) fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// The content of a packed file.
+/// The decompressed content of a gzip file.
 ///
-/// # Errors
-/// When it is damaged, or unpacks to more than files of its size may.
+/// Fails if the file is damaged, or decompresses to more than files of its size may.
 pub(super) fn unpack(bytes: &[u8]) -> Result<Vec<u8>> {
     let room = Room::of(bytes.len() as u64);
     let most = room.left();

@@ -1,13 +1,13 @@
-//! Labels in formats that have no labels of their own: cell arrays `region` and
-//! `patch`, and their names as field data `region:NAME`, `patch:NAME`.
+//! Labels in formats without labels of their own: cell arrays `region` and `patch`, and the names of labels
+//! as field data `region:NAME`, `patch:NAME`.
 
 use crate::mesh::{Field, Labels, Mesh, Values};
 
 const REGION: &str = "region";
 const PATCH: &str = "patch";
 
-/// The cell arrays and field data that `mesh` needs beside its own, so that its
-/// labels are found again under names of ours.
+/// The cell arrays and field data to write in addition to those of `mesh`, so that its labels are recovered
+/// under motet's names.
 pub(super) fn label_fields(mesh: &Mesh) -> (Vec<Field>, Vec<Field>) {
     let array = |name: &str, labels: Option<Labels>| labels.map(|labels| Field::scalars(name, labels.ids));
     let mut cell_data = Vec::new();
@@ -21,7 +21,8 @@ pub(super) fn label_fields(mesh: &Mesh) -> (Vec<Field>, Vec<Field>) {
     (cell_data, field_data.collect())
 }
 
-/// Moves the names of labels from the field data to where the mesh keeps them. Other programs may write the label with more or fewer bytes.
+/// Moves the names of labels from the field data to `label_names`. Labels may have any integer type, as other
+/// programs may write them with more or fewer bytes.
 pub(super) fn take_label_names(mesh: &mut Mesh) {
     let names = &mut mesh.label_names;
     mesh.field_data.retain(|field| {

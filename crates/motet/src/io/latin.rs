@@ -1,6 +1,6 @@
-//! Bytes that should be text.
+//! Text of unknown encoding.
 
-/// UTF-8 where it is; else each byte a character, as in Latin-1.
+/// Decodes UTF-8 if valid, otherwise Latin-1.
 pub(super) fn latin_or_utf8(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),

@@ -1,18 +1,17 @@
-//! DOLFIN XML (FEniCS), also packed with gzip. Read only.
+//! DOLFIN XML (FEniCS), also compressed with gzip. Read only.
 //!
-//! DOLFIN sorts the vertices of a cell by their numbers, so about half of the
-//! tetrahedra in such a file are negative and say nothing by it: here they are
-//! turned positive, by exchanging the last two vertices.
+//! DOLFIN sorts the vertices of a cell by their numbers, so about half of the tetrahedra in such a file have
+//! negative volume without meaning anything by it: they are made positive by exchanging the last two
+//! vertices.
 //!
-//! Marks of cells are the array `region`. Marks of facets, given as (cell, place in
-//! the cell), become triangles with the array `patch`, one for each facet marked,
-//! behind the cells; a facet's place is that of the vertex opposite to it among the
-//! *sorted* vertices. They look out of the cell that names them first. Here 0
-//! means no label, so where a file marks with 0, all labels are one higher, and the
-//! marks of the file are their names.
+//! Marks of cells become the array `region`. Marks of facets, given as (cell, local index in the cell),
+//! become triangles with the array `patch`, one for each marked facet, appended after the cells; the local
+//! index of a facet is that of the vertex opposite to it among the *sorted* vertices. The triangles face out
+//! of the cell that names them first. Label 0 means no label here, so if a file uses the mark 0, all labels
+//! are one higher, and the marks of the file become their names.
 //!
-//! Marks of edges and vertices, and marks by DOLFIN's own numbers of facets, are
-//! passed over with a note. No crate reads this format.
+//! Marks of edges and vertices, and marks by DOLFIN's own facet numbers, are skipped with a note. No crate
+//! reads this format.
 
 mod xml;
 
@@ -89,8 +88,8 @@ fn build(document: Document, notes: &Notes) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// The kind of a cell type, and for each vertex in VTK's order its place in
-/// DOLFIN's, which goes along the axes of quadrilaterals and hexahedra.
+/// The kind of a cell type, and for each vertex in VTK's order its position in DOLFIN's order, which follows
+/// the axes of quadrilaterals and hexahedra.
 fn kind_of(cell_type: &str) -> (CellKind, &'static [usize]) {
     match cell_type {
         "point" => (CellKind::VERTEX, &[0]),
@@ -108,7 +107,7 @@ fn is_negative(points: &[Point], tet: &[u32]) -> bool {
     vector::dot(vector::cross(ab, ac), ad) < 0.0
 }
 
-/// Facets marked, each once.
+/// Marked facets, each once.
 #[derive(Default)]
 struct Patches {
     triangles: Vec<([u32; 3], i32)>,
@@ -147,8 +146,8 @@ impl Collection {
         Self { dim: self.dim, name: self.name.clone(), by_cell: self.by_cell, marks: self.marks.clone() }
     }
 
-    /// Where marks are told apart by 0, raises all by one and gives the names that
-    /// keep the file's numbers.
+    /// If the marks use 0 to distinguish entities, raises all marks by one and returns names with the numbers
+    /// of the file.
     fn free_zero(&mut self, even_alone: bool) -> std::collections::BTreeMap<i32, String> {
         let marks: std::collections::BTreeSet<i64> = self.marks.iter().map(|m| m[2]).collect();
         if !marks.contains(&0) || !(even_alone && self.dim == 2 || marks.len() > 1) {

@@ -1,4 +1,4 @@
-//! What a DOLFIN XML file says, before it is made into a mesh.
+//! The content of a DOLFIN XML file before conversion to a mesh.
 
 use std::str::FromStr;
 
@@ -9,10 +9,10 @@ use crate::base::{Error, Point, Result};
 use crate::io::Notes;
 use crate::io::text::{parse_float, quoted};
 
-/// The shortest that an element of a list can be: `<value i="0"/>`, say.
+/// Minimum length of a list element in bytes, such as `<value i="0"/>`.
 const BYTES_AN_ELEMENT: usize = 12;
 
-/// Kinds of cells: their name in the file, and how many vertices they have.
+/// Cell types: the name in the file and the number of vertices.
 const CELL_TYPES: &[(&str, usize)] = &[
     ("point", 1),
     ("interval", 2),
@@ -22,12 +22,12 @@ const CELL_TYPES: &[(&str, usize)] = &[
     ("hexahedron", 8),
 ];
 
-/// A mesh and its marks as the file has them.
+/// A mesh and its marks as stored in the file.
 #[derive(Default)]
 pub(super) struct Document {
     pub(super) cell_type: String,
     pub(super) points: Vec<Point>,
-    /// Vertices of all cells, end to end.
+    /// Vertices of all cells, concatenated.
     pub(super) vertices: Vec<u32>,
     pub(super) n_vertices: usize,
     pub(super) collections: Vec<Collection>,
@@ -38,13 +38,13 @@ pub(super) struct Document {
 pub(super) struct Collection {
     pub(super) dim: usize,
     pub(super) name: String,
-    /// Whether entities are named by cell and place in it, not by their own number.
+    /// Whether entities are given by a cell and a local index, rather than by their own number.
     pub(super) by_cell: bool,
-    /// Cell (or entity), place in the cell, mark.
+    /// Cell or entity, local index in the cell, mark.
     pub(super) marks: Vec<[i64; 3]>,
 }
 
-/// What the elements of the list that is open are put into.
+/// The list that is open, which receives its elements.
 #[derive(Clone, Copy, PartialEq)]
 enum List {
     None,
@@ -59,14 +59,14 @@ struct Parser<'a> {
     notes: &'a Notes,
     document: Document,
     list: List,
-    /// How many cells have been given, in rising order.
+    /// Number of cells read so far, which come in ascending order.
     n_cells: usize,
     data_name: String,
     seen_mesh: bool,
     seen_function: bool,
 }
 
-/// Reads the text of a DOLFIN XML file.
+/// Parses a DOLFIN XML file.
 pub(super) fn parse(bytes: &[u8], notes: &Notes) -> Result<Document> {
     let mut parser = Parser {
         bytes,
@@ -243,7 +243,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// A mark. DOLFIN writes the largest number where none was given; that is 0 here.
+    /// The value of a mark. DOLFIN writes the largest number for unset marks; they become 0.
     fn mark_value(&self, e: &BytesStart<'_>) -> Result<i64> {
         let text = self.needed(e, "value")?;
         if matches!(&*text, "18446744073709551615" | "4294967295") {
@@ -254,7 +254,7 @@ impl Parser<'_> {
             "false" => Some(0),
             _ => None,
         };
-        // Real-valued marks that are whole count as such.
+        // Real-valued marks that are integers are accepted.
         let real = || parse_float(text.as_bytes()).filter(|x| *x == f64::from(*x as i32)).map(|x| x as i64);
         truth.or_else(|| text.parse().ok()).or_else(real).ok_or_else(|| {
             self.error(format!("mark: expected a whole number, found {}", quoted(text.as_bytes())))
@@ -278,7 +278,7 @@ impl Parser<'_> {
         Ok(self.document)
     }
 
-    /// The number of elements announced, held against the bytes that are there.
+    /// The declared number of elements, checked against the remaining bytes of the file.
     fn size(&self, e: &BytesStart<'_>, what: &str) -> Result<usize> {
         let n = self.number::<u64>(e, "size")?;
         let room = (self.bytes.len() - self.at) / BYTES_AN_ELEMENT;

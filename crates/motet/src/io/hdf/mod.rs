@@ -1,9 +1,9 @@
-//! HDF5, the container of VTKHDF and CGNS: groups, arrays and attributes in, and out.
+//! HDF5, the container of VTKHDF and CGNS: reads and writes groups, arrays and attributes.
 //!
-//! All that the crate `hdf5-pure` does is called from here, and nowhere else, so that another could take its place. It reads
-//! what the C library writes (both kinds of groups, every chunk index, zlib, shuffle) and needs no C. What is added: an array
-//! that is larger than the file can hold is refused before it is allocated, and a panic of the library becomes an error.
-//! Links to other places, soft ones and those to other files, are passed over by the library: what stands behind them is not there.
+//! All calls to the crate `hdf5-pure` are made here, so that it can be replaced. It reads what the C library
+//! writes (both kinds of groups, every chunk index, zlib, shuffle) and needs no C. Added here: an array
+//! larger than the file can hold is rejected before allocation, and a panic of the library becomes an error.
+//! The library skips soft and external links: their targets are not visible.
 
 mod read;
 mod write;

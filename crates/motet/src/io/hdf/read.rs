@@ -1,4 +1,4 @@
-//! Groups, attributes and arrays of a file that is there.
+//! Reads groups, attributes and arrays of a file.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -12,12 +12,12 @@ use crate::base::{Error, Result};
 use crate::io::room::Room;
 use crate::mesh::Values;
 
-/// Whether these are the bytes of an HDF5 file.
+/// Whether the bytes begin with the HDF5 signature.
 pub(in crate::io) fn is_hdf5(bytes: &[u8]) -> bool {
     is_hdf5_bytes(bytes)
 }
 
-/// The root of a file that is in memory.
+/// Opens a file in memory and returns its root group.
 pub(in crate::io) fn open(bytes: &[u8]) -> Result<Group> {
     if !is_hdf5(bytes) {
         return Err(Error::input("is no HDF5 file: its signature is missing").remedy("get the file again"));
@@ -27,7 +27,7 @@ pub(in crate::io) fn open(bytes: &[u8]) -> Result<Group> {
     Group::new(guarded("/", || Ok(file.root()))?, String::new(), room)
 }
 
-/// The root of a file that stays where it is: what is asked for is read, and no more.
+/// Opens a file on disk and returns its root group; only what is requested is read.
 pub(in crate::io) fn open_in_place(path: &Path) -> Result<Group> {
     let told = |e: std::io::Error| Error::io(path, e);
     let size = std::fs::metadata(path).map_err(told)?.len();
@@ -35,7 +35,7 @@ pub(in crate::io) fn open_in_place(path: &Path) -> Result<Group> {
     Group::new(guarded("/", || Ok(file.root()))?, String::new(), Rc::new(Room::of(size)))
 }
 
-/// Calls the library: its errors get the place, its panics become errors.
+/// Calls the library: adds the place to its errors, and turns its panics into errors.
 fn guarded<T>(place: &str, call: impl FnOnce() -> Result<T, hdf5_pure::Error>) -> Result<T> {
     match catch_unwind(AssertUnwindSafe(call)) {
         Ok(Ok(value)) => Ok(value),
@@ -44,7 +44,7 @@ fn guarded<T>(place: &str, call: impl FnOnce() -> Result<T, hdf5_pure::Error>) -
     }
 }
 
-/// A group: a folder within the file.
+/// A group, which is a folder within the file.
 pub(in crate::io) struct Group {
     inner: hdf5_pure::Group,
     path: String,
@@ -60,28 +60,28 @@ impl Group {
         let attributes = guarded(place, || inner.attrs())?;
         let mut groups = guarded(place, || inner.groups())?;
         let mut arrays = guarded(place, || inner.datasets())?;
-        // The library lists them as they lie in the file, which has no meaning.
+        // The library lists them in storage order, which carries no meaning.
         groups.sort_unstable();
         arrays.sort_unstable();
         Ok(Self { inner, path, attributes, groups, arrays, room })
     }
 
-    /// Where it stands in the file.
+    /// The path of the group in the file.
     pub(in crate::io) fn place(&self) -> &str {
         if self.path.is_empty() { "/" } else { &self.path }
     }
 
-    /// The names of the arrays in it, sorted.
+    /// The names of its arrays, sorted.
     pub(in crate::io) fn arrays(&self) -> &[String] {
         &self.arrays
     }
 
-    /// The names of the groups in it, sorted.
+    /// The names of its subgroups, sorted.
     pub(in crate::io) fn groups(&self) -> &[String] {
         &self.groups
     }
 
-    /// The group of this name, if there is one.
+    /// The subgroup with this name, if there is one.
     pub(in crate::io) fn group(&self, name: &str) -> Result<Option<Self>> {
         if self.groups.binary_search_by(|g| g.as_str().cmp(name)).is_err() {
             return Ok(None);
@@ -91,7 +91,7 @@ impl Group {
         Self::new(inner, path, self.room.clone()).map(Some)
     }
 
-    /// The array of this name, if there is one.
+    /// The array with this name, if there is one.
     pub(in crate::io) fn array(&self, name: &str) -> Result<Option<Array>> {
         if self.arrays.binary_search_by(|a| a.as_str().cmp(name)).is_err() {
             return Ok(None);
@@ -101,7 +101,7 @@ impl Group {
         Array::new(inner, path, &self.room).map(Some)
     }
 
-    /// The array of this name, which must be there.
+    /// The array with this name; an error if it is missing.
     pub(in crate::io) fn needed_array(&self, name: &str) -> Result<Array> {
         self.array(name)?.ok_or_else(|| {
             Error::input(format!("the array {name} is missing"))
@@ -110,18 +110,18 @@ impl Group {
         })
     }
 
-    /// An attribute that is a text, without what pads it.
+    /// A text attribute, without padding.
     pub(in crate::io) fn text(&self, name: &str) -> Option<&str> {
         self.attributes.get(name)?.as_str().map(|text| text.trim_end_matches(['\0', ' ']))
     }
 
-    /// An attribute that is one whole number, or several.
+    /// An attribute with one or several integers.
     pub(in crate::io) fn ints(&self, name: &str) -> Option<Vec<i64>> {
         self.attributes.get(name)?.to_i64s()
     }
 }
 
-/// An array: its shape and type, and values when they are asked for.
+/// An array: its shape and type; values are read on request.
 pub(in crate::io) struct Array {
     inner: Dataset,
     path: String,
@@ -135,29 +135,29 @@ impl Array {
         let kind = guarded(&path, || inner.dtype())?;
         let size = guarded(&path, || inner.element_size())?;
         let chunk = guarded(&path, || inner.chunk_shape())?.unwrap_or_default();
-        // Texts of variable length lie elsewhere; each is a `String`.
+        // Variable-length strings are stored elsewhere; in memory each is a `String`.
         let size =
             if matches!(kind, DType::VariableLengthString | DType::String) { size.max(40) } else { size };
-        // No values, but rows without end, are no less wrong.
+        // An array with no values but an enormous number of rows is rejected too.
         let bytes = |shape: &[u64]| shape.iter().fold(size, |n, &d| n.saturating_mul(d.max(1)));
-        // Values that were never written take no room in a file, and much of it in memory.
+        // Values that were never written take no space in the file, but may take much memory.
         room.take_once(&path, bytes(&shape).max(bytes(&chunk))).map_err(|e| e.at(path.as_str()))?;
         let fits = shape.iter().map(|&d| usize::try_from(d).ok()).collect::<Option<Vec<_>>>();
         let shape = fits.ok_or_else(|| Error::input("an array that is too large").at(path.as_str()))?;
         Ok(Self { inner, path, shape, kind })
     }
 
-    /// Where it stands in the file.
+    /// The path of the array in the file.
     pub(in crate::io) fn place(&self) -> &str {
         &self.path
     }
 
-    /// How many rows there are: its first dimension.
+    /// Number of rows: its first dimension.
     pub(in crate::io) fn rows(&self) -> usize {
         self.shape.first().copied().unwrap_or(1)
     }
 
-    /// How many values a row has: its other dimensions.
+    /// Number of values per row: the product of its other dimensions.
     pub(in crate::io) fn components(&self) -> usize {
         self.shape.iter().skip(1).fold(1, |n, &d| n.saturating_mul(d))
     }
@@ -167,7 +167,7 @@ impl Array {
         self.values(0..self.rows())
     }
 
-    /// The values of some rows, in the type that the file has them in.
+    /// The values of a range of rows, in the type of the file.
     pub(in crate::io) fn values(&self, rows: Range<usize>) -> Result<Values> {
         if rows.start > rows.end || rows.end > self.rows() {
             let (start, end, n) = (rows.start, rows.end, self.rows());
@@ -181,7 +181,7 @@ impl Array {
         }
     }
 
-    /// Whole numbers of some rows, of whatever type.
+    /// The values of a range of rows as integers, whatever their integer type.
     pub(in crate::io) fn ints(&self, rows: Range<usize>) -> Result<Vec<i64>> {
         let values = self.values(rows)?;
         values.to_i64().ok_or_else(|| self.error("whole numbers are expected"))
@@ -220,7 +220,7 @@ macro_rules! reading {
                 }
             }
 
-            /// Whether its values are numbers or texts, and not records or the like.
+            /// Whether the values are numbers or text, rather than records or other types.
             pub(in crate::io) fn is_known(&self) -> bool {
                 self.none().is_ok()
             }

@@ -1,40 +1,40 @@
-//! A tree of groups and arrays, and the bytes of a file with them.
+//! Builds a tree of groups and arrays, and the bytes of a file with it.
 
 use hdf5_pure::{AttrValue, DatasetBuilder, FileBuilder, FinishedGroup, GroupBuilder, LibVer, MaxExtent};
 
 use crate::base::{Error, Result};
 use crate::mesh::Values;
 
-/// An attribute's value.
+/// The value of an attribute.
 #[derive(Clone, Debug)]
 pub(in crate::io) enum Attribute {
-    /// A text as long as it is.
+    /// A text without padding.
     Text(String),
-    /// A text in a field of so many bytes, the rest zeros.
+    /// A text in a field of the given number of bytes, padded with zeros.
     Padded(String, u32),
-    /// Numbers of 64 bits.
+    /// 64-bit integers.
     Ints(Vec<i64>),
-    /// Numbers of 32 bits.
+    /// 32-bit integers.
     ShortInts(Vec<i32>),
 }
 
-/// How an array lies in the file.
+/// Storage of an array in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::io) enum Packing {
-    /// In one piece, as it is.
+    /// Contiguous and uncompressed.
     Plain,
-    /// In chunks, so that rows can be added.
+    /// In chunks, so that rows can be appended.
     Growing,
-    /// In chunks, shuffled and packed by zlib; rows can be added.
+    /// In chunks, shuffled and compressed with zlib; rows can be appended.
     Zlib,
 }
 
-/// About so many bytes make a chunk: few enough for a reader that wants some rows, enough for zlib.
+/// Approximate size of a chunk: small enough for reading a few rows, large enough for zlib.
 const CHUNK_BYTES: usize = 1 << 18;
-/// Of 0 to 9; higher levels take several times as long for some hundredths of the size.
+/// Compression level from 0 to 9; higher levels take several times as long and save a few percent.
 const ZLIB_LEVEL: u32 = 4;
 
-/// A group to be written.
+/// A group for writing.
 #[derive(Debug, Default)]
 pub(in crate::io) struct Node {
     name: String,
@@ -44,7 +44,7 @@ pub(in crate::io) struct Node {
 }
 
 impl Node {
-    /// An empty group of this name; that of the root has no meaning.
+    /// An empty group with this name; the name of the root is ignored.
     pub(in crate::io) fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), ..Self::default() }
     }
@@ -54,7 +54,7 @@ impl Node {
         self.attributes.push((name.to_owned(), value));
     }
 
-    /// Adds an array of this shape.
+    /// Adds an array with this shape.
     pub(in crate::io) fn array(&mut self, name: &str, values: Values, shape: &[usize], packing: Packing) {
         self.arrays.push((name.to_owned(), values, shape.to_vec(), packing));
     }
@@ -64,12 +64,13 @@ impl Node {
         self.groups.push(group);
     }
 
-    /// The file whose root this is.
+    /// The bytes of a file with this group as its root.
     pub(in crate::io) fn into_file(self) -> Result<Vec<u8>> {
         self.into(FileBuilder::new())
     }
 
-    /// The same in the form of HDF5 1.8, for readers that refuse what is newer. It has arrays in one piece alone.
+    /// The bytes of a file in the format of HDF5 1.8, for readers that reject newer ones; all arrays must be
+    /// contiguous.
     pub(in crate::io) fn into_file_of_1_8(self) -> Result<Vec<u8>> {
         let mut file = FileBuilder::new();
         file.with_libver_bounds(LibVer::Earliest, LibVer::V18);

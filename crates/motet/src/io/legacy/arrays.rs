@@ -1,4 +1,4 @@
-//! Arrays of a legacy VTK file: their types and names, and what may stand behind them.
+//! Arrays of a legacy VTK file: types, names and metadata.
 
 use crate::base::{Error, Result};
 use crate::io::latin::latin_or_utf8;
@@ -6,7 +6,7 @@ use crate::io::legacy::source::{Source, short};
 use crate::io::scalar::Scalar;
 use crate::mesh::Values;
 
-/// A type of values, by the word of the file.
+/// A type of values, as named in the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Type {
     Number(Scalar),
@@ -26,7 +26,7 @@ impl Type {
             "unsigned_short" | "vtktypeuint16" => Self::Number(Scalar::U16),
             "int" | "vtktypeint32" => Self::Number(Scalar::I32),
             "unsigned_int" | "vtktypeuint32" => Self::Number(Scalar::U32),
-            // Of 64 bits but on Windows, whose VTK writes the names without doubt instead.
+            // 64 bits except on Windows, where VTK writes the unambiguous names instead.
             "long" | "vtktypeint64" | "__int64" => Self::Number(Scalar::I64),
             "unsigned_long" | "vtktypeuint64" | "unsigned___int64" => Self::Number(Scalar::U64),
             "float" | "vtktypefloat32" => Self::Number(Scalar::F32),
@@ -44,7 +44,7 @@ impl Type {
     }
 }
 
-/// The next `n` values.
+/// Reads the next `n` values.
 pub(super) fn values(source: &mut Source<'_>, kind: Type, n: usize) -> Result<Values> {
     match kind {
         Type::Number(kind) => source.numbers(kind, n),
@@ -80,8 +80,8 @@ fn texts(source: &mut Source<'_>, n: usize) -> Result<Values> {
     Ok(Values::Text(texts))
 }
 
-/// The length of a text in a binary file: the two highest bits of the first byte
-/// say how many bytes it has (3: one, 2: two, 1: four, 0: eight).
+/// Reads the length of a text in a binary file: the two highest bits of the first byte give the number of
+/// bytes of the length (3: one, 2: two, 1: four, 0: eight).
 fn text_length(source: &mut Source<'_>) -> Result<usize> {
     let first = source.take(1)?[0];
     let more = match first >> 6 {
@@ -94,7 +94,7 @@ fn text_length(source: &mut Source<'_>) -> Result<usize> {
     Ok(rest.iter().fold(usize::from(first & 63), |n, &b| n << 8 | usize::from(b)))
 }
 
-/// The length of a text as a binary file has it.
+/// Encodes the length of a text for a binary file.
 pub(super) fn encode_length(n: usize) -> Vec<u8> {
     match n {
         0..64 => vec![3 << 6 | n as u8],
@@ -104,7 +104,7 @@ pub(super) fn encode_length(n: usize) -> Vec<u8> {
     }
 }
 
-/// A name or a text: `%20` is a blank, and so on.
+/// Decodes a name or text, in which `%20` is a blank and so on.
 pub(super) fn decode(text: &[u8]) -> String {
     let digit = |b: Option<&u8>| b.and_then(|&b| char::from(b).to_digit(16));
     let mut bytes = Vec::with_capacity(text.len());
@@ -124,14 +124,14 @@ pub(super) fn decode(text: &[u8]) -> String {
     latin_or_utf8(&bytes)
 }
 
-/// The inverse of [`decode`], in the alphabet that VTK uses.
+/// Encodes a text for [`decode`], escaping the same characters as VTK.
 pub(super) fn encode(text: &str) -> String {
     let plain = |b: u8| (33..=126).contains(&b) && b != b'"' && b != b'%';
     text.bytes().map(|b| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect()
 }
 
-/// Skips a `METADATA` block behind an array of `components`: it ends with a
-/// blank line, but names of components may be blank too. Tells whether there were names.
+/// Skips a `METADATA` block after an array of `components`; the block ends with a blank line, but names of
+/// components may be blank too. Returns whether there were component names.
 pub(super) fn skip_metadata(source: &mut Source<'_>, components: usize) -> bool {
     let mut named = false;
     while source.peek().eq_ignore_ascii_case(b"METADATA") {
@@ -140,7 +140,7 @@ pub(super) fn skip_metadata(source: &mut Source<'_>, components: usize) -> bool 
         while let Some(line) = source.line().filter(|line| !line.trim_ascii().is_empty()) {
             if line.trim_ascii().eq_ignore_ascii_case(b"COMPONENT_NAMES") {
                 named = true;
-                // Stops at the end of the file, whatever number it gives.
+                // Stops at the end of the file, whatever the declared number.
                 let _ = (0..components).try_for_each(|_| source.line().map(|_| ()));
             }
         }

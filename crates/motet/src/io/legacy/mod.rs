@@ -1,14 +1,14 @@
-//! VTK's older files (`.vtk`), as text or big-endian binary.
+//! Legacy VTK files (`.vtk`), as text or big-endian binary.
 //!
-//! Unstructured grids and polygonal data of file versions 2.0 to 5.1 are read, with
-//! cells in the layout before 5.0 (`n id id ...`, cell after cell) and since
-//! (`OFFSETS`, `CONNECTIVITY`). Written is an unstructured grid of version 5.1, or of
-//! 4.2 when asked for. `vtkio` 0.7.0-rc2 fails on 5.1 files; hence a reader of our own.
+//! Unstructured grids and polygonal data of file versions 2.0 to 5.1 are read, with cells in the layout
+//! before 5.0 (`n id id ...`, cell after cell) and since (`OFFSETS`, `CONNECTIVITY`). An unstructured grid of
+//! version 5.1 is written, or of 4.2 on request. `vtkio` 0.7.0-rc2 fails on 5.1 files; hence a reader of our
+//! own.
 //!
 //! | file | idea |
 //! |---|---|
 //! | `source` | words, lines and numbers of the file, with the place for messages |
-//! | `arrays` | arrays of any type, their names, what may stand behind them |
+//! | `arrays` | arrays of any type, their names and metadata |
 //! | `read` | sections to a mesh |
 //! | `write` | a mesh to sections |
 
@@ -19,6 +19,6 @@ mod write;
 
 use crate::io::format::Format;
 
-/// VTK's older files.
+/// Legacy VTK files.
 pub(super) const VTK: Format =
     Format { name: "VTK legacy", endings: &[".vtk"], read: Some(read::read), write: Some(write::write) };
