@@ -1,4 +1,5 @@
-//! One writer of an output at a time: a lock beside it, which the system takes back when its process ends, however it ends.
+//! Locks that admit one writer of an output at a time. The system releases a lock when its process ends,
+//! however it ends.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Read as _, Write as _};
@@ -7,22 +8,22 @@ use std::path::{Path, PathBuf};
 use crate::base::{Error, Result};
 use crate::io::replace::{DRAFT, folder_of};
 
-/// The holder removes its file as it ends, so one that was just opened may be no more.
+/// Attempts to take a lock: its holder removes the lock file on release, so a file just opened may be gone.
 const TRIES: usize = 16;
 
-/// A lock on an output, as long as it lives.
+/// A lock on an output, held until it is dropped.
 #[derive(Debug)]
 pub struct OutputLock {
     path: PathBuf,
-    /// Locked; closing it gives the lock back. `None` on a file system that has no locks.
+    /// The locked file; closing it releases the lock. `None` on a file system without locks.
     file: Option<File>,
 }
 
 impl OutputLock {
-    /// Takes the lock of an output; on a file system that has no locks, one that does not hold: see [`Self::is_held`].
+    /// Takes the lock of an output. On a file system without locks the result does not hold, see
+    /// [`Self::is_held`].
     ///
-    /// # Errors
-    /// When another process has it, or the file beside the output cannot be made.
+    /// # Errors If another process holds the lock, or the lock file beside the output cannot be created.
     pub fn take(output: &Path) -> Result<Self> {
         let name = output.file_name().unwrap_or_default().to_string_lossy();
         let path = folder_of(output).join(format!("{DRAFT}{name}.lock"));
@@ -51,7 +52,7 @@ impl OutputLock {
         .in_file(path))
     }
 
-    /// Whether it keeps other processes away: not on a file system that has no locks.
+    /// Whether the lock excludes other processes; false on a file system without locks.
     pub fn is_held(&self) -> bool {
         self.file.is_some()
     }
@@ -59,7 +60,7 @@ impl OutputLock {
 
 impl Drop for OutputLock {
     fn drop(&mut self) {
-        // Where a file can be removed while it is open. Elsewhere it stays, unlocked.
+        // Unix allows the removal of an open file; elsewhere the file remains, unlocked.
         if cfg!(unix) {
             let _ = std::fs::remove_file(&self.path);
         }
@@ -105,7 +106,7 @@ mod tests {
         assert!(OutputLock::take(&folder.path().join("other.pvd")).is_ok());
         drop(held);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-        // What a process that was killed has left is no lock.
+        // A lock file left by a killed process does not lock.
         std::fs::write(folder.path().join(".motet-run.pvd.lock"), "4000000000\n").unwrap();
         assert!(OutputLock::take(&output).unwrap().is_held());
     }

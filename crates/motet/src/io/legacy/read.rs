@@ -1,4 +1,4 @@
-//! The sections of a legacy VTK file, put together to a mesh.
+//! Assembles the sections of a legacy VTK file into a mesh.
 
 use crate::base::{Csr, Error, Result, VertexId};
 use crate::io::format::{Input, Notes};
@@ -25,7 +25,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// Whether the file holds an unstructured grid; else it holds polygonal data.
+/// Reads the header; returns whether the file holds an unstructured grid, rather than polygonal data.
 fn read_header(source: &mut Source<'_>) -> Result<bool> {
     let first = source.line().unwrap_or_default();
     if !first.to_ascii_lowercase().starts_with(b"# vtk datafile version") {
@@ -62,7 +62,7 @@ fn read_header(source: &mut Source<'_>) -> Result<bool> {
     }
 }
 
-/// Which part of the mesh the arrays belong to that come next.
+/// What the next arrays belong to.
 #[derive(Clone, Copy)]
 enum Owner {
     Mesh,
@@ -74,7 +74,7 @@ struct Reader<'a> {
     source: Source<'a>,
     notes: &'a Notes,
     mesh: Mesh,
-    /// Cells by section of polygonal data; in a grid all in the first.
+    /// Cells by section of polygonal data; those of a grid are all in the first list.
     lists: [Csr<VertexId>; 4],
     kinds: Option<Vec<CellKind>>,
 }
@@ -130,7 +130,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Lists of ids, in either layout.
+    /// Reads lists of ids, in either layout.
     fn read_lists(&mut self) -> Result<Csr<VertexId>> {
         let n = self.source.count("the number of cells")?;
         let size = self.source.count("the size of the list of cells")?;
@@ -266,7 +266,7 @@ impl Reader<'_> {
         self.read_values(name, components, n, kind)
     }
 
-    /// Colours: bytes in binary files, numbers from 0 to 1 in text.
+    /// Reads colours: bytes in binary files, numbers from 0 to 1 in text.
     fn read_colours(&mut self, name: String, n: usize) -> Result<Field> {
         let components = self.source.count("the number of colours")?;
         if self.source.binary {
@@ -311,7 +311,7 @@ impl Reader<'_> {
     }
 }
 
-/// Lists from the layout before 5.0: `n id id ...`, list after list.
+/// Splits lists in the layout before 5.0: `n id id ...`, list after list.
 fn split_counted(mut numbers: &[u32], n_lists: usize) -> Option<Csr<VertexId>> {
     let mut lists = Csr::default();
     for _ in 0..n_lists {
@@ -323,7 +323,7 @@ fn split_counted(mut numbers: &[u32], n_lists: usize) -> Option<Csr<VertexId>> {
     numbers.is_empty().then_some(lists)
 }
 
-/// In these files a polyhedron's list of vertices is the stream of its faces.
+/// The cells of an unstructured grid; the vertex list of a polyhedron is its face stream in these files.
 fn grid_cells(kinds: Vec<CellKind>, lists: Csr<VertexId>, notes: &Notes) -> Result<Cells> {
     let (mut offsets, mut vertices) = (lists.offsets().to_vec(), lists.items().to_vec());
     trim(&kinds, &mut offsets, &mut vertices, notes);
@@ -357,7 +357,7 @@ fn grid_cells(kinds: Vec<CellKind>, lists: Csr<VertexId>, notes: &Notes) -> Resu
     Ok(cells)
 }
 
-/// `None` when there are more ids than a mesh holds.
+/// The cells of polygonal data; `None` if there are more ids than a mesh can hold.
 fn polygonal_cells(lists: &[Csr<VertexId>; 4]) -> Option<Cells> {
     let n_ids: usize = lists.iter().map(|l| l.items().len()).sum();
     if n_ids > VertexId::MAX_COUNT {

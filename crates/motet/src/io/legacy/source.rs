@@ -1,4 +1,4 @@
-//! Words, lines and numbers of a legacy VTK file, with the place for messages.
+//! Reads words, lines and numbers of a legacy VTK file, with the position for messages.
 
 use crate::base::{Error, Result};
 use crate::io::scalar::{ByteOrder, Scalar};
@@ -6,11 +6,11 @@ use crate::mesh::Values;
 
 pub(super) const WRITE_AGAIN: &str = "the file is cut off or damaged: write it again";
 
-/// The file, and how far it has been read.
+/// The file and the current position in it.
 pub(super) struct Source<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Whether numbers are binary, big end first.
+    /// Whether numbers are binary, in big-endian order.
     pub(super) binary: bool,
 }
 
@@ -23,7 +23,8 @@ impl<'a> Source<'a> {
         &self.bytes[self.at..]
     }
 
-    /// Where we are, for messages. Lines mean nothing once there are binary numbers.
+    /// The current position, for messages: a byte offset in binary files, where lines mean nothing, otherwise
+    /// a line.
     pub(super) fn place(&self) -> String {
         if self.binary {
             return format!("byte {}", self.at);
@@ -31,7 +32,7 @@ impl<'a> Source<'a> {
         format!("line {}", 1 + self.bytes[..self.at].iter().filter(|&&b| b == b'\n').count())
     }
 
-    /// An error at this place.
+    /// An error at the current position.
     pub(super) fn fault(&self, what: impl Into<String>) -> Error {
         Error::input(what).at(self.place()).remedy(WRITE_AGAIN)
     }
@@ -49,7 +50,7 @@ impl<'a> Source<'a> {
         (n > 0).then_some(word)
     }
 
-    /// The next word without moving on.
+    /// The next word, without consuming it.
     pub(super) fn peek(&mut self) -> &'a [u8] {
         let at = self.at;
         let word = self.word().unwrap_or_default();
@@ -57,7 +58,7 @@ impl<'a> Source<'a> {
         word
     }
 
-    /// The next word as text; `what` says what it should be.
+    /// The next word as text; `what` names the expected item in messages.
     pub(super) fn text(&mut self, what: &str) -> Result<&'a str> {
         let word = self.word().ok_or_else(|| self.fault(format!("the file ends where {what} should be")))?;
         std::str::from_utf8(word).map_err(|_| self.fault(format!("{what} is not text")))
@@ -69,7 +70,7 @@ impl<'a> Source<'a> {
         text.parse().map_err(|_| self.fault(format!("{what} should be a count, not `{}`", short(text))))
     }
 
-    /// A count, if the rest of this line has one.
+    /// The rest of this line as a count, consumed only if it is one.
     pub(super) fn count_on_line(&mut self) -> Option<usize> {
         let end = self.rest().iter().position(|&b| b == b'\n').unwrap_or(self.rest().len());
         let line = std::str::from_utf8(&self.rest()[..end]).ok()?;
@@ -78,7 +79,7 @@ impl<'a> Source<'a> {
         Some(count)
     }
 
-    /// The rest of this line, its end left out; `None` at the end of the file.
+    /// The rest of this line without its end; `None` at the end of the file.
     pub(super) fn line(&mut self) -> Option<&'a [u8]> {
         if self.rest().is_empty() {
             return None;
@@ -90,7 +91,7 @@ impl<'a> Source<'a> {
         Some(line.strip_suffix(b"\r").unwrap_or(line))
     }
 
-    /// Skips what is left of a line of words, so that data can follow.
+    /// Skips the rest of a header line, so that data can follow.
     fn end_header(&mut self) {
         let blank = self.rest().iter().take_while(|b| matches!(b, b' ' | b'\t' | b'\r')).count();
         if self.rest().get(blank) == Some(&b'\n') {
@@ -98,7 +99,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The next `n` bytes of binary data, which start on a new line if words came before.
+    /// Takes the next `n` bytes of binary data; after words, call [`Self::start_data`] first.
     pub(super) fn take(&mut self, n: usize) -> Result<&'a [u8]> {
         let Some(bytes) = self.rest().get(..n) else {
             return Err(self.fault(format!("{n} bytes should follow, {} are left", self.rest().len())));
@@ -107,7 +108,7 @@ impl<'a> Source<'a> {
         Ok(bytes)
     }
 
-    /// The next `n` numbers, on the lines behind this one.
+    /// The next `n` numbers, which start on the next line.
     pub(super) fn numbers(&mut self, kind: Scalar, n: usize) -> Result<Values> {
         if !self.binary {
             return self.numbers_as_text(kind, n);
@@ -118,7 +119,7 @@ impl<'a> Source<'a> {
     }
 
     fn numbers_as_text(&mut self, kind: Scalar, n: usize) -> Result<Values> {
-        // A number takes a digit and a blank.
+        // A number takes at least a digit and a blank.
         if n > self.rest().len().div_ceil(2) {
             return Err(
                 self.fault(format!("{n} numbers should follow, {} bytes are left", self.rest().len()))
@@ -134,13 +135,13 @@ impl<'a> Source<'a> {
         Err(self.fault(format!("{n} numbers should stand here, {} do", values.len())))
     }
 
-    /// Starts binary data on a new line, for those who then call [`Self::take`].
+    /// Moves to the start of binary data on a new line, before calls to [`Self::take`].
     pub(super) fn start_data(&mut self) {
         self.end_header();
     }
 }
 
-/// The words of a source; one that is not text is given as a question mark, which is no number.
+/// The words of a source; a word that is not UTF-8 becomes a question mark, which does not parse as a number.
 struct Words<'s, 'a>(&'s mut Source<'a>);
 
 impl<'a> Iterator for Words<'_, 'a> {

@@ -1,4 +1,4 @@
-//! A mesh as an unstructured grid in a legacy VTK file.
+//! Writes a mesh as an unstructured grid to a legacy VTK file.
 
 use std::io::Write as _;
 
@@ -45,7 +45,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
 struct Writer {
     out: Vec<u8>,
     ascii: bool,
-    /// Whether cells are laid down as since 5.0.
+    /// Whether cells are written in the layout used since 5.0.
     offsets: bool,
     lost: Vec<String>,
 }
@@ -126,7 +126,7 @@ impl Writer {
     }
 }
 
-/// The list of each cell: its vertices, or the stream of faces of a polyhedron.
+/// The list of each cell: its vertices, or the face stream of a polyhedron.
 fn lists(mesh: &Mesh) -> Vec<Vec<u32>> {
     let mut polyhedra = mesh.cells.polyhedron_faces().iter();
     let list = |(_, kind, vertices): (_, CellKind, &[crate::base::VertexId])| match kind {
@@ -136,8 +136,8 @@ fn lists(mesh: &Mesh) -> Vec<Vec<u32>> {
     mesh.cells.iter().map(list).collect()
 }
 
-/// VTK's word for a type. meshio knows `long` in files before 5.0 only, and
-/// `vtktypeint64` in those since only; VTK knows both.
+/// VTK's name of a type. meshio accepts `long` only in files before 5.0, and `vtktypeint64` only in later
+/// ones; VTK accepts both.
 fn type_name(values: &Values, offsets: bool) -> &'static str {
     match values {
         Values::I64(_) if !offsets => "long",

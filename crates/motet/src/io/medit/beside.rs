@@ -1,4 +1,4 @@
-//! A mesh and the solution that lies beside it, whichever of the two is named.
+//! Reads a mesh and the solution beside it, given either of the two files.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use crate::io::format::{Input, Notes};
 use crate::io::reading::read_beside;
 use crate::mesh::Mesh;
 
-/// Reads a mesh, with the solution of the same name where there is one.
+/// Reads a mesh, with the solution of the same name if there is one beside it.
 pub(super) fn read_mesh(input: &Input<'_>) -> Result<Mesh> {
     let mut mesh = Content::read(input.bytes, input.notes)?.into_mesh()?;
     let Some((path, bytes)) = find_beside(input.path, "sol")? else { return Ok(mesh) };
@@ -26,7 +26,7 @@ pub(super) fn read_mesh(input: &Input<'_>) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// Reads a solution, and the mesh that it belongs to.
+/// Reads a solution and the mesh beside it.
 pub(super) fn read_solution(input: &Input<'_>) -> Result<Mesh> {
     let solutions = read_solutions(input.path, input.bytes, input.notes)?;
     if solutions.solutions.is_empty() {
@@ -47,7 +47,8 @@ fn read_solutions(path: &Path, bytes: &[u8], notes: &Notes) -> Result<Content> {
     Content::read(bytes, notes).map_err(|e| e.in_file(path))
 }
 
-/// The file of the same name with ending `ending`, or with a `b` behind; first the one of the same form.
+/// The file of the same name with the extension `ending`, or with a `b` appended; the same form (text or
+/// binary) as `path` is tried first.
 fn find_beside(path: &Path, ending: &str) -> Result<Option<(PathBuf, Vec<u8>)>> {
     let is_binary = path.extension().is_some_and(|e| e.to_string_lossy().to_lowercase().ends_with('b'));
     let mut endings = [ending.to_owned(), format!("{ending}b")];

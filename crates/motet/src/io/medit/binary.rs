@@ -1,26 +1,27 @@
-//! The binary form: sections by number, each with the position where the next one begins.
+//! The binary form: numbered sections, each with the position where the next one begins.
 //!
-//! The number 1 in 32 bits tells the order of bytes; then comes the version. Real numbers have 32 bits in
-//! version 1, else 64; positions 64 from version 3 on, counts, vertices and references in version 4. Numbers of
-//! sections, the dimension, and the list of types of a solution have 32 bits in every version.
+//! The number 1 in 32 bits determines the byte order; the version follows. Real numbers have 32 bits in
+//! version 1, 64 in later versions; positions have 64 bits since version 3; counts, vertices and references
+//! since version 4. Section numbers, the dimension, and the list of types of a solution have 32 bits in every
+//! version.
 
 use std::borrow::Cow;
 
 use super::{END, name_of};
 use crate::base::{Error, Result};
 
-/// A place in a binary file.
+/// A position in a binary file.
 pub(super) struct Binary<'a> {
     bytes: &'a [u8],
     at: usize,
     swapped: bool,
     version: i64,
-    /// Where the next section begins: the end of the file where the section says that it is the last.
+    /// Where the next section begins: the end of the file if the section declares itself the last.
     next: usize,
 }
 
 impl<'a> Binary<'a> {
-    /// The binary form, behind its version; `None` where the bytes are none.
+    /// Reads the head of a binary file, up to its version; `None` if the bytes are not in binary form.
     pub(super) fn new(bytes: &'a [u8]) -> Result<Option<Self>> {
         let swapped = match bytes.first_chunk::<4>().map(|&first| i32::from_ne_bytes(first)) {
             Some(1) => false,
@@ -52,7 +53,7 @@ impl<'a> Binary<'a> {
             self.long("where the next section begins")?
         };
         self.next = match usize::try_from(next) {
-            // What says so is the last.
+            // The section declares itself the last.
             Ok(0) => self.bytes.len(),
             Ok(next) if (self.at..=self.bytes.len()).contains(&next) => next,
             _ => {
@@ -69,7 +70,7 @@ impl<'a> Binary<'a> {
     }
 
     pub(super) fn end_section(&mut self) -> Result<()> {
-        // What says that it is the last may still have `End` behind.
+        // `End` may still follow a section that declares itself the last.
         if self.next < self.bytes.len() && self.at != self.next {
             return Err(self
                 .error(format!("the next section should begin here, but the file says at byte {}", self.next))
@@ -120,7 +121,7 @@ impl<'a> Binary<'a> {
         Ok((if self.swapped { bits.swap_bytes() } else { bits }) as i64)
     }
 
-    /// The bytes that are left of this section.
+    /// Number of bytes left in this section.
     pub(super) fn left(&self) -> usize {
         self.next - self.at
     }

@@ -1,4 +1,4 @@
-//! What the sections of a file say, in the order in which they come.
+//! The contents of the sections of a file, in the order of the file.
 
 use super::solution::Solution;
 use super::source::{Source, is_end};
@@ -8,7 +8,7 @@ use crate::io::format::Notes;
 use crate::io::text::quoted;
 use crate::mesh::{CellKind, Cells};
 
-/// Everything that a file holds.
+/// Everything in a file.
 #[derive(Default)]
 pub(super) struct Content {
     pub(super) dim: usize,
@@ -16,12 +16,12 @@ pub(super) struct Content {
     pub(super) point_refs: Vec<i32>,
     pub(super) cells: Cells,
     pub(super) cell_refs: Vec<i32>,
-    /// Marked places: where among the sections, array, place.
+    /// Marked entities: index in [`SECTIONS`], array, index in the section.
     pub(super) marks: Vec<(usize, &'static str, usize)>,
     pub(super) solutions: Vec<Solution>,
 }
 
-/// Vertices of a cell at most.
+/// Maximum number of vertices of a cell.
 const MOST: usize = 10;
 
 impl Content {
@@ -136,7 +136,8 @@ impl Content {
     }
 }
 
-/// Ids count from 1. Where the vertices come later, `Mesh::validate` has the last word.
+/// Converts an id, which counts from 1. If the vertices come later in the file, `Mesh::validate` checks the
+/// upper bound.
 fn vertex_id(id: i64, n_points: Option<usize>, source: &Source<'_>) -> Result<VertexId> {
     let n = n_points.unwrap_or(VertexId::MAX_COUNT);
     match usize::try_from(id).ok().and_then(|id| id.checked_sub(1)).filter(|&place| place < n) {

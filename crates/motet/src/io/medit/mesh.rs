@@ -1,4 +1,4 @@
-//! From what a file says to a mesh.
+//! Converts the content of a file to a mesh.
 
 use super::content::Content;
 use super::solution::{attach, places_of};
@@ -7,7 +7,7 @@ use crate::base::{Error, Result};
 use crate::mesh::{Field, Mesh, Values};
 
 impl Content {
-    /// The mesh, with the solutions that stand in the same file.
+    /// The mesh, with the solutions in the same file.
     pub(super) fn into_mesh(self) -> Result<Mesh> {
         let Some(points) = self.points else {
             return Err(Error::input("there is no section Vertices")
@@ -26,7 +26,7 @@ impl Content {
     }
 }
 
-/// Marked places as arrays of 0 and 1.
+/// Stores marked entities as arrays of 0 and 1.
 fn set_marks(mesh: &mut Mesh, marks: &[(usize, &'static str, usize)]) -> Result<()> {
     for (of, section) in SECTIONS.iter().enumerate().filter(|(of, _)| marks.iter().any(|m| m.0 == *of)) {
         let places = places_of(mesh, of);

@@ -1,32 +1,30 @@
-//! Medit's meshes and solutions (the Gamma Mesh Format), of versions 1 to 4: `.mesh` and `.sol` in text,
-//! `.meshb` and `.solb` in binary, in either order of bytes.
+//! Medit's meshes and solutions (the Gamma Mesh Format), versions 1 to 4: `.mesh` and `.sol` as text,
+//! `.meshb` and `.solb` as binary, in either byte order.
 //!
-//! References are the arrays `medit:ref` on points and on cells (meshio's name);
-//! those of tetrahedra are regions, those of triangles patches. Cells marked as
-//! required and edges marked as ridges are cell arrays `medit:required` and
-//! `medit:ridge`, vertices `medit:required` and `medit:corner`: 1 where marked.
-//! Normals, tangents and other sections are passed over with a note.
+//! References are the arrays `medit:ref` on points and on cells (meshio's name); those of tetrahedra are
+//! regions, those of triangles patches. Cells marked as required and edges marked as ridges are cell arrays
+//! `medit:required` and `medit:ridge`, marked vertices point arrays `medit:required` and `medit:corner`: 1
+//! where marked. Normals, tangents and other sections are skipped with a note.
 //!
-//! A solution belongs to the mesh of the same name beside it, as MMG has it, and has no names for its arrays:
+//! As in MMG, a solution belongs to the mesh of the same name beside it, and its arrays have no names:
 //!
-//! * `a.mesh` and `a.meshb` are read with `a.sol` or `a.solb` where one lies beside: its arrays are `medit:sol`,
-//!   `medit:sol_2` and so on, on points and on cells, NaN on cells of kinds without values. What is no solution,
-//!   or has another number of values than the mesh has points or cells, is passed over with a note; a solution
-//!   that is damaged is an error.
-//! * `a.sol` and `a.solb` are read with `a.mesh` or `a.meshb` beside; all must fit.
-//! * Writing `a.mesh` writes `a.sol` where there are arrays `medit:sol...`, and no others: MMG would take them for
-//!   the sizes that are asked for. Writing `a.sol` writes all arrays of real numbers, and `a.mesh` beside.
-//!   `.meshb` and `.solb` go together in the same way.
+//! * `a.mesh` and `a.meshb` are read together with `a.sol` or `a.solb` if there is one: its arrays are
+//!   `medit:sol`, `medit:sol_2` and so on, on points and on cells, NaN on cells of kinds without values. A
+//!   file that is not a solution, or whose number of values differs from that of the points or cells of the
+//!   mesh, is skipped with a note; a damaged   solution is an error.
+//! * `a.sol` and `a.solb` are read together with `a.mesh` or `a.meshb`; all values must fit.
+//! * Writing `a.mesh` also writes `a.sol` if there are arrays `medit:sol...`, with these arrays only: MMG
+//!   would take others for the requested sizes. Writing `a.sol` writes all real-valued arrays, and `a.mesh`
+//!   beside it. The same holds for `.meshb` and `.solb`.
 //!
-//! Symmetric tensors stand as `xx xy yy xz yz zz` in a file (a triangle row by row), in arrays in VTK's order
-//! `xx yy zz xy yz xz`. Solutions on cells of second order have no section.
+//! Symmetric tensors are stored as `xx xy yy xz yz zz` in a file (a triangle row by row), and in arrays in
+//! VTK's order `xx yy zz xy yz xz`. There are no sections for solutions on second-order cells.
 //!
-//! Layout: C. Dobrzynski, MMG3D: User Guide (INRIA RT-422), appendix A; the numbers of sections that are younger
-//! as meshio has them. Binary files are written in version 2, in version 3 where they may pass 2 GiB, and in
-//! version 4 where vertices do not count in 32 bits.
+//! Layout: C. Dobrzynski, MMG3D: User Guide (INRIA RT-422), appendix A; the numbers of newer sections are
+//! those of meshio. Binary files are written in version 2, in version 3 where they may exceed 2 GiB, and in
+//! version 4 where vertex numbers exceed 32 bits.
 //!
-//! No crate in the registry reads this format (the one there is, is under the
-//! LGPL and not released).
+//! No crate in the registry reads this format (the only one that exists is under the LGPL and unreleased).
 
 mod beside;
 mod binary;
@@ -82,22 +80,22 @@ const fn keyword(name: &'static str, number: i32) -> Keyword {
 const DIMENSION: Keyword = keyword("Dimension", 3);
 const END: Keyword = keyword("End", 54);
 
-/// What sections are about: points, or cells of a kind.
+/// The sections for one kind of entity: points, or cells of a kind.
 #[derive(Debug)]
 struct Section {
     list: Keyword,
     /// The kind of cell and its number of vertices; `None` for points.
     cells: Option<(CellKind, usize)>,
-    /// Where values on these stand in solutions.
+    /// The section of solutions with values on these entities.
     values: Option<Keyword>,
-    /// Sections that list places in this one, each with the array that marks them.
+    /// Sections that mark entities of this one, each with the array that stores the marks.
     marks: &'static [(Keyword, &'static str)],
 }
 
 const REF: &str = "medit:ref";
 const SOLUTION: &str = "medit:sol";
 
-/// Points, then cells in the order in which they are written. Nodes on edges stand in VTK's order.
+/// Points, then cells in the order in which they are written. Nodes on edges are in VTK's order.
 const SECTIONS: &[Section] = &[
     Section {
         list: keyword("Vertices", 4),
@@ -127,7 +125,7 @@ const SECTIONS: &[Section] = &[
         list: keyword("Tetrahedra", 8),
         cells: Some((CellKind::TETRA, 4)),
         values: Some(keyword("SolAtTetrahedra", 66)),
-        // Younger than the numbered list: text files alone have it.
+        // Newer than the numbered list of sections: only in text files.
         marks: &[(keyword("RequiredTetrahedra", TEXT_ONLY), REQUIRED)],
     },
     Section {
@@ -168,10 +166,10 @@ const SECTIONS: &[Section] = &[
     },
 ];
 
-/// In place of a number, where a section has none in binary files.
+/// Replaces the number of sections that binary files do not have.
 const TEXT_ONLY: i32 = -1;
 
-/// Other spellings that programs write.
+/// Alternative spellings used by other programs.
 const SPELLINGS: &[(&str, &str)] = &[
     ("Pentahedra", "Prisms"),
     ("Hexaedra", "Hexahedra"),
@@ -179,7 +177,7 @@ const SPELLINGS: &[(&str, &str)] = &[
     ("SolAtPentahedra", "SolAtPrisms"),
 ];
 
-/// Sections that are passed over, so that notes can name them in binary files too.
+/// Skipped sections, listed so that notes can name them in binary files too.
 const PASSED_OVER: &[Keyword] = &[
     keyword("TangentAtEdgeVertices", 19),
     keyword("NormalAtVertices", 20),
@@ -198,7 +196,7 @@ const PASSED_OVER: &[Keyword] = &[
     keyword("PyramidsP2", 87),
 ];
 
-/// The name of a section by its number.
+/// The name of a section with this number.
 fn name_of(number: i32) -> Option<&'static str> {
     let ours = SECTIONS.iter().flat_map(|s| {
         std::iter::once(&s.list).chain(&s.values).chain(s.marks.iter().map(|(keyword, _)| keyword))

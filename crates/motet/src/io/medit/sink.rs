@@ -1,20 +1,20 @@
-//! Sections of a Medit file, written as text or as bytes.
+//! Writes the sections of a Medit file, as text or binary.
 
 use std::io::Write as _;
 
 use super::{DIMENSION, END, Keyword, TEXT_ONLY};
 use crate::io::text::push_float;
 
-/// A file that is being written.
+/// A file being written.
 pub(super) struct Sink {
     out: Vec<u8>,
-    /// The version of a binary file; none for text.
+    /// The version of a binary file; `None` for text.
     version: Option<i32>,
-    /// Where the position of the next section has to be put.
+    /// Where to store the position of the next section.
     next_at: usize,
 }
 
-/// What `int` and `float` can be in version 2, and what makes it 3 or 4.
+/// The lowest version from 2 on that can hold this many points and bytes.
 pub(super) fn version_for(n_points: usize, n_bytes: u64) -> i32 {
     match () {
         () if i32::try_from(n_points).is_err() => 4,
@@ -24,7 +24,7 @@ pub(super) fn version_for(n_points: usize, n_bytes: u64) -> i32 {
 }
 
 impl Sink {
-    /// A file with its head; text where there is no version.
+    /// Starts a file with its head; as text if there is no version.
     pub(super) fn new(version: Option<i32>) -> Self {
         let mut sink = Self { out: Vec::new(), version, next_at: 0 };
         match version {
@@ -40,12 +40,12 @@ impl Sink {
         sink
     }
 
-    /// Whether this form of file has such a section.
+    /// Whether this form of the file has the section.
     pub(super) fn has(&self, keyword: &Keyword) -> bool {
         self.version.is_none() || keyword.number != TEXT_ONLY
     }
 
-    /// Begins a section of `n` rows.
+    /// Begins a section with `n` rows.
     pub(super) fn section(&mut self, keyword: &Keyword, n: usize) {
         if self.version.is_some() {
             self.begin(keyword);
@@ -70,7 +70,7 @@ impl Sink {
         }
     }
 
-    /// A count, a vertex or a reference.
+    /// Writes a count, a vertex or a reference.
     pub(super) fn int(&mut self, x: i64) {
         match self.version {
             Some(4) => self.out.extend(x.to_le_bytes()),
@@ -78,7 +78,7 @@ impl Sink {
         }
     }
 
-    /// The number of arrays, or a type of one.
+    /// Writes the number of arrays, or the type of an array.
     pub(super) fn small(&mut self, x: i32) {
         if self.version.is_some() {
             self.out.extend(x.to_le_bytes());
@@ -97,7 +97,7 @@ impl Sink {
         }
     }
 
-    /// The file, ended.
+    /// Ends the file and returns its bytes.
     pub(super) fn finish(mut self) -> Vec<u8> {
         match self.version {
             None => self.out.extend(b"\nEnd\n"),
@@ -106,7 +106,8 @@ impl Sink {
         self.out
     }
 
-    /// The number of a section, and room for where the next begins: 0, as of the last.
+    /// Writes the number of a section, and a placeholder for the position of the next: 0, as for the last
+    /// section.
     fn begin(&mut self, keyword: &Keyword) {
         self.small(keyword.number);
         self.next_at = self.out.len();

@@ -1,40 +1,41 @@
-//! Solutions: arrays without names on points or on cells of one kind.
+//! Solutions: unnamed arrays on points or on cells of one kind.
 
 use super::source::Source;
 use super::{SECTIONS, SOLUTION};
 use crate::base::{Error, Result};
 use crate::mesh::{Field, Mesh, Values};
 
-/// The arrays that one section has.
+/// The arrays of one section.
 pub(super) struct Solution {
-    /// What has the values: where among the sections.
+    /// Index in [`SECTIONS`] of the entities with the values.
     pub(super) of: usize,
     pub(super) n_rows: usize,
     fields: Vec<Rows>,
 }
 
-/// An array: how many numbers a row has here, and all of them.
+/// An array: the number of components of a row in the mesh, and all values.
 struct Rows {
     components: usize,
     values: Vec<f64>,
 }
 
-/// Cells without values get NaN, so a file of few values could ask for any amount of memory.
+/// Maximum number of arrays: cells without values get NaN, so a file with few values could request any amount
+/// of memory.
 const MOST_ARRAYS: usize = 1000;
 
-/// A type of array, by its number in files.
+/// An array type, with its number in files.
 #[derive(Clone, Copy)]
 pub(super) struct Kind {
     pub(super) number: i32,
-    /// How many numbers a row has here.
+    /// Number of components of a row in the mesh.
     pub(super) components: usize,
-    /// For each number of a row in a file of 3 dimensions, its place here.
+    /// For each number of a row in a 3D file, its component in the mesh.
     pub(super) places: &'static [usize],
-    /// The same in 2 dimensions; what is not named is 0.
+    /// For each number of a row in a 2D file, its component in the mesh; components not listed are 0.
     flat_places: &'static [usize],
 }
 
-/// Scalars, vectors, symmetric tensors (VTK's order here), full tensors row by row.
+/// Scalars, vectors, symmetric tensors (stored in VTK's order), full tensors row by row.
 pub(super) const KINDS: &[Kind] = &[
     Kind { number: 1, components: 1, places: &[0], flat_places: &[0] },
     Kind { number: 2, components: 3, places: &[0, 1, 2], flat_places: &[0, 1] },
@@ -43,7 +44,7 @@ pub(super) const KINDS: &[Kind] = &[
 ];
 
 impl Solution {
-    /// Reads a section behind its name.
+    /// Reads a section after its name.
     pub(super) fn read(source: &mut Source<'_>, of: usize, dim: usize) -> Result<Self> {
         let n_rows = source.count("rows of a solution", 0, 1)?;
         let n_fields = source.small("the number of arrays")?;
@@ -85,10 +86,9 @@ impl Solution {
     }
 }
 
-/// Puts solutions into a mesh as arrays.
+/// Stores solutions in a mesh as arrays.
 ///
-/// # Errors
-/// When one has another number of rows than the mesh has points or cells.
+/// Fails if the number of rows of a solution differs from the number of points or cells.
 pub(super) fn attach(mesh: &mut Mesh, solutions: &[Solution]) -> Result<()> {
     let places: Vec<Vec<usize>> = (0..SECTIONS.len()).map(|of| places_of(mesh, of)).collect();
     for solution in solutions {
@@ -109,7 +109,8 @@ pub(super) fn attach(mesh: &mut Mesh, solutions: &[Solution]) -> Result<()> {
     let mut known: Vec<(usize, usize)> = Vec::new();
     for solution in solutions.iter().filter(|s| SECTIONS[s.of].cells.is_some() && s.n_rows > 0) {
         for (i, field) in solution.fields.iter().enumerate() {
-            // What stands in the same place of another section, and has as many numbers, is one array.
+            // Arrays at the same position in different sections, with equal numbers of components, are one
+            // array.
             let key = (i, field.components);
             let number = known.iter().position(|k| *k == key).unwrap_or_else(|| {
                 known.push(key);
@@ -127,7 +128,7 @@ impl Rows {
     }
 }
 
-/// Sets the rows of `places`, in a new array of NaN where there is none of the name.
+/// Sets the rows of `places`, in a new array filled with NaN if there is none with this name.
 fn put_on_cells(mesh: &mut Mesh, name: String, field: &Rows, places: &[usize]) {
     let n = field.components;
     if mesh.cell_field(&name).is_none() {
@@ -141,7 +142,7 @@ fn put_on_cells(mesh: &mut Mesh, name: String, field: &Rows, places: &[usize]) {
     }
 }
 
-/// Where the points or cells of a section stand in a mesh.
+/// The indices in a mesh of the points or cells of a section.
 pub(super) fn places_of(mesh: &Mesh, of: usize) -> Vec<usize> {
     match SECTIONS[of].cells {
         None => (0..mesh.points.len()).collect(),
@@ -149,7 +150,7 @@ pub(super) fn places_of(mesh: &Mesh, of: usize) -> Vec<usize> {
     }
 }
 
-/// The name of the array `i`, counted from 0.
+/// The name of solution array `i`, counted from 0.
 fn numbered(i: usize) -> String {
     if i == 0 { SOLUTION.to_owned() } else { format!("{SOLUTION}_{}", i + 1) }
 }

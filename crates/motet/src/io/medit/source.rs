@@ -1,4 +1,4 @@
-//! Numbers of a Medit file, whether they stand there as text or as bytes.
+//! Reads the numbers of a Medit file, whether text or binary.
 
 use std::borrow::Cow;
 
@@ -7,14 +7,14 @@ use super::{END, SPELLINGS};
 use crate::base::{Error, Result};
 use crate::io::text::Text;
 
-/// A place in a Medit file.
+/// A position in a Medit file.
 pub(super) enum Source<'a> {
     Text(Text<'a>),
     Binary(Binary<'a>),
 }
 
 impl<'a> Source<'a> {
-    /// A file, its head read: which of the two forms it has, its own first bytes tell.
+    /// Opens a file, detects its form from the first bytes, and reads its head.
     pub(super) fn new(bytes: &'a [u8]) -> Result<Self> {
         match Binary::new(bytes)? {
             Some(binary) => Ok(Self::Binary(binary)),
@@ -22,7 +22,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The name of the next section; `None` at the end of the file, where `End` may be missing.
+    /// The name of the next section; `None` at the end of the file, since `End` may be missing.
     pub(super) fn section(&mut self) -> Result<Option<Cow<'static, str>>> {
         let text = match self {
             Self::Binary(binary) => return binary.section(),
@@ -39,7 +39,7 @@ impl<'a> Source<'a> {
         Ok(Some(known.map_or(Cow::Owned(name.into_owned()), Cow::Borrowed)))
     }
 
-    /// Ends a section that was read.
+    /// Ends a section that has been read.
     pub(super) fn end_section(&mut self) -> Result<()> {
         match self {
             Self::Text(_) => Ok(()),
@@ -47,7 +47,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Passes over the section that has just begun.
+    /// Skips the section that has just begun.
     pub(super) fn skip_section(&mut self) {
         match self {
             Self::Binary(binary) => binary.skip_section(),
@@ -59,8 +59,8 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Reads how many things follow, of `n_ints` whole numbers and `n_floats` others each, held against
-    /// the bytes that are there.
+    /// Reads the number of records that follow, each of `n_ints` integers and `n_floats` real numbers, and
+    /// checks it against the remaining bytes.
     pub(super) fn count(&mut self, what: &str, n_ints: usize, n_floats: usize) -> Result<usize> {
         match self {
             Self::Text(text) => text.count(what, n_ints.saturating_add(n_floats)),
@@ -82,7 +82,7 @@ impl<'a> Source<'a> {
         i32::try_from(n).map_err(|_| self.error(format!("{what} {n} does not fit in 32 bits")))
     }
 
-    /// Reads a dimension, or how many arrays a solution has and of which types: 32 bits in every version.
+    /// Reads the dimension, or the number or a type of the arrays of a solution: 32 bits in every version.
     pub(super) fn small(&mut self, what: &str) -> Result<i64> {
         match self {
             Self::Text(text) => text.int(what),
@@ -98,16 +98,16 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// How many values what is left of this section can hold at most.
+    /// Upper bound on the number of values in the rest of this section.
     pub(super) fn room_for_floats(&self) -> usize {
         match self {
-            // A digit each, and what divides it from the next.
+            // A digit and a separator each.
             Self::Text(text) => text.rest().len().div_ceil(2),
             Self::Binary(binary) => binary.left() / binary.float_size(),
         }
     }
 
-    /// An error at this place.
+    /// An error at this position.
     pub(super) fn error(&self, what: impl Into<String>) -> Error {
         match self {
             Self::Text(text) => text.error(what),
@@ -116,17 +116,17 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Whether a section's name is that which ends a file.
+/// Whether this section name ends a file.
 pub(super) fn is_end(name: &str) -> bool {
     name == END.name
 }
 
-/// Whether bytes begin as Medit's files do, in either form.
+/// Whether the bytes begin like a Medit file, in either form.
 pub(super) fn is_medit(bytes: &[u8]) -> bool {
     matches!(Binary::new(bytes), Ok(Some(_))) || text(bytes).is_ok()
 }
 
-/// The text form, behind its version.
+/// Opens the text form and reads its version.
 fn text(bytes: &[u8]) -> Result<Text<'_>> {
     let mut text = Text::with_comments(bytes, b'#');
     match text.word() {
