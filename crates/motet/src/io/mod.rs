@@ -1,4 +1,5 @@
-//! Floor 3: files. `format` says what a format is, each has a file or folder of its own, and `registry` knows them all.
+//! Floor 3: files. `format` defines what a format is, each format has a file or folder of its own, and
+//! `registry` lists them all.
 
 mod abaqus;
 mod cell_labels;

@@ -11,7 +11,7 @@
 //! * `a.mesh` and `a.meshb` are read together with `a.sol` or `a.solb` if there is one: its arrays are
 //!   `medit:sol`, `medit:sol_2` and so on, on points and on cells, NaN on cells of kinds without values. A
 //!   file that is not a solution, or whose number of values differs from that of the points or cells of the
-//!   mesh, is skipped with a note; a damaged   solution is an error.
+//!   mesh, is skipped with a note; a damaged solution is an error.
 //! * `a.sol` and `a.solb` are read together with `a.mesh` or `a.meshb`; all values must fit.
 //! * Writing `a.mesh` also writes `a.sol` if there are arrays `medit:sol...`, with these arrays only: MMG
 //!   would take others for the requested sizes. Writing `a.sol` writes all real-valued arrays, and `a.mesh`

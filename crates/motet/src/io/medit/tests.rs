@@ -5,7 +5,7 @@ use crate::base::{Result, VertexId};
 use crate::io::format::{Input, Notes, WriteOptions, Written};
 use crate::mesh::{Cells, Field, Mesh, Values};
 
-/// A file of the older versions, put together number by number.
+/// A binary file of any version and byte order, assembled number by number.
 struct Bytes {
     out: Vec<u8>,
     version: i32,
@@ -45,7 +45,7 @@ impl Bytes {
         if self.version == 1 { self.put((x as f32).to_le_bytes()) } else { self.put(x.to_le_bytes()) }
     }
 
-    /// A section whose content `fill` writes, with the position behind it.
+    /// Adds a section whose content `fill` writes, with the position after it.
     fn section(&mut self, number: i32, n: i32, fill: impl FnOnce(&mut Self)) -> &mut Self {
         let mut inner = Self { out: Vec::new(), version: self.version, big: self.big };
         inner.int(n);
@@ -57,7 +57,7 @@ impl Bytes {
         self
     }
 
-    /// A tetrahedron with references, a section that nobody knows, and the end.
+    /// Completes the file with a tetrahedron with references, an unknown section, and the end.
     fn tet(mut self) -> Vec<u8> {
         self.section(4, 4, |s| {
             for (i, p) in CORNERS.iter().enumerate() {
@@ -112,7 +112,8 @@ fn every_version_is_read_in_either_order_of_bytes() {
 fn a_file_cut_off_anywhere_is_told() {
     for version in 1..=4 {
         let bytes = Bytes::new(version, false).tet();
-        // Between two sections only the missing end tells; what is cut off behind its number says nothing.
+        // Between two sections only the missing end reveals the cut; a file cut after the number of `End` is
+        // complete.
         for n in 0..bytes.len() - if version < 3 { 4 } else { 8 } {
             let (mesh, notes) = parse_meshb(&bytes[..n]);
             assert!(mesh.is_err() || notes.iter().any(|n| n.contains("no `End`")), "{version} at {n}");
@@ -123,7 +124,8 @@ fn a_file_cut_off_anywhere_is_told() {
 #[test]
 fn positions_and_counts_that_are_wrong_are_told() {
     let good = Bytes::new(2, false).tet();
-    // The position behind the dimension, and in the head of the vertices (whose section begins at byte 20).
+    // The position after the dimension, and those in the head of the vertices (whose section begins at byte
+    // 20).
     for (at, value, words) in [
         (12, 4, "the next begins at byte 4"),
         (12, 1_000_000, "the next begins at byte 1000000"),
@@ -287,7 +289,7 @@ fn a_solution_that_does_not_belong_is_passed_over_by_the_mesh_and_refused_by_nam
     put("TITLE = \"some other program's\"\n");
     let (_, notes) = read_from(folder.path(), "a.mesh");
     assert_eq!(notes, ["a.sol beside is passed over: it is no solution of Medit"]);
-    // Damaged: told, also where only the mesh was named.
+    // A damaged solution is reported even if only the mesh was named.
     for (text, words) in [
         ("SolAtVertices\n4\n1 5\n1 2 3 4\nEnd\n", "5 is no type of an array"),
         ("SolAtVertices\n4\n1 1\n1 2 3\nEnd\n", "found `End`"),

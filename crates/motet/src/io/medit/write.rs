@@ -1,4 +1,4 @@
-//! Writing meshes and solutions, both in either form.
+//! Writes meshes and solutions, as text or binary.
 
 use super::sink::{Sink, version_for};
 use super::solution::{KINDS, Kind, places_of};
@@ -9,7 +9,7 @@ use crate::io::format::Written;
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
-/// Writes a mesh, and the solution that came with it.
+/// Writes a mesh, and the arrays that were read from a solution.
 pub(super) fn mesh(mesh: &Mesh, binary: bool) -> Result<Written> {
     let (mesh, lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
     let mut parts = Parts::of(&mesh, binary, |f| is_solution(f) && f.name.starts_with(SOLUTION), lost);
@@ -26,7 +26,7 @@ pub(super) fn mesh(mesh: &Mesh, binary: bool) -> Result<Written> {
     Ok(Written { files, lost: parts.lost })
 }
 
-/// Writes a solution of all arrays that one can hold, and the mesh.
+/// Writes a solution with all arrays that it can hold, and the mesh.
 pub(super) fn solution(mesh: &Mesh, binary: bool) -> Result<Written> {
     let (mesh, lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
     let mut parts = Parts::of(&mesh, binary, is_solution, lost);
@@ -39,7 +39,7 @@ pub(super) fn solution(mesh: &Mesh, binary: bool) -> Result<Written> {
     Ok(Written { files, lost: parts.lost })
 }
 
-/// Where among the sections cells of a kind stand.
+/// The index in [`SECTIONS`] of cells of a kind.
 fn section_of(kind: CellKind) -> Option<usize> {
     SECTIONS.iter().position(|s| s.cells.is_some_and(|c| c.0 == kind))
 }
@@ -53,21 +53,21 @@ fn kind_of(field: &Field) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.components == field.components)
 }
 
-/// A mesh of cells that the format can hold, and what is said of the rest.
+/// A mesh whose cells all fit the format, and the losses.
 struct Parts<'m> {
     mesh: &'m Mesh,
     labels: Vec<i32>,
     version: Option<i32>,
-    /// Arrays of the solution.
+    /// Arrays of the solution on points.
     points: Vec<&'m Field>,
     cells: Vec<&'m Field>,
-    /// Arrays on points and on cells that are in no solution.
+    /// Arrays on points and on cells that are not part of the solution.
     other: [Vec<&'m Field>; 2],
     lost: Vec<String>,
 }
 
 impl<'m> Parts<'m> {
-    /// `in_solution` says which arrays go into the solution.
+    /// Sorts the arrays of a mesh; `in_solution` decides which go into the solution.
     fn of(mesh: &'m Mesh, binary: bool, in_solution: impl Fn(&Field) -> bool, lost: Vec<String>) -> Self {
         let has_values = mesh.cells.kinds().iter().any(|&kind| takes_values(kind));
         let (points, other_points) = mesh.point_data.iter().partition(|f| in_solution(f));
@@ -171,7 +171,7 @@ impl<'m> Parts<'m> {
         }
     }
 
-    /// The sections that mark places of another one.
+    /// Writes the sections that mark entities of another section.
     fn marks(&mut self, sink: &mut Sink, section: &Section, places: &[usize]) {
         let fields = if section.cells.is_none() { &self.mesh.point_data } else { &self.mesh.cell_data };
         for field in fields.iter().filter(|f| is_mark(f)) {
@@ -199,7 +199,7 @@ impl<'m> Parts<'m> {
             else {
                 continue;
             };
-            // Cells of a kind without any value, such as triangles beside tetrahedra that have some.
+            // Cells of a kind without any value, such as triangles beside tetrahedra with values.
             let says_nothing = |f: &&Field| {
                 places.iter().all(|&i| (0..f.components).all(|k| value(f, i * f.components + k).is_nan()))
             };
@@ -254,14 +254,14 @@ fn point_refs(mesh: &Mesh) -> Option<Vec<i32>> {
     refs.into_iter().map(|r| i32::try_from(r).ok()).collect()
 }
 
-/// Which of `places` a field marks, as places among them.
+/// The marked entries of `places`, as indices into `places`.
 fn marked(field: &Field, places: &[usize]) -> Vec<usize> {
     let values = field.values.to_i64().unwrap_or_default();
     let is_marked = |&(_, &i): &(usize, &usize)| values.get(i).is_some_and(|&v| v != 0);
     places.iter().enumerate().filter(is_marked).map(|(place, _)| place).collect()
 }
 
-/// What a binary file of either content takes at most, in version 2.
+/// Upper bound on the size in bytes of a binary file of either kind, in version 2.
 fn most_bytes(mesh: &Mesh) -> u64 {
     let (n_points, n_cells) = (mesh.points.len(), mesh.cells.len());
     let ids = mesh.cells.connectivity().items().len() + n_cells;

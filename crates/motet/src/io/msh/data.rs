@@ -1,4 +1,4 @@
-//! `$NodeData` and `$ElementData`: arrays, by the numbers of nodes or elements.
+//! `$NodeData` and `$ElementData`: arrays indexed by the numbers of nodes or elements.
 
 use super::source::{Form, Source};
 use crate::base::{Error, Result};
@@ -6,14 +6,14 @@ use crate::io::Notes;
 use crate::io::tags::Tags;
 use crate::mesh::{Field, Mesh, Values};
 
-/// What an array gives values to.
+/// What an array is defined on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     Node,
     Element,
 }
 
-/// An array as the file has it.
+/// An array as stored in the file.
 pub(super) struct Data {
     pub(super) place: Place,
     name: String,
@@ -24,7 +24,7 @@ pub(super) struct Data {
 }
 
 impl Data {
-    /// Reads the section behind its first line. The head is text also in binary files.
+    /// Reads the section after its first line. The head is text in binary files too.
     pub(super) fn read(source: &mut Source<'_>, place: Place) -> Result<Self> {
         let form = std::mem::replace(&mut source.form, Form::Ascii);
         let mut names = Vec::new();
@@ -68,7 +68,7 @@ impl Data {
         Ok(data)
     }
 
-    /// Puts the array into the mesh, each value in its place.
+    /// Adds the array to the mesh, with each value in its place; missing values are NaN.
     pub(super) fn put(
         self,
         mesh: &mut Mesh,
@@ -115,7 +115,8 @@ impl Data {
         Ok(())
     }
 
-    /// A few values on a large mesh may name more components than memory holds.
+    /// The size of the full array, bounded because a few values on a large mesh may declare more components
+    /// than memory holds.
     fn full_size(&self, n_rows: usize) -> Result<usize> {
         let limit = 16 * n_rows.max(self.values.len()).max(1);
         n_rows.checked_mul(self.components).filter(|&size| size <= limit).ok_or_else(|| {

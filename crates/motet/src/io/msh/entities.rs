@@ -1,4 +1,4 @@
-//! Geometrical entities of version 4: what they give to their elements.
+//! Geometrical entities of version 4, and the labels of their elements.
 
 use std::collections::HashMap;
 
@@ -9,11 +9,11 @@ use crate::io::Notes;
 /// Dimension and number of a geometrical entity.
 type Key = (i32, i32);
 
-/// What a geometrical entity gives to its elements.
+/// The labels that a geometrical entity gives to its elements.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Entity {
     pub(super) physical: i32,
-    /// The entity that this one is a part of; itself where it is none.
+    /// The entity that this one is a part of, or itself.
     pub(super) geometrical: i32,
     pub(super) partition: i32,
 }
@@ -23,7 +23,7 @@ pub(super) struct Entity {
 pub(super) struct Entities(HashMap<Key, Entity>);
 
 impl Entities {
-    /// What the entity of this dimension and number gives to its elements.
+    /// The labels of the entity with this dimension and number.
     pub(super) fn get(&self, dim: i32, tag: i32) -> Entity {
         let unnamed = Entity { geometrical: tag, ..Entity::default() };
         self.0.get(&(dim, tag)).copied().unwrap_or(unnamed)
@@ -69,14 +69,15 @@ impl Entities {
         Ok(())
     }
 
-    /// The box, the physical groups and the boundary of an entity.
+    /// Reads the bounding box, the physical groups and the boundary of an entity.
     fn body(&mut self, source: &mut Source<'_>, key: Key, mut entity: Entity, notes: &Notes) -> Result<()> {
         for _ in 0..if key.0 == 0 { 3 } else { 6 } {
             source.double("box of an entity")?;
         }
         let n_physical = source.count("physical groups of an entity", 1)?;
         for i in 0..n_physical {
-            // The sign tells whether the group turns the entity round, which its elements already are.
+            // The sign states whether the group reverses the entity; its elements are stored reversed
+            // already.
             let tag = source.int("number of a physical group")?.saturating_abs();
             entity.physical = if i == 0 { tag } else { entity.physical };
         }

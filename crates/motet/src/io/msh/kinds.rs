@@ -1,21 +1,20 @@
-//! Gmsh's types of elements and how their nodes stand in VTK's order.
+//! Gmsh's element types and the correspondence of their nodes with VTK's order.
 
 use crate::io::node_order::{Nodes, vtk_to_other};
 use crate::mesh::CellKind;
 
-/// A type of element.
+/// An element type.
 #[derive(Debug)]
 pub(super) struct ElementType {
-    /// Gmsh's number.
+    /// Gmsh's number of the type.
     pub(super) number: i32,
-    /// The kind of cell that it is.
+    /// The cell kind of the elements.
     pub(super) kind: CellKind,
-    /// For each node in VTK's order, its place in Gmsh's.
+    /// For each node in VTK's order, its position in Gmsh's order.
     pub(super) vtk_to_gmsh: Vec<usize>,
 }
 
-/// Nodes of second-order elements as the Gmsh reference manual draws them
-/// ("Node ordering").
+/// Nodes of second-order elements as drawn in the Gmsh reference manual ("Node ordering").
 const HEXAHEDRON: Nodes = &[
     &[0, 1],
     &[0, 3],
@@ -55,8 +54,8 @@ const PYRAMID: Nodes =
     &[&[0, 1], &[0, 3], &[0, 4], &[1, 2], &[1, 4], &[2, 3], &[2, 4], &[3, 4], &[0, 1, 2, 3]];
 const TETRAHEDRON: Nodes = &[&[0, 1], &[1, 2], &[2, 0], &[3, 0], &[2, 3], &[1, 3]];
 
-/// Every type that is read and written. A pyramid of 14 nodes has no kind of
-/// its own in VTK: it goes as an arbitrary-order one.
+/// Every type that is read and written. A pyramid of 14 nodes has no kind of its own in VTK: it becomes an
+/// arbitrary-order one.
 const TYPES: &[(i32, CellKind, usize, Nodes)] = &[
     (15, CellKind::VERTEX, 1, &[]),
     (1, CellKind::LINE, 2, &[]),
@@ -80,7 +79,7 @@ const TYPES: &[(i32, CellKind, usize, Nodes)] = &[
     (26, CellKind::CUBIC_LINE, 4, &[]),
 ];
 
-/// All types, with their orders worked out.
+/// All types, with their node orders.
 pub(super) fn element_types() -> Vec<ElementType> {
     let order =
         |&(number, kind, n, nodes)| ElementType { number, kind, vtk_to_gmsh: vtk_to_other(kind, n, nodes) };

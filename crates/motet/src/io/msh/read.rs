@@ -1,4 +1,4 @@
-//! Reading MSH files, both versions in both forms.
+//! Reads MSH files of both versions, as text or binary.
 
 use super::data::{Data, Place};
 use super::entities::{Entities, Entity};
@@ -12,7 +12,7 @@ use crate::io::tags::Tags;
 use crate::io::text::quoted;
 use crate::mesh::{Cells, Field, LabelNames, Mesh, Values};
 
-/// What has been read so far.
+/// Everything read so far.
 #[derive(Default)]
 struct Reader {
     version: Version,
@@ -23,7 +23,7 @@ struct Reader {
     entities: Entities,
     cells: Cells,
     element_tags: Vec<u64>,
-    /// The cell of each element, where some elements are one cell; else empty.
+    /// The cell of each element, if several elements form one cell; otherwise empty.
     places: Vec<u32>,
     labels: Vec<Entity>,
     label_names: LabelNames,
@@ -33,7 +33,7 @@ struct Reader {
 
 #[derive(Clone, Copy, Default, PartialEq)]
 enum Version {
-    /// No `$MeshFormat` yet.
+    /// `$MeshFormat` has not been read yet.
     #[default]
     Unknown,
     V2,
@@ -120,7 +120,7 @@ impl Reader {
         Ok(())
     }
 
-    /// `dimension number "name"`, a line each; text also in binary files.
+    /// Reads `dimension number "name"`, one per line; text in binary files too.
     fn physical_names(&mut self, source: &mut Source<'_>) -> Result<()> {
         let text = &mut source.text;
         for _ in 0..text.count("physical names", 3)? {
@@ -224,7 +224,7 @@ impl Reader {
                     None => source.int("number of an element")?,
                 };
                 let labels = tags2(source, n_tags, notes)?;
-                // Numbers of elements are only names here: a negative one names as well.
+                // Numbers of elements only serve as names here, so a negative one is valid.
                 self.element(source, element_type, i64::from(tag) as u64, labels)?;
             }
             if n_here == 0 {
@@ -235,7 +235,8 @@ impl Reader {
         Ok(())
     }
 
-    /// In version 2 an element of several physical groups stands there once for each: what is the same but for its group is one.
+    /// Merges elements that differ only in their physical group: version 2 repeats an element for each of its
+    /// groups.
     fn join_groups(&mut self, notes: &Notes) {
         let of = |cell: usize| (self.cells.kind(CellId::new(cell)), self.cells.vertices(CellId::new(cell)));
         let entity = |cell: usize| (self.labels[cell].geometrical, self.labels[cell].partition);
@@ -243,7 +244,7 @@ impl Reader {
         let same: Vec<usize> = (0..self.cells.len())
             .map(|cell| {
                 let first = *firsts.entry((of(cell), entity(cell))).or_insert(cell);
-                // The same group twice is a fault of the mesh, and stays one.
+                // An element repeated with the same group is an error of the mesh, and is kept.
                 if self.labels[first].physical == self.labels[cell].physical { cell } else { first }
             })
             .collect();
@@ -292,7 +293,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Reads the nodes of an element and keeps it.
+    /// Reads the nodes of an element and stores it.
     fn element(
         &mut self,
         source: &mut Source<'_>,
@@ -346,7 +347,7 @@ impl Reader {
         label("gmsh:geometrical", |e| e.geometrical);
         label("gmsh:partition", |e| e.partition);
         let of_elements = self.data.iter().any(|d| d.place == Place::Element);
-        // Numbers of elements may repeat, so long as no data are given by them.
+        // Numbers of elements may repeat as long as no data refer to them.
         let elements = if of_elements { Some(Tags::new(&self.element_tags, "element")?) } else { None };
         let elements = elements.map(|tags| (tags, self.places));
         for data in self.data {
@@ -358,8 +359,8 @@ impl Reader {
     }
 }
 
-/// The labels in the tags of a version 2 element: physical group, entity, number
-/// of partitions, partitions.
+/// Reads the labels from the tags of a version 2 element: physical group, entity, number of partitions,
+/// partitions.
 fn tags2(source: &mut Source<'_>, n_tags: usize, notes: &Notes) -> Result<Entity> {
     let mut labels = Entity::default();
     for i in 0..n_tags {
@@ -385,7 +386,7 @@ fn find_type<'t>(types: &'t [ElementType], number: i32, source: &Source<'_>) -> 
     })
 }
 
-/// What stands between quotes, or the whole line where there are none.
+/// The text between quotes, or the whole line if it is not quoted.
 fn unquoted(line: &[u8]) -> String {
     let line = String::from_utf8_lossy(line);
     let line = line.trim();

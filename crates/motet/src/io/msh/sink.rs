@@ -1,10 +1,10 @@
-//! Where the numbers of an MSH file go, as text or as bytes.
+//! Writes the numbers of an MSH file, as text or binary.
 
 use std::io::Write as _;
 
 use crate::io::text::push_floats;
 
-/// Where numbers go, as text or as bytes.
+/// The output, as text or binary.
 pub(super) struct Sink {
     pub(super) out: Vec<u8>,
     pub(super) binary: bool,
@@ -32,7 +32,7 @@ impl Sink {
         write!(self.out, "{n} ").expect("writing into memory does not fail");
     }
 
-    /// Ends a line of text; nothing in binary.
+    /// Ends a line of text; no effect in binary files.
     pub(super) fn end_line(&mut self) {
         if !self.binary {
             self.out.pop_if(|b| *b == b' ');
@@ -40,7 +40,7 @@ impl Sink {
         }
     }
 
-    /// A line that is text in binary files as well.
+    /// Writes a line that is text in binary files too.
     pub(super) fn line(&mut self, line: impl std::fmt::Display) {
         writeln!(self.out, "{line}").expect("writing into memory does not fail");
     }

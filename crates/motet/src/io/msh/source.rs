@@ -1,23 +1,23 @@
-//! Numbers of an MSH file, whether they stand there as text or as bytes of either order.
+//! Reads the numbers of an MSH file, as text or binary in either byte order.
 
 use crate::base::{Error, Result};
 use crate::io::text::{Text, find_all, quoted};
 
-/// How numbers are laid down.
+/// How numbers are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
     Ascii,
     Binary {
-        /// Whether the bytes stand in the other order than this machine's.
+        /// Whether the byte order differs from that of this machine.
         swapped: bool,
     },
 }
 
-/// A place in an MSH file.
+/// A position in an MSH file.
 pub(super) struct Source<'a> {
     pub(super) text: Text<'a>,
     pub(super) form: Form,
-    /// Bytes in a `size_t` of the machine that wrote the file.
+    /// Size in bytes of a `size_t` on the machine that wrote the file.
     pub(super) size_bytes: usize,
 }
 
@@ -26,7 +26,7 @@ impl<'a> Source<'a> {
         Self { text: Text::new(bytes), form: Form::Ascii, size_bytes: 8 }
     }
 
-    /// The name of the next section, behind its line; `None` at the end of the file.
+    /// Reads the name of the next section with its line; `None` at the end of the file.
     pub(super) fn section(&mut self) -> Result<Option<String>> {
         let Some(word) = self.text.word() else { return Ok(None) };
         let name = word.strip_prefix(b"$").filter(|name| !name.starts_with(b"End"));
@@ -39,7 +39,7 @@ impl<'a> Source<'a> {
         Ok(Some(name.to_owned()))
     }
 
-    /// Reads `$End...` of this section.
+    /// Reads `$End...` of a section.
     pub(super) fn end_section(&mut self, name: &str) -> Result<()> {
         let end = format!("$End{name}");
         match self.text.word() {
@@ -51,7 +51,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Passes over the section that has just begun.
+    /// Skips the section that has just begun.
     pub(super) fn skip_section(&mut self, name: &str) -> Result<()> {
         let end = format!("$End{name}");
         let Some(at) = find_all(self.text.rest(), end.as_bytes()) else {
@@ -105,21 +105,21 @@ impl<'a> Source<'a> {
         Ok([self.double("coordinate x")?, self.double("coordinate y")?, self.double("coordinate z")?])
     }
 
-    /// Reads how many things follow, as a `size_t`; see [`Self::checked`].
+    /// Reads a number of items as a `size_t`; see [`Self::checked`].
     pub(super) fn count(&mut self, what: &str, numbers_each: usize) -> Result<usize> {
         let n = self.size(&format!("the number of {what}"))?;
         self.checked(n, what, numbers_each)
     }
 
-    /// Reads how many things follow, as an `int`; see [`Self::checked`].
+    /// Reads a number of items as an `int`; see [`Self::checked`].
     pub(super) fn int_count(&mut self, what: &str, numbers_each: usize) -> Result<usize> {
         let n = self.int(&format!("the number of {what}"))?;
         let n = u64::try_from(n).map_err(|_| self.error(format!("{n} is no number of {what}")))?;
         self.checked(n, what, numbers_each)
     }
 
-    /// `n` as a count of things of at least `numbers_each` numbers, held against
-    /// the bytes that are there.
+    /// `n` as a number of items, each of at least `numbers_each` numbers, checked against the remaining
+    /// bytes.
     pub(super) fn checked(&self, n: u64, what: &str, numbers_each: usize) -> Result<usize> {
         let bytes_a_number = if self.form == Form::Ascii { 2 } else { 4 };
         let room = (self.text.rest().len() + 1) / (bytes_a_number * numbers_each).max(1);
@@ -129,7 +129,7 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// An error at this place.
+    /// An error at this position.
     pub(super) fn error(&self, what: impl Into<String>) -> Error {
         match self.form {
             Form::Ascii => self.text.error(what),
