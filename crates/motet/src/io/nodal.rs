@@ -1,8 +1,9 @@
-//! Values of nodes over time, in the text that svMultiPhysics takes as "temporal and spatial values" of a boundary, such as the
-//! displacements of a wall.
+//! Values of nodes over time, in the text format of "temporal and spatial values" of a boundary in
+//! svMultiPhysics, such as the displacements of a wall.
 //!
-//! The layout is that of the section "Temporal and Spatial Values Data" of its guide: the number of components, of times and of nodes;
-//! the times, rising; then for each node its id, and a row of components for each time. Words are divided by blanks or line breaks.
+//! The layout is that of the section "Temporal and Spatial Values Data" of its guide: the number of
+//! components, of times and of nodes; the times, ascending; then for each node its id, and a row of
+//! components for each time. Words are separated by blanks or line breaks.
 
 use std::collections::HashSet;
 use std::io::Write as _;
@@ -12,24 +13,24 @@ use crate::base::{Error, Point, Result};
 use crate::io::replace;
 use crate::io::text::{Text, push_floats};
 
-/// Values of nodes at times.
+/// Values of nodes at several times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodalSeries {
-    /// Rising.
+    /// Times, in ascending order.
     pub times: Vec<f64>,
-    /// Which nodes: their `GlobalNodeID`, or places in the mesh counted from 1. Each once.
+    /// Ids of the nodes: their `GlobalNodeID`, or indices in the mesh counted from 1. No duplicates.
     pub ids: Vec<i64>,
-    /// How many values a node has at a time.
+    /// Number of values per node and time.
     pub components: usize,
-    /// Node after node, each with its times one after the other.
+    /// Values node by node; for each node, one row of components per time.
     pub values: Vec<f64>,
 }
 
 impl NodalSeries {
-    /// Vectors of nodes: `frames` has one of each node at each time.
+    /// A series of vectors; `frames` holds a vector for each node at each time.
     ///
-    /// # Panics
-    /// When `frames` are not as many as times, or one of them not as long as `ids`.
+    /// # Panics If the number of `frames` differs from that of the times, or the length of a frame from that
+    /// of `ids`.
     pub fn of_vectors(times: Vec<f64>, ids: Vec<i64>, frames: &[Vec<Point>]) -> Self {
         assert!(frames.len() == times.len() && frames.iter().all(|frame| frame.len() == ids.len()));
         let of_node = |node: usize| frames.iter().flat_map(move |frame| frame[node]);
@@ -39,9 +40,8 @@ impl NodalSeries {
 
     /// Reads a file.
     ///
-    /// # Errors
-    /// When the file cannot be read or is none of these: a number that is none or not finite, times that do not rise, a node that
-    /// comes twice, less or more than its first line announces. Names the line.
+    /// # Errors If the file cannot be read or is invalid: malformed or non-finite numbers, times that do not
+    /// ascend, a duplicate node, or fewer or more numbers than its first line declares. Reports the line.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
@@ -49,10 +49,9 @@ impl NodalSeries {
         Self::parse(&bytes).map_err(|e| e.in_file(path).remedy(remedy))
     }
 
-    /// As [`read`](Self::read), from the content of the file.
+    /// Parses the content of a file, as [`read`](Self::read) does.
     ///
-    /// # Errors
-    /// As [`read`](Self::read).
+    /// # Errors If the content is invalid, see [`read`](Self::read).
     pub fn parse(bytes: &[u8]) -> Result<Self> {
         let mut text = Text::new(bytes);
         let components = text.count("components", 1)?;
@@ -60,7 +59,7 @@ impl NodalSeries {
         if components == 0 || n_times == 0 {
             return Err(text.error("at least one component and one time are expected"));
         }
-        // As many rows as this are in the file at most, so that the product is no overflow.
+        // The file has at most this many rows, so the product below does not overflow.
         let row = components.saturating_mul(n_times).saturating_add(1);
         let n_nodes = text.count("nodes", row)?;
         let mut times: Vec<f64> = Vec::with_capacity(n_times);
@@ -92,10 +91,9 @@ impl NodalSeries {
         }
     }
 
-    /// Writes a file, with as many digits as bring each number back to the bit.
+    /// Writes a file, with enough digits to recover each number to the bit.
     ///
-    /// # Errors
-    /// When the file cannot be written; what stood there before is then still there.
+    /// # Errors If the file cannot be written; its previous content is then unchanged.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
         let mut out = Vec::new();
         let tell = "writing into memory does not fail";
@@ -115,13 +113,11 @@ impl NodalSeries {
         replace(path.as_ref(), &out).map(drop)
     }
 
-    /// The vectors of all nodes at a time.
+    /// The vectors of all nodes at the time with index `time`.
     ///
-    /// # Errors
-    /// When there are not three components.
+    /// # Errors If there are not three components.
     ///
-    /// # Panics
-    /// When there is no such time.
+    /// # Panics If there is no such time.
     pub fn vectors(&self, time: usize) -> Result<Vec<Point>> {
         if self.components != 3 {
             return Err(Error::input(format!(
@@ -189,7 +185,7 @@ mod tests {
 
     #[test]
     fn damage_is_refused_with_its_line() {
-        // A last number that lacks digits is one still.
+        // A last number with missing digits is still a number.
         let whole = GUIDE.trim_end().as_bytes();
         for len in 0..whole.len() - 24 {
             assert!(NodalSeries::parse(&whole[..len]).is_err(), "cut off at {len}");

@@ -1,21 +1,20 @@
-//! Where the further nodes of quadratic cells lie, and how orders of nodes turn into one another.
+//! The positions of higher-order nodes of quadratic cells, and conversions between node orders.
 //!
-//! A node between two corners is the middle of their edge, one between four lies
-//! on a face, one between eight in the middle of a hexahedron. Each format lists
-//! its nodes so; equal sets of corners are equal nodes.
+//! A node between two corners is the midpoint of their edge, one between four lies on a face, one between
+//! eight in the middle of a hexahedron. The nodes of each format are listed by these sets of corners; equal
+//! sets are equal nodes.
 //!
-//! Corners need no list: all formats here go around the base, then around the
-//! top in the same sense. Of a wedge the corners 0, 1, 2 turn, seen from 3, 4, 5,
-//! counterclockwise: the sense in which Gmsh, Medit, Verdict and today's VTK
-//! (9.4 and later) give it a positive volume. VTK's own documentation of older
-//! releases had it the other way round.
+//! Corners need no list: all formats here go around the base, then around the top in the same direction. The
+//! corners 0, 1, 2 of a wedge run counterclockwise as seen from 3, 4, 5: the orientation to which Gmsh,
+//! Medit, Verdict and recent VTK (9.4 and later) assign a positive volume. The documentation of older VTK
+//! releases had the opposite orientation.
 
 use crate::mesh::CellKind;
 
-/// For each node behind the corners, the corners that it lies between.
+/// For each node after the corners, the corners that it lies between.
 pub(super) type Nodes = &'static [&'static [u8]];
 
-/// VTK's order, for the kinds in which others differ from it.
+/// VTK's order, for the kinds for which other formats differ.
 const VTK: &[(CellKind, Nodes)] = &[
     (CellKind::QUADRATIC_TETRA, &[&[0, 1], &[1, 2], &[2, 0], &[0, 3], &[1, 3], &[2, 3]]),
     (CellKind::QUADRATIC_HEXAHEDRON, VTK_HEXAHEDRON.split_at(12).0),
@@ -66,8 +65,8 @@ const VTK_WEDGE: Nodes = &[
 const VTK_PYRAMID: Nodes =
     &[&[0, 1], &[1, 2], &[2, 3], &[3, 0], &[0, 4], &[1, 4], &[2, 4], &[3, 4], &[0, 1, 2, 3]];
 
-/// For each node of a cell in VTK's order, its place in the order of `theirs`.
-/// A cell of a kind without a row above stays as it is.
+/// For each node of a cell in VTK's order, its position in the order `theirs`; the identity for kinds without
+/// a row in `VTK`.
 pub(super) fn vtk_to_other(kind: CellKind, n_vertices: usize, theirs: Nodes) -> Vec<usize> {
     let Some((_, vtk)) = VTK.iter().find(|(k, _)| *k == kind) else {
         return (0..n_vertices).collect();

@@ -1,12 +1,10 @@
 //! Wavefront OBJ: vertices, points, lines, polygons, and groups as patches.
 //!
-//! Written here, because `tobj` (4.0) cuts everything into triangles, duplicates
-//! or drops vertices for the sake of texture coordinates, forgets which line was
-//! wrong, and drops `l` and `p`.
+//! A reader and writer of our own, because `tobj` (4.0) triangulates everything, duplicates or drops vertices
+//! because of texture coordinates, does not report the line of an error, and drops `l` and `p`.
 //!
-//! A patch is what the last `o` or `g` says; there are patches only where at
-//! least two differ. Texture coordinates, normals, materials, smoothing groups
-//! and free-form geometry are passed over with a note.
+//! A patch is named by the last `o` or `g`; patches exist only if at least two differ. Texture coordinates,
+//! normals, materials, smoothing groups and free-form geometry are skipped with a note.
 
 use std::io::Write as _;
 
@@ -27,7 +25,7 @@ struct Reader {
     labels: Vec<i32>,
     names: Vec<String>,
     label: i32,
-    /// The largest vertex named before it was given, and its line.
+    /// The largest vertex used before it was defined, and the line of its use.
     ahead: Option<(usize, usize)>,
 }
 
@@ -55,7 +53,7 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
     reader.into_mesh()
 }
 
-/// Statements that mean something to others.
+/// Whether this is a statement of the format that is skipped here.
 fn is_known(statement: &[u8]) -> bool {
     const KNOWN: &[&str] = &[
         "vn",
@@ -95,7 +93,7 @@ fn is_known(statement: &[u8]) -> bool {
     KNOWN.iter().any(|known| known.as_bytes() == statement)
 }
 
-/// The next word of the statement, which a backslash carries over to the next line.
+/// The next word of the statement, which a backslash continues on the next line.
 fn in_line<'a>(text: &mut Text<'a>) -> Option<&'a [u8]> {
     loop {
         match text.word_in_line() {
@@ -167,7 +165,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Ids count from 1; negative ones count back from the vertex given last.
+    /// Converts an id, which counts from 1; negative ones count back from the last vertex defined.
     fn vertex_id(&mut self, id: i64, text: &Text<'_>) -> Result<VertexId> {
         let n = self.points.len();
         let place = if id > 0 { id.checked_sub(1) } else { (n as i64).checked_add(id).filter(|_| id < 0) };

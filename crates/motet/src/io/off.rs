@@ -1,7 +1,8 @@
-//! OFF surfaces: points and polygons, in text.
+//! OFF surfaces: points and polygons, as text.
 //!
-//! Written here, because `off-rs` (2.0) has coordinates in single precision only. Of `COFF`, `NOFF` and their kin the numbers behind the coordinates, of faces colours, are passed over with a
-//! note; binary and four-dimensional files are refused.
+//! A reader and writer of our own, because `off-rs` (2.0) only has single-precision coordinates. Numbers
+//! after the coordinates in `COFF`, `NOFF` and similar files, and colours of faces, are skipped with a note;
+//! binary and four-dimensional files are rejected.
 
 use std::io::Write as _;
 
@@ -43,7 +44,7 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
     Ok(Mesh::new(points, cells))
 }
 
-/// The first word, which may be left out.
+/// Reads the first word, which is optional.
 fn head(text: &mut Text<'_>) -> Result<()> {
     let Some(word) = text.peek() else {
         return Err(Error::input("an empty file").remedy("export the surface again"));
@@ -63,7 +64,7 @@ fn head(text: &mut Text<'_>) -> Result<()> {
     }
 }
 
-/// How many words are left on this line.
+/// Consumes the rest of the line and returns its number of words.
 fn rest_of_line(text: &mut Text<'_>) -> usize {
     let mut n = 0;
     while text.word_in_line().is_some() {
@@ -72,7 +73,7 @@ fn rest_of_line(text: &mut Text<'_>) -> usize {
     n
 }
 
-/// Faces, and how many of them have colours.
+/// Reads faces; returns the cells and the number of faces with colours.
 fn faces(text: &mut Text<'_>, n: usize, n_points: usize) -> Result<(Cells, usize)> {
     let (mut cells, mut n_colours) = (Cells::new(), 0);
     for _ in 0..n {
@@ -98,7 +99,7 @@ fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     let (mesh, mut lost) = keep_cells(&surface, "OFF", holds);
     lost.extend(boundary_only);
     lost.extend(lost_arrays("OFF", "point", &mesh.point_data));
-    // Labels that are all 0 say nothing.
+    // Labels that are all 0 carry no information.
     let labels = cell_labels(&mesh, None);
     let none = vec![0; labels.len()];
     lost.extend(lost_cell_arrays("OFF", &mesh, &none));

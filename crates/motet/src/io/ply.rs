@@ -1,7 +1,9 @@
-//! PLY surfaces, text and binary, either way round: points, polygons, and what else is told of them; by `ply-rs-bw`.
+//! PLY surfaces, text or binary in either byte order: points, polygons and their properties; uses
+//! `ply-rs-bw`.
 //!
-//! Properties of points and of faces that are no coordinates are arrays, each in its type. `nx ny nz` are one array, `normal`; of others whose names end in `_0`, `_1` and
-//! so on the same. Labels are the property `patch` of faces, their names comments, `comment patch 3 wall`, which other programs pass over.
+//! Properties of points and faces other than coordinates become arrays, each in its type. `nx ny nz` become
+//! one array, `normal`, and properties whose names end in `_0`, `_1` and so on one array too. Labels are the
+//! property `patch` of faces; their names are comments, `comment patch 3 wall`, which other programs ignore.
 
 use std::io::Cursor;
 
@@ -23,16 +25,16 @@ use crate::mesh::{CellKind, Field, Mesh, Values};
 pub(super) const FORMAT: Format =
     Format { name: "PLY", endings: &[".ply"], read: Some(read), write: Some(write) };
 
-/// The coordinates of a normal, which most programs call so.
+/// Common names of the components of a normal.
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
 const NORMAL_ARRAY: &str = "normal";
-/// What the list of a face's points is called.
+/// Names of the list of a face's points.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// A message quotes lines of the file, which may be of any length.
+/// Maximum length of messages that quote the file, whose lines may have any length.
 const LONGEST: usize = 200;
 
-/// What a row of an element holds, in the order of the head.
+/// The properties of a row of an element, in the order of the header.
 #[derive(Debug, Default)]
 struct Row(Vec<Property>);
 
@@ -74,7 +76,7 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// The library's word on a file, without what its grammar would have taken.
+/// Converts an error of the library, without its list of expected tokens.
 fn told(error: ParseError) -> Error {
     let told = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     let told = told.split(" Error: ParseError {").next().unwrap_or_default();
@@ -88,7 +90,8 @@ fn told(error: ParseError) -> Error {
     }
 }
 
-/// Rows of nothing would be read for as long as the head says.
+/// Checks the declared number of rows against the size of the file, since empty rows would be read without
+/// limit.
 fn check_count(element: &ElementDef, n_bytes: usize, is_text: bool) -> Result<()> {
     let size = |kind: &ScalarType| match (is_text, kind) {
         (true, _) | (_, ScalarType::Short | ScalarType::UShort) => 2,
@@ -110,7 +113,7 @@ fn check_count(element: &ElementDef, n_bytes: usize, is_text: bool) -> Result<()
     .remedy("the file is cut off or damaged: get it again"))
 }
 
-/// The place of a property in each row.
+/// The index of a property in each row.
 fn place(element: &ElementDef, name: &str) -> Option<usize> {
     element.properties.keys().position(|key| key == name)
 }
@@ -153,7 +156,7 @@ fn cells(mesh: &mut Mesh, element: &ElementDef, rows: &[Row], input: &Input<'_>)
     Ok(())
 }
 
-/// The numbers at one place of all rows; `None` for lists.
+/// The numbers at one index of all rows; `None` for lists.
 fn column(element: &ElementDef, rows: &[Row], i: usize) -> Option<Values> {
     let PropertyType::Scalar(kind) = &element.properties[i].data_type else { return None };
     macro_rules! all {
@@ -177,7 +180,7 @@ fn column(element: &ElementDef, rows: &[Row], i: usize) -> Option<Values> {
     })
 }
 
-/// All numbers but those that are `used` as arrays, neighbours that belong together as one.
+/// All numbers except those in `used` as arrays; neighbouring properties that belong together form one array.
 fn fields(element: &ElementDef, rows: &[Row], used: &[&str]) -> Vec<Field> {
     let names: Vec<&str> = element.properties.keys().map(String::as_str).collect();
     let mut fields: Vec<Field> = Vec::new();
@@ -202,7 +205,7 @@ fn fields(element: &ElementDef, rows: &[Row], used: &[&str]) -> Vec<Field> {
     fields
 }
 
-/// The array that the first properties make together, and how many they are.
+/// The name of the array formed by the first properties, and their number.
 fn run<'a>(names: &[&'a str]) -> (&'a str, usize) {
     if names.starts_with(&NORMAL) {
         return (NORMAL_ARRAY, 3);
@@ -215,7 +218,7 @@ fn run<'a>(names: &[&'a str]) -> (&'a str, usize) {
     }
 }
 
-/// Columns of one type, row by row.
+/// Interleaves columns of one type into rows.
 fn interleaved(columns: Vec<Values>) -> Values {
     let (n, k) = (columns[0].len(), columns.len());
     let mut all = Field { name: String::new(), components: 1, values: columns[0].clone() };
@@ -282,7 +285,7 @@ fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     Ok(Written { files: vec![(String::new(), out)], lost })
 }
 
-/// Says in the head what an element has.
+/// Declares an element and its properties in the header.
 fn declare(
     header: &mut Header,
     name: &str,
@@ -304,7 +307,7 @@ fn declare(
     header.elements.insert(name.into(), element);
 }
 
-/// The type of values; `None` where PLY has none.
+/// The PLY type of values; `None` if there is none.
 fn type_of(values: &Values) -> Option<ScalarType> {
     Some(match values {
         Values::I8(_) => ScalarType::Char,
@@ -324,13 +327,13 @@ fn has_strange(values: &Values) -> bool {
     !values.is_integer() && (0..values.len()).any(|i| values.get_f64(i).is_some_and(|x| !x.is_finite()))
 }
 
-/// A name of letters, digits and `_`, as PLY has them.
+/// A name in PLY's alphabet of letters, digits, `_` and `-`.
 fn name_of(field: &Field) -> String {
     let name = field.name.replace(|c: char| !c.is_ascii_alphanumeric() && c != '_' && c != '-', "_");
     if name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') { name } else { format!("_{name}") }
 }
 
-/// The names of its components.
+/// The names of the components of an array.
 fn names_of(field: &Field) -> Vec<String> {
     let name = name_of(field);
     match (field.components, name.as_str()) {
@@ -340,7 +343,7 @@ fn names_of(field: &Field) -> Vec<String> {
     }
 }
 
-/// Row `i` of an array, by name.
+/// Row `i` of an array, with the names of its components.
 fn row(field: &Field, i: usize) -> Vec<(String, Property)> {
     let k = i * field.components;
     let property = |j: usize| match &field.values {
@@ -483,7 +486,7 @@ mod tests {
             let error = parse(text.as_bytes()).0.unwrap_err().to_string();
             assert!(error.contains(told), "{text}: {error}");
         }
-        // Cut off anywhere, a file is refused.
+        // A file truncated at any point is rejected.
         let written = write(&full(), &WriteOptions::default()).unwrap().files.remove(0).1;
         for end in (0..written.len()).step_by(written.len() / 97) {
             assert!(parse(&written[..end]).0.is_err(), "{end}");

@@ -2,12 +2,11 @@
 
 use crate::mesh::CellKind;
 
-/// The sections, by their names in XML and in legacy files, in the order in
-/// which VTK counts the cells.
+/// The sections by their names in XML and in legacy files, in the order in which VTK counts the cells.
 pub(super) const SECTIONS: [(&str, &str); 4] =
     [("Verts", "VERTICES"), ("Lines", "LINES"), ("Polys", "POLYGONS"), ("Strips", "TRIANGLE_STRIPS")];
 
-/// The kind of a face of a surface, by how many corners it has.
+/// The kind of a face with this many corners.
 pub(super) fn kind_of_face(n_vertices: usize) -> CellKind {
     match n_vertices {
         0 => CellKind::EMPTY,
@@ -19,7 +18,7 @@ pub(super) fn kind_of_face(n_vertices: usize) -> CellKind {
     }
 }
 
-/// The kind of a cell of a section, as VTK tells it.
+/// The kind of a cell in a section, following VTK.
 pub(super) fn kind_in_section(section: usize, n_vertices: usize) -> CellKind {
     match (section, n_vertices) {
         (_, 0) => CellKind::EMPTY,
@@ -34,7 +33,7 @@ pub(super) fn kind_in_section(section: usize, n_vertices: usize) -> CellKind {
     }
 }
 
-/// The section that holds cells of this kind; `None` where none does.
+/// The section that holds cells of this kind, if any.
 pub(super) fn section_of(kind: CellKind) -> Option<usize> {
     match kind {
         CellKind::VERTEX | CellKind::POLY_VERTEX => Some(0),

@@ -1,10 +1,10 @@
-//! Polyhedra: cells with their faces, and faces as one stream of numbers, as VTK's files have them:
-//! how many faces, then for each how many vertices, and these.
+//! Polyhedra: cells with their faces, and the face streams of VTK's files: the number of faces, then for each
+//! the number of its vertices and the vertices.
 
 use crate::base::{Csr, Result, VertexId};
 use crate::mesh::{CellKind, Cells};
 
-/// Takes the faces of one polyhedron off the front of `stream`; `None` when it ends too early.
+/// Takes the faces of one polyhedron from the front of `stream`; `None` if the stream ends too early.
 pub(super) fn next_polyhedron(stream: &mut &[u32]) -> Option<Csr<VertexId>> {
     let (&n_faces, mut rest) = stream.split_first()?;
     let mut faces = Csr::default();
@@ -18,7 +18,7 @@ pub(super) fn next_polyhedron(stream: &mut &[u32]) -> Option<Csr<VertexId>> {
     Some(faces)
 }
 
-/// The faces of one polyhedron as a stream.
+/// The faces of a polyhedron as a stream.
 pub(super) fn face_stream(faces: &Csr<VertexId>) -> Vec<u32> {
     let mut stream = vec![faces.len() as u32];
     for face in faces.iter() {
@@ -28,14 +28,15 @@ pub(super) fn face_stream(faces: &Csr<VertexId>) -> Vec<u32> {
     stream
 }
 
-/// Cells from a kind each, where each starts, all their vertices, and the faces of the polyhedra among them.
+/// Builds cells from their kinds, their offsets, all their vertices, and the faces of the polyhedra among
+/// them.
 pub(super) fn cells_with_polyhedra(
     kinds: &[CellKind],
     offsets: Vec<u32>,
     vertices: Vec<VertexId>,
     faces: Vec<Csr<VertexId>>,
 ) -> Result<Cells> {
-    // Checked as polygons, which may have any number of vertices.
+    // Validate polyhedra as polygons, which may have any number of vertices.
     let stand_in = |k: &CellKind| if *k == CellKind::POLYHEDRON { CellKind::POLYGON } else { *k };
     let checked = Cells::from_parts(kinds.iter().map(stand_in).collect(), offsets, vertices)?;
     let mut faces = faces.into_iter();

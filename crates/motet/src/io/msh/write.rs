@@ -1,4 +1,4 @@
-//! Writing MSH files, both versions in both forms.
+//! Writes MSH files of both versions, as text or binary.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use crate::io::format::{Encoding, WriteOptions, Written};
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
-/// Entity of each node, as meshio names it.
+/// Array with the entity of each node, under meshio's name.
 const NODE_ENTITIES: &str = "gmsh:dim_tags";
 
 #[derive(Clone, Copy, PartialEq)]
@@ -19,19 +19,19 @@ enum Version {
     V4,
 }
 
-/// The labels of each cell in Gmsh's terms.
+/// The labels of all cells in Gmsh's terms.
 struct Tagged {
     /// Dimension of each cell.
     dims: Vec<i32>,
     physical: Vec<i32>,
-    /// Entity of each cell, at least 1; one entity has one physical group.
+    /// Entity of each cell, at least 1; each entity has a single physical group.
     entities: Vec<i32>,
     partitions: Option<Vec<i32>>,
 }
 
-/// Writes an MSH file: the version asked for, else 4.1, or 2.2 where some cells
-/// have a label and others have none, which meshio (5.3) cannot read in 4.1 (nor
-/// arrays on cells of several kinds in 2.2).
+/// Writes an MSH file in the requested version. The default is 4.1, or 2.2 if only some cells have a label,
+/// which meshio (5.3) cannot read in 4.1, and there are no cell arrays, which meshio cannot read on several
+/// kinds of cells in 2.2.
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let types = element_types();
     let asked = match options.version.as_deref() {
@@ -82,20 +82,20 @@ impl Tagged {
         Ok(Self { dims, physical, entities, partitions: int_column(mesh, "gmsh:partition") })
     }
 
-    /// Whether what an array says stands in the tags already.
+    /// Whether the tags already express an array.
     fn holds(&self, mesh: &Mesh, field: &Field, version2: bool) -> bool {
         match (field.name.as_str(), int_column(mesh, &field.name)) {
             ("gmsh:geometrical", Some(_)) => true,
             ("gmsh:partition", Some(_)) => version2,
-            // Kept as data besides: their names tell where they come from.
+            // These are also kept as data, since their names state their origin.
             ("medit:ref" | "tetgen:ref", _) => false,
             _ => say_all(&self.physical, mesh, field),
         }
     }
 }
 
-/// An entity for each cell: the one wanted where it is positive and has no other
-/// label yet, else a new one, since an entity has one physical group in version 4.
+/// An entity for each cell: the wanted one if it is positive and has no other label yet, else a new one,
+/// since an entity has a single physical group in version 4.
 fn entities_of(dims: &[i32], wanted: &[i32], physical: &[i32]) -> Result<Vec<i32>> {
     let mut label_of = BTreeMap::new();
     let mut entity_of = BTreeMap::new();
@@ -123,11 +123,11 @@ fn entities_of(dims: &[i32], wanted: &[i32], physical: &[i32]) -> Result<Vec<i32
     Ok(entities)
 }
 
-/// Numbers of entities that are taken, in each dimension.
+/// Used entity numbers in each dimension.
 #[derive(Default)]
 struct Numbers {
     taken: [BTreeSet<i32>; 4],
-    /// None below is free.
+    /// No number up to this one is free.
     lowest: [i32; 4],
 }
 
@@ -136,7 +136,7 @@ impl Numbers {
         self.taken[dim as usize].insert(number.max(0));
     }
 
-    /// The number after the largest; where that is the last there is, the lowest free one.
+    /// The number after the largest; if that is the last possible one, the lowest free number.
     fn new_one(&mut self, dim: i32) -> Option<i32> {
         let (taken, lowest) = (&mut self.taken[dim as usize], &mut self.lowest[dim as usize]);
         let new = match taken.last().map_or(Some(1), |last| last.checked_add(1)) {
@@ -184,12 +184,13 @@ fn physical_names(sink: &mut Sink, mesh: &Mesh) {
     sink.line("$EndPhysicalNames");
 }
 
-/// A name that stays on its line and between its quotes.
+/// A name with line breaks and double quotes replaced.
 fn one_line(name: &str) -> String {
     name.replace('"', "'").replace(['\n', '\r'], " ")
 }
 
-/// The entity of each node: as the mesh has it, else the cells' first of the highest dimension.
+/// The entity of each node: from the mesh if given, otherwise the lowest entity of the highest dimension of
+/// the cells.
 fn node_entities(mesh: &Mesh, tagged: &Tagged) -> Vec<[i32; 2]> {
     let given = mesh.point_field(NODE_ENTITIES).filter(|f| f.components == 2).and_then(|f| f.values.to_i64());
     let given = given.and_then(|tags| {
@@ -209,7 +210,7 @@ fn node_entities(mesh: &Mesh, tagged: &Tagged) -> Vec<[i32; 2]> {
     })
 }
 
-/// Every entity that cells or nodes name, with its box and its physical group.
+/// Writes every entity of cells or nodes, with its bounding box and its physical group.
 fn entities4(sink: &mut Sink, mesh: &Mesh, tagged: &Tagged, node_entities: &[[i32; 2]]) {
     let mut groups: BTreeMap<(i32, i32), i32> = BTreeMap::new();
     let mut boxes: BTreeMap<(i32, i32), [[f64; 3]; 2]> = BTreeMap::new();
