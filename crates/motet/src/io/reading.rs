@@ -1,4 +1,4 @@
-//! Reading in a format that is known: what is the same for each of them, before and behind its reader.
+//! Reading in a known format: the steps before and after the reader that all formats share.
 
 use std::path::Path;
 
@@ -21,8 +21,7 @@ pub(super) fn read_file(format: &Format, path: &Path, notes: &Notes) -> Result<M
 
 /// Reads `input` in the given format.
 ///
-/// # Errors
-/// As [`read`](super::read).
+/// # Errors The same as for [`read`](super::read).
 pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
     let Some(read) = format.read else {
         return Err(Error::new(ErrorKind::Input, format!("{} files can only be written", format.name))
@@ -35,7 +34,7 @@ pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
     checked(read(input), input.path, input.notes)
 }
 
-/// What a reader returned, found to hold together; errors with the file and a remedy.
+/// Validates the result of a reader and removes ghost cells; adds the file and a remedy to errors.
 pub(super) fn checked(mesh: Result<Mesh>, path: &Path, notes: &Notes) -> Result<Mesh> {
     let told = |e: Error| e.in_file(path).remedy("the file is damaged, or was written wrong: write it again");
     let mut mesh = mesh.map_err(told)?;
@@ -44,7 +43,7 @@ pub(super) fn checked(mesh: Result<Mesh>, path: &Path, notes: &Notes) -> Result<
     Ok(mesh)
 }
 
-/// Refuses what lies in place of a mesh, whatever the format.
+/// Rejects content that cannot be a mesh in any format.
 fn refuse_stand_ins(bytes: &[u8]) -> Result<()> {
     if bytes.is_empty() {
         return Err(Error::input("is empty (0 bytes)").remedy("get the file again"));
@@ -56,13 +55,13 @@ fn refuse_stand_ins(bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Whether two paths lead to one file that is there.
+/// Whether two paths lead to the same existing file.
 pub fn is_same_file(a: impl AsRef<Path>, b: impl AsRef<Path>) -> bool {
     let [a, b] = [a.as_ref(), b.as_ref()].map(|path| path.canonicalize().ok());
     a.is_some() && a == b
 }
 
-/// The content of a file that may be missing, such as one that belongs to the file named.
+/// The content of a file that may be missing, such as a companion of the file being read.
 pub(super) fn read_beside(path: &Path) -> Result<Option<Vec<u8>>> {
     match std::fs::read(path) {
         Ok(bytes) => Ok(Some(bytes)),

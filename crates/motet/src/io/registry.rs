@@ -1,4 +1,4 @@
-//! Which format a file is in, and the two calls that read and write any of them.
+//! Determines the format of a file, and reads and writes files of any format.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::io::{
 };
 use crate::mesh::Mesh;
 
-/// Every format, in the order in which endings are looked up.
+/// Every format, in the order in which extensions are looked up.
 pub fn formats() -> &'static [Format] {
     FORMATS
 }
@@ -40,7 +40,7 @@ const FORMATS: &[Format] = &[
     simvascular::FORMAT,
 ];
 
-/// Formats that are known only to be refused with advice.
+/// Formats that are only recognized to reject them with advice.
 const REFUSED: &[Format] = &[vtkxml::OTHERS];
 
 fn by_ending(path: &Path) -> Result<&'static Format> {
@@ -57,7 +57,7 @@ fn by_ending(path: &Path) -> Result<&'static Format> {
     })
 }
 
-/// The format that `path` is to be written in: that of a folder where it ends with a slash or is one.
+/// The format in which to write `path`: a folder format if the path ends with a slash or is a folder.
 fn for_writing(path: &Path) -> Result<&'static Format> {
     let ends_with_slash =
         path.as_os_str().as_encoded_bytes().last().is_some_and(|&b| std::path::is_separator(b.into()));
@@ -87,11 +87,10 @@ fn for_writing(path: &Path) -> Result<&'static Format> {
     }
 }
 
-/// Whether a mesh could be written to `path`, so that a long run can ask before
-/// it starts: the ending is that of a format with a writer, and the folder is there.
+/// Checks whether a mesh can be written to `path`, so that a long run can check before it starts: the
+/// extension must belong to a format with a writer, and the parent folder must exist.
 ///
-/// # Errors
-/// Of kind [`ErrorKind::Options`] for the ending, [`ErrorKind::Io`] for the folder.
+/// # Errors Of kind [`ErrorKind::Options`] for the extension, [`ErrorKind::Io`] for the folder.
 pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
     let writable = match for_writing(path) {
@@ -115,7 +114,7 @@ pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
     }
 }
 
-/// A folder that holds something is not written over: nothing is lost, and no old face is left among new ones.
+/// Rejects a non-empty folder as a target, so that nothing is lost and no old files remain among new ones.
 fn refuse_full_folder(path: &Path) -> Result<()> {
     match path.read_dir().map(|mut entries| entries.next().is_some()) {
         Ok(true) => Err(Error::options("is a folder that is not empty")
@@ -125,23 +124,21 @@ fn refuse_full_folder(path: &Path) -> Result<()> {
     }
 }
 
-/// The format of a folder that is there.
+/// The format of an existing folder.
 fn folder_format(path: &Path) -> &'static Format {
     if polymesh::is_case(path) { &polymesh::FORMAT } else { &simvascular::FORMAT }
 }
 
-/// Reads a file or folder in the format that its ending tells; `flow.vtkhdf#3` is step 3 of that file.
+/// Reads a file or folder in the format of its extension; `flow.vtkhdf#3` is step 3 of that file.
 ///
-/// # Errors
-/// Names the file, the place in it, what was expected and found, and what to do.
+/// # Errors An error names the file and the place in it, what was expected and found, and a remedy.
 pub fn read(path: impl AsRef<Path>) -> Result<Mesh> {
     read_noted(path).map(|(mesh, _)| mesh)
 }
 
-/// As [`read`], and tells what the reader passed over, each in a sentence for the user.
+/// Reads like [`read`], and also returns notes on what the reader skipped, each a message for the user.
 ///
-/// # Errors
-/// As [`read`].
+/// # Errors The same as for [`read`].
 pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     let path = path.as_ref();
     let notes = Notes::default();
@@ -154,13 +151,12 @@ pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     Ok((mesh, notes.into_vec()))
 }
 
-/// Writes a mesh in the format that the ending tells. The file appears whole or
-/// not at all: it is written beside its place and renamed into it.
+/// Writes a mesh in the format of the extension. The file appears whole or not at all: it is written to a
+/// temporary file beside `path`, which is then renamed.
 ///
 /// Returns what the format could not hold.
 ///
-/// # Errors
-/// When the format cannot hold the mesh, or the system refuses the file.
+/// # Errors If the format cannot hold the mesh, or the file cannot be written.
 pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Result<Vec<String>> {
     let path = path.as_ref();
     let format = for_writing(path)?;
@@ -169,7 +165,7 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
     };
     mesh.validate()?;
     if format.endings == vtkxml::VTU.endings {
-        // Straight into the file: large meshes need no second place in memory.
+        // Written directly to the file, so that large meshes are not copied in memory.
         let (mut lost, note) = replace_with(path, |sink| vtkxml::write_to(mesh, options, sink))?;
         lost.extend(note);
         return Ok(lost);
@@ -185,7 +181,7 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
     Ok([written.lost, notes].concat())
 }
 
-/// `path`, its ending changed; itself where `ending` is empty.
+/// `path` with its extension replaced; unchanged if `ending` is empty.
 fn with_ending(path: &Path, ending: &str) -> PathBuf {
     if ending.is_empty() { path.to_owned() } else { path.with_extension(ending.trim_start_matches('.')) }
 }

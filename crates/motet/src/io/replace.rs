@@ -1,7 +1,9 @@
-//! Files that appear whole or not at all: written beside their place, then renamed into it.
+//! Atomic replacement of files: they appear whole or not at all, since they are written beside their targets
+//! and then renamed.
 //!
-//! What stands there before is treated as `cp` treats it: a link is followed, rights and owner stay, a device or pipe
-//! is written into, and what may not be written is refused. Only other hard links keep the old content, which is said.
+//! An existing target is treated as by `cp`: symbolic links are followed, permissions and owner are kept,
+//! devices and pipes are written into, and a file without write permission is rejected. Only other hard links
+//! keep the old content, which is reported.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{ErrorKind, Write};
@@ -11,22 +13,20 @@ use tempfile::NamedTempFile;
 
 use crate::base::{Error, Result};
 
-/// Links that lead to links; more is a circle.
+/// Maximum length of a chain of symbolic links; a longer one is a cycle.
 const MAX_LINKS: usize = 40;
 
-/// Writes `bytes` beside `path`, then renames into place. Returns what the user should know of what stood there.
+/// Writes `bytes` to a temporary file beside `path`, then renames it. Returns notes for the user on the
+/// replaced file.
 ///
-/// # Errors
-/// When the system refuses the file; what stood at `path` before is then still there.
+/// # Errors If the file cannot be written; the previous content of `path` is then unchanged.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<Vec<String>> {
     replace_all(&[(path.to_owned(), bytes)])
 }
 
-/// Writes all files beside their places, then renames them all: as long as one
-/// cannot be written, none is touched.
+/// Writes all files beside their targets, then renames them all: if one cannot be written, none is changed.
 ///
-/// # Errors
-/// As [`replace`].
+/// # Errors The same as for [`replace`].
 pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<Vec<String>> {
     let written: Vec<(&Path, Draft)> = files
         .iter()
@@ -44,7 +44,7 @@ pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<Vec<String>> {
     Ok(notes)
 }
 
-/// As [`replace`], with what `write` gives to the file; returns that, too.
+/// Replaces a file like [`replace`], with the output of `write`; also returns the result of `write`.
 pub(super) fn replace_with<T>(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> Result<T>,
@@ -54,12 +54,13 @@ pub(super) fn replace_with<T>(
     Ok((result, draft.persist(path)?))
 }
 
-/// Writes a folder of files beside `path`, then renames it into place. Nothing stands at `path`, or an empty folder.
+/// Writes a folder of files beside `path`, then renames it. `path` must not exist or be an empty folder.
 pub(super) fn replace_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
     let failed = |e: std::io::Error| Error::output(path, e);
     let place = if path.is_dir() { path.canonicalize().map_err(failed)? } else { followed(path)? };
     let folder = tempfile::Builder::new().prefix(".motet-").tempdir_in(folder_of(&place)).map_err(failed)?;
-    // Inside a folder that is its owner's alone; the one that is renamed has the rights that the user's umask says.
+    // The temporary folder is private to its owner; the folder inside, which is renamed, has permissions from
+    // the umask.
     let inner = folder.path().join("folder");
     for (name, bytes) in files {
         let file = inner.join(name);
@@ -73,11 +74,11 @@ pub(super) fn replace_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result
     std::fs::rename(inner, &place).map_err(failed)
 }
 
-/// A file on its way to its place.
+/// A file being written, before it takes its target's place.
 enum Draft {
-    /// Beside its place; what stands there now.
+    /// A temporary file, its target, and the metadata of the existing target.
     Beside(NamedTempFile, PathBuf, Option<Box<Metadata>>),
-    /// What is no regular file is written into.
+    /// A device or pipe, which is written into.
     Into(File),
 }
 
@@ -89,7 +90,7 @@ impl Draft {
             Err(e) if e.kind() == ErrorKind::NotFound => None,
             Err(e) => return Err(failed(e)),
             Ok(old) => {
-                // What may not be written is not replaced either.
+                // A file without write permission is not replaced either.
                 let file = OpenOptions::new().write(true).open(&place).map_err(failed)?;
                 if !old.is_file() {
                     return Ok(Self::Into(file));
@@ -100,7 +101,7 @@ impl Draft {
         let mut builder = tempfile::Builder::new();
         let prefix = draft_prefix(&place);
         builder.prefix(&prefix);
-        // As any program creates a file: readable for whom the user's umask says.
+        // Permissions of a new file, which the umask restricts.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(folder_of(&place)).map_err(failed)?;
@@ -114,7 +115,7 @@ impl Draft {
         }
     }
 
-    /// Puts it in its place.
+    /// Moves the file to its target.
     fn persist(self, path: &Path) -> Result<Option<String>> {
         let Self::Beside(file, place, old) = self else { return Ok(None) };
         if let Some(old) = &old {
@@ -130,25 +131,26 @@ impl Draft {
     }
 }
 
-/// What the name of a file on its way to its place begins with; what follows are [`RANDOM`] characters.
+/// Prefix of the name of a temporary file; [`RANDOM`] characters follow.
 fn draft_prefix(place: &Path) -> String {
     let name = place.file_name().unwrap_or_default().to_string_lossy();
-    // Names have 255 bytes at most.
+    // File names have at most 255 bytes.
     let end = (0..=name.len().min(LONGEST)).rev().find(|&i| name.is_char_boundary(i)).unwrap_or(0);
     format!("{DRAFT}{}-", &name[..end])
 }
 
-/// What the names of files on their way begin with.
+/// Prefix of the names of all temporary files.
 pub(super) const DRAFT: &str = ".motet-";
 
-/// Characters that end such a name.
+/// Number of random characters at the end of such a name.
 const RANDOM: usize = 6;
 
-/// So much of a file's name stands in it.
+/// Maximum number of bytes of the target's name in such a name.
 const LONGEST: usize = 160;
 
-/// Removes what processes that were killed have left of files on their way: of those alone whose names `is_own` knows. The caller makes sure that no other process
-/// writes files of these names. What cannot be removed stays.
+/// Removes temporary files left by killed processes, for those targets whose names `is_own` accepts. The
+/// caller must ensure that no other process is writing files with these names. Files that cannot be removed
+/// are left.
 pub fn remove_drafts(folder: &Path, is_own: impl Fn(&str) -> bool) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
@@ -162,21 +164,20 @@ pub fn remove_drafts(folder: &Path, is_own: impl Fn(&str) -> bool) {
     }
 }
 
-/// Waits until a file and its name are on the disk, and not in the memory of the system alone.
+/// Flushes a file and its directory entry to disk.
 ///
-/// # Errors
-/// When the system refuses.
+/// # Errors If the system reports a failure.
 pub fn sync(path: &Path) -> Result<()> {
     let failed = |e: std::io::Error| Error::output(path, e);
-    // Some systems sync only what may be written.
+    // Some systems only sync files opened for writing.
     OpenOptions::new().write(true).open(path).and_then(|file| file.sync_all()).map_err(failed)?;
     sync_folder(folder_of(path)).map_err(failed)
 }
 
-/// Puts a file in the place of another of the same folder, once its content is on the disk: whenever the machine stops, one of the two is there, whole.
+/// Flushes `from` to disk and renames it to `to` in the same folder: after a crash at any time, one of the
+/// two versions is present and complete.
 ///
-/// # Errors
-/// When the system refuses.
+/// # Errors If the system reports a failure.
 pub fn settle(from: &Path, to: &Path) -> Result<()> {
     let failed = |e: std::io::Error| Error::output(to, e);
     OpenOptions::new().write(true).open(from).and_then(|file| file.sync_all()).map_err(failed)?;
@@ -198,7 +199,7 @@ pub(super) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Where a path leads, link by link; the last one may lead to nothing yet.
+/// The target of a path after following symbolic links; the last link may dangle.
 fn followed(path: &Path) -> Result<PathBuf> {
     let mut place = path.to_owned();
     for _ in 0..MAX_LINKS {
@@ -215,7 +216,7 @@ fn keep_rights(file: &File, old: &Metadata) -> std::io::Result<()> {
     use std::os::unix::fs::MetadataExt;
     let new = file.metadata()?;
     if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
-        // Only the superuser may give files away; others keep what they make, as with any editor.
+        // Only the superuser may change the owner; other users own what they write, as with any editor.
         let _ = std::os::unix::fs::fchown(file, Some(old.uid()), Some(old.gid()));
     }
     file.set_permissions(old.permissions())

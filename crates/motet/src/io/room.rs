@@ -1,21 +1,22 @@
-//! How much memory the content of a file may take once it is unpacked.
+//! Limits the memory for the decompressed content of a file.
 //!
-//! Packed bytes may become a thousand times as many, so a file of a few megabytes could fill any machine. What a mesh
-//! needs is known before it is unpacked, and no mesh packs that well: what is beyond the limit is refused.
+//! Data may decompress to a thousand times their size, so a file of a few megabytes could fill any memory.
+//! The size is known before decompression, and no mesh compresses that well: content beyond the limit is
+//! rejected.
 
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};
 
 use crate::base::{Error, Result};
 
-/// The environment variable that sets another limit, in bytes or with a unit: `MOTET_READ_LIMIT=16G`.
+/// The environment variable that overrides the limit, in bytes or with a unit: `MOTET_READ_LIMIT=16G`.
 const VARIABLE: &str = "MOTET_READ_LIMIT";
-/// So many bytes may come out of any file: values that are all the same pack well.
+/// Bytes allowed for any file, since constant values compress well.
 const ALWAYS: u64 = 256 << 20;
-/// And so many for each byte of the file.
+/// Further bytes allowed per byte of the file.
 const FOR_EACH_BYTE: u64 = 64;
 
-/// What may still be taken.
+/// The memory budget for reading a mesh.
 #[derive(Debug)]
 pub(super) struct Room {
     state: Mutex<State>,
@@ -30,13 +31,13 @@ struct State {
 }
 
 impl Room {
-    /// The room that a file of so many bytes has.
+    /// The budget for a file of this size.
     pub(super) fn of(file_bytes: u64) -> Self {
         let asked = std::env::var(VARIABLE).ok().and_then(|text| bytes(&text));
         Self { state: Mutex::new(State { file_bytes, ..State::default() }), asked }
     }
 
-    /// Adds that of another file, which belongs to the same mesh; of each name only once.
+    /// Extends the budget by another file of the same mesh; each name counts only once.
     pub(super) fn add_file(&self, name: &str, file_bytes: u64) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         if state.known.insert(name.to_owned()) {
@@ -44,10 +45,9 @@ impl Room {
         }
     }
 
-    /// Takes so many bytes, before they are allocated.
+    /// Reserves bytes before they are allocated.
     ///
-    /// # Errors
-    /// When all that was taken is more than the limit.
+    /// Fails if the total exceeds the limit.
     pub(super) fn take(&self, bytes: u64) -> Result<()> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         state.taken = state.taken.saturating_add(bytes);
@@ -55,22 +55,21 @@ impl Room {
         if state.taken <= limit { Ok(()) } else { Err(refused(state.taken, &state, limit)) }
     }
 
-    /// As [`take`](Self::take), for something that has a name and is there only once.
+    /// Reserves bytes like [`take`](Self::take), but only once for each name.
     ///
-    /// # Errors
-    /// As [`take`](Self::take).
+    /// Fails if the total exceeds the limit.
     pub(super) fn take_once(&self, name: &str, bytes: u64) -> Result<()> {
         let is_new = self.state.lock().unwrap_or_else(PoisonError::into_inner).known.insert(name.to_owned());
         if is_new { self.take(bytes) } else { Ok(()) }
     }
 
-    /// How much is left.
+    /// Number of bytes left.
     pub(super) fn left(&self) -> u64 {
         let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         self.limit(&state).saturating_sub(state.taken)
     }
 
-    /// The error for a stream that goes on beyond what was left.
+    /// The error for a stream that exceeds the budget.
     pub(super) fn exceeded(&self) -> Error {
         let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let limit = self.limit(&state);
@@ -92,7 +91,7 @@ fn refused(needed: u64, state: &State, limit: u64) -> Error {
     ))
 }
 
-/// A number of bytes, perhaps with a unit: `K`, `M`, `G` or `T`, each 1024 times the one before.
+/// Parses a number of bytes with an optional unit `K`, `M`, `G` or `T`, each 1024 times the previous one.
 fn bytes(text: &str) -> Option<u64> {
     let text = text.trim().to_ascii_uppercase();
     let text = text.trim_end_matches('B').trim_end_matches('I');

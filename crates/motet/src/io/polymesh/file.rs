@@ -1,21 +1,21 @@
-//! One file of a mesh: its header, then words and lists, in text or binary.
+//! Parses one file of a mesh: its header, then words and lists, as text or binary.
 
 use crate::base::{Csr, Error, Point, Result, VertexId};
 use crate::io::text::{parse_float, parse_int, quoted};
 
-/// A file, and a place in it.
+/// A file and a position in it.
 pub(super) struct File<'a> {
     bytes: &'a [u8],
     at: usize,
     is_binary: bool,
     label_bytes: usize,
     scalar_bytes: usize,
-    /// What the file says that it holds.
+    /// The declared class of the content.
     pub(super) class: String,
 }
 
 impl<'a> File<'a> {
-    /// Reads the header.
+    /// Opens a file and reads its header.
     pub(super) fn open(bytes: &'a [u8]) -> Result<Self> {
         let mut file =
             Self { bytes, at: 0, is_binary: false, label_bytes: 4, scalar_bytes: 8, class: String::new() };
@@ -40,7 +40,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// Sizes of numbers, such as `LSB;label=32;scalar=64`.
+    /// Parses the sizes of numbers, such as `LSB;label=32;scalar=64`.
     fn arch(&mut self, text: &str) -> Result<()> {
         for part in text.split(';') {
             let bits = |of: &str| part.strip_prefix(of).and_then(|bits| bits.parse::<usize>().ok());
@@ -62,7 +62,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// Passes over blanks and comments.
+    /// Skips blanks and comments.
     fn skip(&mut self) {
         loop {
             let rest = &self.bytes[self.at..];
@@ -79,7 +79,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// The next word, a sign of its own, or a text in quotes; empty at the end.
+    /// The next word, punctuation character or quoted text; empty at the end.
     fn next(&mut self) -> &'a [u8] {
         self.skip();
         let rest = &self.bytes[self.at..];
@@ -94,7 +94,7 @@ impl<'a> File<'a> {
         &rest[..n]
     }
 
-    /// The next word, which must be there.
+    /// The next word; an error at the end of the file.
     pub(super) fn word(&mut self) -> Result<&'a [u8]> {
         match self.next() {
             [] => Err(self.error("the file ends too early").remedy("the file is cut off: get it again")),
@@ -102,7 +102,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// The next word, left in place; empty at the end.
+    /// The next word, without consuming it; empty at the end.
     pub(super) fn peek(&mut self) -> &'a [u8] {
         let at = self.at;
         let word = self.next();
@@ -118,7 +118,7 @@ impl<'a> File<'a> {
         }
     }
 
-    /// Passes over the rest of an entry: up to its semicolon, groups in braces and lists left whole.
+    /// Skips the rest of an entry up to its semicolon, or up to the closing brace of a group.
     pub(super) fn skip_entry(&mut self) -> Result<()> {
         let mut depth = 0usize;
         loop {
@@ -142,16 +142,17 @@ impl<'a> File<'a> {
         parse_float(word).ok_or_else(|| self.error(format!("expected a number, found {}", quoted(word))))
     }
 
-    /// A whole number that is no less than 0.
+    /// Reads a non-negative integer.
     pub(super) fn count(&mut self) -> Result<usize> {
         let n = self.int()?;
         usize::try_from(n).map_err(|_| self.error(format!("{n} is no number of things")))
     }
 
-    /// How many things follow, of so many bytes each at least.
+    /// Reads a number of entries of at least `bytes_each` bytes each, and checks it against the remaining
+    /// bytes.
     fn room_for(&mut self, bytes_each: usize) -> Result<usize> {
         let n = self.count()?;
-        // A list of one value, many times over, needs no room but that for telling so.
+        // A list that repeats one value (`n{value}`) takes no space per entry.
         let room = (self.bytes.len() - self.at) / bytes_each + 1;
         if n > room && self.peek() != b"{" {
             return Err(self
@@ -166,7 +167,7 @@ impl<'a> File<'a> {
         Ok(n)
     }
 
-    /// A list of labels.
+    /// Reads a list of labels.
     pub(super) fn labels(&mut self) -> Result<Vec<i64>> {
         let size = if self.is_binary { self.label_bytes } else { 2 };
         let n = self.room_for(size)?;
@@ -183,7 +184,7 @@ impl<'a> File<'a> {
         self.between_brackets(n, Self::int)
     }
 
-    /// A list of points.
+    /// Reads a list of points.
     pub(super) fn points(&mut self) -> Result<Vec<Point>> {
         let size = if self.is_binary { 3 * self.scalar_bytes } else { 8 };
         let n = self.room_for(size)?;
@@ -202,7 +203,7 @@ impl<'a> File<'a> {
         })
     }
 
-    /// A list of faces, which are lists of points.
+    /// Reads a list of faces, each a list of points.
     pub(super) fn faces(&mut self) -> Result<Csr<u32>> {
         if self.class == "faceCompactList" {
             let (offsets, points) = (self.labels()?, self.labels()?);
@@ -228,7 +229,7 @@ impl<'a> File<'a> {
         Ok(faces)
     }
 
-    /// The one value of a list in braces.
+    /// Reads the single value of a list in braces; `None` if the list is of another form.
     fn uniform(&mut self, read: impl Fn(&mut Self) -> Result<i64>) -> Result<Option<i64>> {
         if self.peek() != b"{" {
             return Ok(None);
@@ -244,7 +245,7 @@ impl<'a> File<'a> {
         self.expect(b")").map(|()| all)
     }
 
-    /// The bytes of a binary list.
+    /// Reads the bytes of a binary list.
     fn raw(&mut self, n: usize, size: usize) -> Result<&'a [u8]> {
         if n == 0 {
             if self.peek() == b"(" {
@@ -262,7 +263,7 @@ impl<'a> File<'a> {
         self.expect(b")").map(|()| bytes)
     }
 
-    /// An error at the place that was read last.
+    /// An error at the current position.
     pub(super) fn error(&self, what: impl Into<String>) -> Error {
         let place = if self.is_binary {
             format!("byte {}", self.at)

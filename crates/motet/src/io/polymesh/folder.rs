@@ -1,21 +1,21 @@
-//! Where the files of a case are.
+//! Locates the files of a case.
 
 use std::path::{Path, PathBuf};
 
 use crate::base::{Error, Result};
 use crate::io::gzip;
 
-/// Whether a folder is a case, or its `polyMesh`.
+/// Whether a folder is a case or its `polyMesh` folder.
 pub(in crate::io) fn is_case(path: &Path) -> bool {
     path.is_dir() && mesh_folder(path).is_some()
 }
 
-/// Whether a folder that is to be written is called `polyMesh`.
+/// Whether a folder to be written is called `polyMesh`.
 pub(in crate::io) fn is_to_be_one(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name.eq_ignore_ascii_case("polyMesh"))
 }
 
-/// The folder that has the mesh of a case.
+/// The folder with the mesh of a case.
 pub(super) fn mesh_folder(path: &Path) -> Option<PathBuf> {
     let case = if path.is_dir() {
         path
@@ -26,7 +26,7 @@ pub(super) fn mesh_folder(path: &Path) -> Option<PathBuf> {
     [case.to_owned(), case.join("polyMesh"), case.join("constant/polyMesh")].into_iter().find(holds_mesh)
 }
 
-/// A file of the mesh, packed or not.
+/// The path of a mesh file, compressed or not.
 fn find(folder: &Path, name: &str) -> Option<PathBuf> {
     [name.to_owned(), format!("{name}.gz")]
         .into_iter()
@@ -34,7 +34,7 @@ fn find(folder: &Path, name: &str) -> Option<PathBuf> {
         .find(|path| path.is_file())
 }
 
-/// Where a file of the mesh is, and its bytes, unpacked; `None` where there is none.
+/// The path of a mesh file and its decompressed bytes; `None` if there is no such file.
 pub(super) fn load(folder: &Path, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>> {
     let Some(path) = find(folder, name) else { return Ok(None) };
     let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, e))?;

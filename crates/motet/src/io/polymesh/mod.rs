@@ -1,17 +1,19 @@
 //! OpenFOAM's `polyMesh`: a folder of points, faces, and the cells on both sides of each face.
 //!
-//! The layout is that of OpenFOAM's user guide, "Mesh description": faces between cells come first, owner below neighbour and by both rising; those of
-//! the boundary follow, patch after patch. A face runs counter-clockwise seen from beyond its owner. Text and binary are read, of either size of
-//! labels and scalars, and files packed by gzip.
+//! The layout is that of OpenFOAM's user guide, "Mesh description": faces between cells come first, the owner
+//! being the lower cell, sorted by owner and neighbour; boundary faces follow, patch by patch. A face runs
+//! counter-clockwise seen from outside its owner. Text and binary files with either size of labels and
+//! scalars are read, and gzip files.
 //!
 //! | file | idea |
 //! |---|---|
 //! | `file` | one file: header, words, lists |
-//! | `folder` | where the files of a case are |
-//! | `read`, `write` | a mesh in, a mesh out |
+//! | `folder` | locates the files of a case |
+//! | `read`, `write` | read and write a mesh |
 //!
-//! Patches become surface cells with their names, `cellZones` regions. A path may be the case, its `polyMesh` folder, or ParaView's `NAME.foam` in the
-//! case. Written is a folder that is called `polyMesh`; patches whose names begin with `wall` are of type `wall`, the others `patch`.
+//! Patches become surface cells with their names, `cellZones` regions. A path may be the case, its `polyMesh`
+//! folder, or ParaView's `NAME.foam` in the case. Writing creates a folder called `polyMesh`; patches whose
+//! names begin with `wall` have the type `wall`, the others `patch`.
 
 mod file;
 mod folder;

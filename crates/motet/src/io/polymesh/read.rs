@@ -1,4 +1,4 @@
-//! A mesh in.
+//! Reads a mesh.
 
 use std::path::Path;
 
@@ -53,7 +53,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// Reads what a file holds.
+/// Reads a required file.
 fn needed<T>(folder: &Path, name: &str, read: impl Fn(&mut File<'_>) -> Result<T>) -> Result<T> {
     optional(folder, name, read)?.ok_or_else(|| {
         Error::input("is not there")
@@ -77,7 +77,7 @@ struct Patch {
     n: usize,
 }
 
-/// The patches of `boundary`.
+/// Reads the patches of `boundary`.
 fn patches(file: &mut File<'_>) -> Result<Vec<Patch>> {
     let n = file.count()?;
     file.expect(b"(")?;
@@ -103,7 +103,7 @@ fn patches(file: &mut File<'_>) -> Result<Vec<Patch>> {
     file.expect(b")").map(|()| patches)
 }
 
-/// The zones of cells, as regions.
+/// Reads the cell zones as regions.
 fn zones(folder: &Path, mesh: &mut Mesh, n_cells: usize, notes: &Notes) -> Result<()> {
     let zones = optional(folder, "cellZones", |file| {
         let n = file.count()?;
@@ -160,7 +160,7 @@ fn push_face(cells: &mut Cells, face: &[u32]) {
     cells.push(kind, face.iter().map(|&v| VertexId(v)));
 }
 
-/// The faces of each cell, and whether it is their owner.
+/// The faces of each cell, and whether the cell owns them.
 struct Sides<'a> {
     faces: &'a Csr<u32>,
     of_cells: Vec<Vec<(u32, bool)>>,
@@ -183,12 +183,12 @@ impl<'a> Sides<'a> {
                 Error::input("has less than three points, or one that is not there").at(format!("face {i}"))
             );
         }
-        // A cell has four faces at least, so that this is no more than the file can mean.
+        // A cell has at least four faces, so valid cell numbers are below the number of faces.
         let sides = owner.iter().enumerate().map(|(face, &cell)| (face, cell, true));
         let sides = sides.chain(neighbour.iter().enumerate().map(|(face, &cell)| (face, cell, false)));
         let most = faces.len();
         let mut of_cells: Vec<Vec<(u32, bool)>> = Vec::new();
-        // In some versions of OpenFOAM every face has a neighbour, -1 at the boundary.
+        // In some versions of OpenFOAM every face has a neighbour, which is -1 at the boundary.
         for (face, cell, is_owner) in sides.filter(|&(_, cell, is_owner)| is_owner || cell >= 0) {
             let cell = usize::try_from(cell).ok().filter(|&cell| cell < most).ok_or_else(|| {
                 Error::input(format!("names cell {cell}, with {most} faces in all"))

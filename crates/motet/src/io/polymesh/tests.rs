@@ -1,4 +1,4 @@
-//! Cases there and back, cut off and damaged.
+//! Round trips of cases, and truncated and damaged files.
 
 use std::path::Path;
 
@@ -48,7 +48,7 @@ fn cells_of_every_kind_come_back_in_their_order() {
                 patches.used().into_iter().map(|label| patches.name(label)).collect()
             };
             assert_eq!(used(&back), used(&mesh));
-            // What came back is written as the same bytes.
+            // Reading and writing again gives the same bytes.
             assert_eq!(super::tests::written(&back, encoding).files[..4], written.files[..4]);
         }
     }

@@ -1,4 +1,4 @@
-//! A mesh out.
+//! Writes a mesh.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Write as _;
@@ -11,7 +11,7 @@ use crate::io::text::push_floats;
 use crate::mesh::adjacency::{FacetUse, Facets};
 use crate::mesh::{CellKind, Mesh, cell_volume, unused_name};
 
-/// The patch of faces without one.
+/// The patch of faces without a label.
 const DEFAULT: &str = "defaultFaces";
 
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
@@ -40,10 +40,10 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     Ok(Written { files, lost })
 }
 
-/// Stands for no cell.
+/// Marks the absence of a cell.
 const NONE: u32 = u32::MAX;
 
-/// The number of each volume cell; [`NONE`] for others.
+/// The number of each volume cell; [`NONE`] for other cells.
 fn cell_numbers(mesh: &Mesh) -> Result<Vec<u32>> {
     let facets = Facets::of(&mesh.cells);
     let mut next = 0;
@@ -72,15 +72,15 @@ struct Face {
     neighbour: u32,
 }
 
-/// The faces as they stand in the files: inner ones, then those of each patch.
+/// The faces in file order: inner ones, then those of each patch.
 struct Sorted {
     inner: Vec<Face>,
     outer: BTreeMap<i32, Vec<Face>>,
-    /// Surface cells that are no face of the boundary.
+    /// Number of surface cells that are not on the boundary.
     n_inside: usize,
 }
 
-/// Stands behind all labels: faces without one.
+/// Label of unlabelled faces, which sorts after all others.
 const WITHOUT: i32 = i32::MAX;
 
 impl Sorted {
@@ -94,7 +94,8 @@ impl Sorted {
             if turned {
                 ring.reverse();
             }
-            // Wherever a cell's kind has it begin: so that a mesh that was read is written as the same bytes.
+            // Start at the lowest vertex, independent of the cell kind, so that a mesh read from a file is
+            // written identically.
             let first = (0..ring.len()).min_by_key(|&i| ring[i]).unwrap_or(0);
             ring.rotate_left(first);
             ring
@@ -125,7 +126,7 @@ impl Sorted {
         Ok(Self { inner, outer, n_inside: labels.len() })
     }
 
-    /// Leaves points out that no face uses; the points that are left.
+    /// Drops points that no face uses, renumbers the faces, and returns the remaining points.
     fn renumber(&mut self, mesh: &Mesh) -> Result<Vec<Point>> {
         let faces = || self.inner.iter().chain(self.outer.values().flatten());
         let mut new = vec![NONE; mesh.points.len()];
@@ -144,7 +145,7 @@ impl Sorted {
     }
 }
 
-/// The patch of each surface cell, by its corners.
+/// The patch of each surface cell, keyed by its corners.
 fn surface_labels(mesh: &Mesh) -> HashMap<Vec<u32>, i32> {
     let patches = mesh.patches();
     let cells = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
@@ -172,7 +173,7 @@ fn tell_lost(mesh: &Mesh, sorted: &Sorted, n_points: usize, lost: &mut Vec<Strin
     lost.extend(lost_arrays("a polyMesh", "cell", mesh.cell_data.iter().filter(|field| !own(&field.name))));
 }
 
-/// How numbers are laid down.
+/// How numbers are stored.
 struct Out {
     is_text: bool,
 }
@@ -269,7 +270,7 @@ impl Out {
         out
     }
 
-    /// A zone for each region; `None` where there is no region.
+    /// A zone for each region; `None` if there are no regions.
     fn zones(&self, mesh: &Mesh, numbers: &[u32]) -> Option<Vec<u8>> {
         let regions = mesh.regions()?;
         let used: Vec<i32> = regions.used();
@@ -298,7 +299,7 @@ fn line(out: &mut Vec<u8>, text: std::fmt::Arguments<'_>) {
     writeln!(out, "{text}").expect("writing into memory does not fail");
 }
 
-/// A name as OpenFOAM's words are: without blanks, quotes, slashes and signs, not beginning with a digit.
+/// Converts a name to an OpenFOAM word: no blanks, quotes, slashes or punctuation, and no leading digit.
 fn word(name: &str, what: &str) -> String {
     let is_bad = |c: char| {
         c.is_whitespace()
