@@ -1,4 +1,4 @@
-//! Types of numbers as files have them, and numbers to bytes and back.
+//! Number types of files, and conversion between numbers and bytes or text.
 
 use std::borrow::Cow;
 use std::io::Write as _;
@@ -6,7 +6,7 @@ use std::io::Write as _;
 use crate::base::{Point, Result};
 use crate::mesh::Values;
 
-/// Which way round the bytes of a number stand.
+/// The byte order of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ByteOrder {
     Little,
@@ -19,18 +19,18 @@ impl ByteOrder {
 
 macro_rules! scalars {
     ($($name:ident($t:ty);)*) => {
-        /// A type of number.
+        /// A number type.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub(super) enum Scalar { $($name,)* }
 
         impl Scalar {
-            /// How many bytes a number takes.
+            /// Size of a number in bytes.
             pub(super) fn size(self) -> usize {
                 match self { $(Self::$name => size_of::<$t>(),)* }
             }
 
-            /// `n` numbers, whose bytes `fill` puts in place. The caller has
-            /// made sure that the file can hold so many.
+            /// `n` numbers, whose bytes `fill` writes. The caller must have checked that the file can hold
+            /// that many.
             pub(super) fn filled(
                 self, n: usize, order: ByteOrder, fill: impl FnOnce(&mut [u8]) -> Result<()>,
             ) -> Result<Values> {
@@ -46,8 +46,8 @@ macro_rules! scalars {
                 })
             }
 
-            /// `n` numbers from text, blanks between them. `Err` has the first
-            /// piece of text that is not such a number; too few are not an error.
+            /// Parses up to `n` numbers from text. `Err` holds the first token that is not such a number; too
+            /// few tokens are not an error.
             pub(super) fn parse<'a>(
                 self, n: usize, tokens: &mut impl Iterator<Item = &'a str>,
             ) -> Result<Values, &'a str> {
@@ -59,7 +59,7 @@ macro_rules! scalars {
             }
         }
 
-        /// The bytes of all numbers, as they stand in memory; of texts, each ended by a zero byte.
+        /// The bytes of all values in native byte order; each text is terminated by a zero byte.
         pub(super) fn native_bytes(values: &Values) -> Cow<'_, [u8]> {
             match values {
                 $(Values::$name(v) => Cow::Borrowed(bytemuck::cast_slice(v)),)*
@@ -69,7 +69,7 @@ macro_rules! scalars {
             }
         }
 
-        /// The bytes of all numbers, the big end first; of texts, none.
+        /// The bytes of all numbers in big-endian order; empty for texts.
         pub(super) fn big_bytes(values: &Values) -> Vec<u8> {
             match values {
                 $(Values::$name(v) => v.iter().flat_map(|x| x.to_be_bytes()).collect(),)*
@@ -77,7 +77,7 @@ macro_rules! scalars {
             }
         }
 
-        /// Adds numbers as text; texts are left out.
+        /// Appends numbers as text; texts are skipped.
         pub(super) fn write_text(out: &mut Vec<u8>, values: &Values) {
             match values {
                 $(Values::$name(v) => write_lines(out, v),)*
@@ -94,7 +94,7 @@ macro_rules! scalars {
             }
         }
 
-        /// Adds the values of `more`; `false` when they are of another type.
+        /// Appends the values of `more`; returns `false` if their types differ.
         pub(super) fn append(values: &mut Values, more: Values) -> bool {
             match (values, more) {
                 $((Values::$name(v), Values::$name(more)) => v.extend(more),)*
@@ -120,7 +120,7 @@ scalars! {
 }
 
 impl Scalar {
-    /// Numbers from `bytes`; a rest that makes no whole number is left out.
+    /// Converts `bytes` to numbers; trailing bytes of an incomplete number are ignored.
     pub(super) fn numbers(self, bytes: &[u8], order: ByteOrder) -> Result<Values> {
         let n = bytes.len() / self.size();
         self.filled(n, order, |out| {
@@ -134,8 +134,7 @@ impl Scalar {
     }
 }
 
-/// Adds numbers as text, in lines of up to twelve; a float with the fewest
-/// digits that bring it back.
+/// Appends numbers as text, up to twelve per line; floats with the fewest digits that recover them exactly.
 pub(super) fn write_lines<T: std::fmt::Debug>(out: &mut Vec<u8>, values: &[T]) {
     for line in values.chunks(12) {
         for value in line {
@@ -146,7 +145,7 @@ pub(super) fn write_lines<T: std::fmt::Debug>(out: &mut Vec<u8>, values: &[T]) {
     }
 }
 
-/// Turns every number of `size` bytes round.
+/// Reverses the bytes of every number of `size` bytes.
 pub(super) fn swap_all(bytes: &mut [u8], size: usize) {
     fn turn<const N: usize>(bytes: &mut [u8]) {
         bytes.as_chunks_mut::<N>().0.iter_mut().for_each(|number| number.reverse());
@@ -159,21 +158,21 @@ pub(super) fn swap_all(bytes: &mut [u8], size: usize) {
     }
 }
 
-/// Values as points in space; `None` for texts.
+/// Values as points; `None` for texts.
 pub(super) fn to_points(values: Values) -> Option<Vec<Point>> {
     let flat = match values {
         Values::F64(flat) => flat,
         other => other.to_f64()?,
     };
-    // Without a copy, unless the room behind the values is no whole point.
+    // Copies only if the allocation is not a whole number of points.
     Some(
         bytemuck::allocation::try_cast_vec(flat).unwrap_or_else(|(_, flat)| flat.as_chunks::<3>().0.to_vec()),
     )
 }
 
-/// Adds whole numbers of 32 or 64 bits as ids; `false` when one is negative or too large.
+/// Appends integers of 32 or 64 bits as ids; returns `false` if one is negative or too large.
 pub(super) fn extend_ids(ids: &mut Vec<u32>, kind: Scalar, order: ByteOrder, bytes: &[u8]) -> bool {
-    // The bits of all numbers together, so that the loop has no branch.
+    // The combined bits of all numbers, which avoids a branch in the loop.
     let mut bits = 0u64;
     let mut add = |wide: u64| {
         bits |= wide;
@@ -200,11 +199,11 @@ pub(super) fn extend_ids(ids: &mut Vec<u32>, kind: Scalar, order: ByteOrder, byt
     bits >> 32 == 0
 }
 
-/// Whole numbers as 32-bit ids. `Err` has the first that is none: negative or
-/// too large, or no whole number at all.
+/// Converts numbers to 32-bit ids. `Err` describes the first value that is not an id: negative, too large, or
+/// not an integer.
 pub(super) fn to_ids(values: &Values) -> Result<Vec<u32>, String> {
     fn all<T: Copy + TryInto<u32> + ToString>(values: &[T]) -> Result<Vec<u32>, String> {
-        // Without a branch for each number, so that the loop is vectorised.
+        // Without a branch per number, so that the loop is vectorised.
         let mut fits = true;
         let ids: Vec<u32> = values
             .iter()

@@ -1,11 +1,11 @@
-//! The part of a mesh that a format can hold, and a sentence about the rest.
+//! Restriction of a mesh to what a format can hold, with messages about the rest.
 
 use std::borrow::Cow;
 
 use crate::base::{CellId, VertexId};
 use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh, corners};
 
-/// The mesh with those cells whose kind `holds`, and what was left out.
+/// The mesh with only those cells whose kind satisfies `holds`, and messages about the others.
 pub(super) fn keep_cells<'m>(
     mesh: &'m Mesh,
     format: &str,
@@ -25,18 +25,18 @@ pub(super) fn keep_cells<'m>(
     (Cow::Owned(of_kinds(mesh, holds)), lost)
 }
 
-/// The mesh with those cells whose kind `holds`, and with all its points.
+/// The mesh with only those cells whose kind satisfies `holds`, and with all its points.
 pub(super) fn of_kinds(mesh: &Mesh, holds: impl Fn(CellKind) -> bool) -> Mesh {
     of_cells(mesh, |cell| holds(mesh.cells.kind(cell)))
 }
 
-/// The mesh with those cells that `keeps`, and with all its points.
+/// The mesh with only those cells for which `keeps` is true, and with all its points.
 pub(super) fn of_cells(mesh: &Mesh, keeps: impl Fn(CellId) -> bool) -> Mesh {
     let kept: Vec<usize> = (0..mesh.cells.len()).filter(|&i| keeps(CellId::new(i))).collect();
     let mut cells = Cells::new();
     let mut all_faces = mesh.cells.polyhedron_faces().iter();
     for (cell, kind, vertices) in mesh.cells.iter() {
-        // Faces stand in the order of the polyhedra, kept or not.
+        // The faces of all polyhedra are stored in order, including those of polyhedra that are dropped.
         let faces = if kind == CellKind::POLYHEDRON { all_faces.next() } else { None };
         let vertices = vertices.iter().copied();
         match (keeps(cell), kind) {
@@ -57,8 +57,8 @@ pub(super) fn of_cells(mesh: &Mesh, keeps: impl Fn(CellId) -> bool) -> Mesh {
     }
 }
 
-/// For a format of surfaces alone: the mesh itself where it has cells of
-/// dimension 2, else the boundary of its volume cells, and what is left out by that.
+/// The surface of a mesh, for formats of surfaces only: the mesh itself if it has cells of dimension 2, else
+/// the boundary of its volume cells; and messages about what is left out.
 pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Vec<String>) {
     let has = |dim| mesh.cells.kinds().iter().any(|kind| kind.dim() == Some(dim));
     if has(2) || !has(3) {
@@ -85,7 +85,7 @@ pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Ve
     (Cow::Owned(surface), vec![note])
 }
 
-/// Facets over the points `used` of a mesh, which stand in rising order; arrays of cells come from `cell_rows`.
+/// A mesh of facets with only the points `used`, in ascending order; cell arrays take the rows `cell_rows`.
 pub(super) fn facets_alone<'m>(
     mesh: &Mesh,
     used: &[VertexId],
@@ -105,7 +105,7 @@ pub(super) fn facets_alone<'m>(
     }
 }
 
-/// A sentence on arrays that a format has no place for; none where there are none.
+/// A message about arrays that a format cannot hold; `None` if there are no such arrays.
 pub(super) fn lost_arrays<'f>(
     format: &str,
     what: &str,

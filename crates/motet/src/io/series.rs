@@ -1,4 +1,5 @@
-//! Meshes over time: a PVD file that names a file for each time, as ParaView plays it, or a VTKHDF file with steps.
+//! Time series of meshes: a PVD file that lists a file for each time, as read by ParaView, or a VTKHDF file
+//! with steps.
 
 use std::path::{Path, PathBuf};
 
@@ -12,35 +13,34 @@ use crate::io::lock::OutputLock;
 use crate::io::{replace, replace_all, vtkhdf, write};
 use crate::mesh::Mesh;
 
-/// Whether a path is that of a series: by its ending (`.pvd`), or a VTKHDF file that is there and has several steps.
+/// Whether a path is that of a series: a `.pvd` file by its extension, or an existing VTKHDF file with
+/// several steps.
 pub fn is_series(path: impl AsRef<Path>) -> bool {
     can_write_series(&path) || vtkhdf::is_transient(path.as_ref())
 }
 
-/// Whether a series can be written to this path, by its ending.
+/// Whether a path has the extension of series that [`SeriesWriter`] writes.
 pub fn can_write_series(path: impl AsRef<Path>) -> bool {
     path.as_ref().extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
 }
 
-/// Whether [`write_series`] knows this ending.
+/// Whether [`write_series`] supports this extension.
 pub fn can_be_series(path: impl AsRef<Path>) -> bool {
     can_write_series(&path) || vtkhdf::is_named_so(path.as_ref())
 }
 
-/// The file that a path of [`read_series`] lies in: itself, or the one whose step it is.
+/// The file that holds a path of [`read_series`]: the path itself, or the file whose step it names.
 pub fn file_of(path: impl AsRef<Path>) -> PathBuf {
     vtkhdf::StepPath::of(path.as_ref()).map_or_else(|| path.as_ref().to_owned(), |step| step.file)
 }
 
-/// The times of a series and the file of each, in the order in which they are written down.
+/// The times of a series and the file of each, in the order of the series.
 ///
-/// A file without a time gets its place in the series. Names are taken to be relative
-/// to where the series lies. The steps of a VTKHDF file have paths such as `flow.vtkhdf#3`,
-/// which [`read`](super::read) knows.
+/// A file without a time gets its index in the series. Names are relative to the folder of the series. The
+/// steps of a VTKHDF file have paths such as `flow.vtkhdf#3`, which [`read`](super::read) accepts.
 ///
-/// # Errors
-/// When the file cannot be read or is no series, when a time is no finite number, and
-/// when several files make up one time: names the place.
+/// # Errors If the file cannot be read or is not a series, a time is not finite, or several files share a
+/// time. Reports the place.
 pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
     let path = path.as_ref();
     if !can_write_series(path) && vtkhdf::is_transient(path) {
@@ -53,10 +53,9 @@ pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
     Ok(frames.into_iter().map(|(time, file)| (time, folder.join(file))).collect())
 }
 
-/// As [`read_series`], from the content of the file; names as they stand there.
+/// Parses the content of a series file like [`read_series`]; names are returned as stored.
 ///
-/// # Errors
-/// As [`read_series`].
+/// # Errors The same as for [`read_series`], except for those of reading the file.
 pub fn parse_series(bytes: &[u8]) -> Result<Vec<(f64, String)>> {
     let mut reader = Reader::from_reader(bytes);
     let mut is_series = false;
@@ -113,12 +112,12 @@ fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
     Ok(Some(unescape(&attribute.value).map_err(|e| bad(&e))?.into_owned()))
 }
 
-/// Writes a whole series to one file: a `.pvd` and its frames beside it, or steps of a `.vtkhdf`, which are held in memory until all are there.
+/// Writes a complete series: a `.pvd` with its frames beside it, or the steps of a `.vtkhdf`, which are held
+/// in memory until the last frame.
 ///
 /// Returns what the format could not hold.
 ///
-/// # Errors
-/// Those of the frames; as [`write()`]; when the file's ending is that of no series.
+/// # Errors Those of the frames; those of [`write()`]; if the extension is not that of a series.
 pub fn write_series(
     path: impl AsRef<Path>,
     frames: impl IntoIterator<Item = Result<(f64, Mesh)>>,
@@ -147,9 +146,9 @@ pub fn write_series(
     Ok([written.lost, notes].concat())
 }
 
-/// A series that grows frame by frame. The PVD file is replaced after each frame, so
-/// that a run that is stopped leaves a whole, shorter series. One writer at a time writes a series: the first frame takes its
-/// [`OutputLock`], which is given back when the writer is dropped.
+/// Writer of a series that grows frame by frame. The PVD file is replaced after each frame, so that an
+/// interrupted run leaves a complete, shorter series. A series has one writer at a time: the first frame
+/// takes its [`OutputLock`], which is released when the writer is dropped.
 #[derive(Debug)]
 pub struct SeriesWriter {
     path: PathBuf,
@@ -159,15 +158,15 @@ pub struct SeriesWriter {
 }
 
 impl SeriesWriter {
-    /// A series that will lie at `path`, with its frames beside it. Nothing is written yet.
+    /// A series at `path`, with its frames beside it. Nothing is written yet.
     pub fn new(path: impl Into<PathBuf>, options: WriteOptions) -> Self {
         Self { path: path.into(), frames: Vec::new(), options, lock: None }
     }
 
-    /// Takes the series' lock, unless this writer has it already; false on a file system that has no locks.
+    /// Takes the lock of the series, unless this writer already has it; returns false on a file system
+    /// without locks.
     ///
-    /// # Errors
-    /// When another writer has it: names its process. When the folder cannot be written.
+    /// # Errors If another writer holds the lock, whose process is reported, or the folder is not writable.
     pub fn lock(&mut self) -> Result<bool> {
         let lock = match self.lock.take() {
             Some(lock) => lock,
@@ -176,10 +175,9 @@ impl SeriesWriter {
         Ok(self.lock.insert(lock).is_held())
     }
 
-    /// Takes over the first `n` frames of the series that lies there: those after them are written anew.
+    /// Keeps the first `n` frames of the existing series; frames after them are written again.
     ///
-    /// # Errors
-    /// When there is no such series, or it has fewer frames.
+    /// # Errors If there is no such series, or it has fewer frames.
     pub fn go_on_after(&mut self, n: usize) -> Result<()> {
         let bytes = std::fs::read(&self.path).map_err(|e| Error::io(&self.path, e))?;
         let mut frames = parse_series(&bytes).map_err(|e| e.in_file(&self.path))?;
@@ -193,7 +191,7 @@ impl SeriesWriter {
         Ok(())
     }
 
-    /// Where frame `k` lies: beside the series, under its name and the number.
+    /// The path of frame `k`: beside the series, with its name and the number of the frame.
     pub fn frame_path(&self, k: usize) -> PathBuf {
         self.path.with_file_name(self.frame_name(k))
     }
@@ -203,12 +201,11 @@ impl SeriesWriter {
         format!("{stem}_{k:04}.vtu")
     }
 
-    /// Adds a frame: its file first, then the series that names it.
+    /// Adds a frame: writes its file, then updates the series.
     ///
-    /// Returns the frame's file, and what the format could not hold.
+    /// Returns the file of the frame, and what the format could not hold.
     ///
-    /// # Errors
-    /// As [`write()`]; when another writer writes this series.
+    /// # Errors Those of [`write()`]; if another writer is writing this series.
     pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<(PathBuf, Vec<String>)> {
         self.lock()?;
         let k = self.frames.len();

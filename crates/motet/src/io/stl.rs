@@ -1,13 +1,13 @@
 //! STL surfaces, text and binary. Equal points are merged; several solids become patches.
 //!
-//! Written here, because `stl_io` (0.11) merges points as it likes, keeps neither
-//! the names of solids nor the attribute bytes, takes a binary file that begins with
-//! `solid` for text, and reads text in single precision only.
+//! A reader and writer of our own, because `stl_io` (0.11) merges points in its own way, keeps neither the
+//! names of solids nor the attribute bytes, mistakes a binary file that begins with `solid` for text, and
+//! reads text in single precision only.
 //!
-//! Binary or text is told by the length: a binary file of n triangles has
-//! 84 + 50 n bytes, whatever its header says; or those and, behind each triangle, as many bytes as its attribute counts. Points are merged where all three
-//! coordinates are equal (0 and -0 are). Normals are not kept: they follow from
-//! the points. Attribute bytes become the cell array `attribute` where they are not 0.
+//! Binary files are recognized by their length: a binary file of n triangles has 84 + 50 n bytes, whatever
+//! its header, possibly followed after each triangle by as many bytes as its attribute states. Points are
+//! merged if all three coordinates are equal (0 and -0 are). Normals are not kept: they follow from the
+//! points. Attribute bytes become the cell array `attribute` unless all are 0.
 
 use std::collections::HashMap;
 use std::io::Write as _;
@@ -22,11 +22,11 @@ use crate::mesh::{CellKind, Cells, Field, Mesh};
 pub(super) const FORMAT: Format =
     Format { name: "STL", endings: &[".stl"], read: Some(read), write: Some(write) };
 
-/// Header and number of triangles.
+/// Size of the header and the number of triangles.
 const HEAD_BYTES: usize = 84;
-/// Normal, three points, attribute.
+/// Size of the normal, three points and the attribute.
 const TRIANGLE_BYTES: usize = 50;
-/// `normal` and three numbers.
+/// The word `normal` and three numbers.
 const MAX_NORMAL_WORDS: usize = 4;
 
 fn read(input: &Input<'_>) -> Result<Mesh> {
@@ -34,7 +34,7 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
     if let Some(triangles) = with_payload(bytes) {
         input.notes.add("what another program has put behind each triangle is passed over");
         let mut mesh = binary(triangles.into_iter())?;
-        // They were counts.
+        // These attributes were byte counts.
         mesh.cell_data.clear();
         return Ok(mesh);
     }
@@ -42,7 +42,8 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
         (Some((triangles, [])), _) => binary(triangles.chunks_exact(TRIANGLE_BYTES))?,
         (_, Some(word)) if word.eq_ignore_ascii_case(b"solid") => ascii(bytes)?,
         (Some((triangles, behind)), _) => {
-            // The count of what follows a triangle stands in its attribute: then this is no run of whole triangles.
+            // A nonzero attribute may be the count of bytes after its triangle, so these are not consecutive
+            // triangles.
             if triangles.chunks_exact(TRIANGLE_BYTES).any(|t| t[TRIANGLE_BYTES - 2..] != [0, 0]) {
                 return Err(neither(bytes));
             }
@@ -57,15 +58,15 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// The triangles of a binary file, and what comes behind them; `None` when the
-/// file is too short for the number of triangles in its head.
+/// The triangles of a binary file, and the bytes after them; `None` if the file is too short for the declared
+/// number of triangles.
 fn binary_body(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let n = u32::from_le_bytes(*bytes.get(80..)?.first_chunk()?);
     bytes[HEAD_BYTES..].split_at_checked(n as usize * TRIANGLE_BYTES)
 }
 
-/// The triangles of a binary file whose attributes say how many bytes follow each, and which fill it to its end; `None`
-/// for any other.
+/// The triangles of a binary file whose attributes state how many bytes follow each triangle; `None` unless
+/// these fill the file exactly.
 fn with_payload(bytes: &[u8]) -> Option<Vec<&[u8]>> {
     let n = u32::from_le_bytes(*bytes.get(80..)?.first_chunk()?) as usize;
     let mut rest = &bytes[HEAD_BYTES..];
@@ -100,7 +101,7 @@ fn neither(bytes: &[u8]) -> Error {
     error.remedy("the file is cut off, damaged or no STL: get it again")
 }
 
-/// Corners of triangles, merged into vertices.
+/// Triangles whose corners are merged into vertices.
 #[derive(Default)]
 struct Merged {
     places: HashMap<[u64; 3], VertexId>,
@@ -173,7 +174,7 @@ fn ascii(bytes: &[u8]) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// Reads `facet ... endfacet`; false when `endsolid` comes instead.
+/// Reads `facet ... endfacet`; returns false at `endsolid`.
 fn facet(text: &mut Text<'_>, merged: &mut Merged) -> Result<bool> {
     let word = text.expect("`facet` or `endsolid`")?;
     if word.eq_ignore_ascii_case(b"endsolid") {
@@ -224,8 +225,8 @@ fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     Ok(Written { files: vec![(String::new(), bytes)], lost })
 }
 
-/// Whether cells of this kind are cut into triangles around their first vertex,
-/// and into how many where that is fixed.
+/// Whether cells of this kind are split into triangles around their first vertex, and into how many if that
+/// is fixed.
 fn fan(kind: CellKind) -> Option<Option<usize>> {
     match kind {
         CellKind::TRIANGLE => Some(Some(1)),
@@ -257,7 +258,7 @@ fn corners(mesh: &Mesh, triangle: &Triangle) -> [Point; 3] {
     triangle.0.map(|v| mesh.points[v.index()])
 }
 
-/// The unit normal; zero where a triangle has none, which is what readers expect.
+/// The unit normal; zero for a degenerate triangle, as readers expect.
 fn normal([a, b, c]: [Point; 3]) -> Point {
     let n = vector::cross(vector::sub(b, a), vector::sub(c, a));
     let length = vector::dot(n, n).sqrt();
@@ -290,7 +291,7 @@ fn write_binary(mesh: &Mesh, triangles: &[Triangle], lost: &mut Vec<String>) -> 
     Ok(out)
 }
 
-/// A solid a patch, in the order in which patches begin.
+/// Writes a solid for each run of triangles with the same patch.
 fn write_ascii(mesh: &Mesh, triangles: &[Triangle]) -> Vec<u8> {
     let patches = mesh.patches();
     let label = |t: &Triangle| patches.as_ref().map_or(0, |p| p.ids[t.1]);

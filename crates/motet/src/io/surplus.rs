@@ -1,12 +1,12 @@
-//! Cells that name more points than their kind has, as some writers leave them:
-//! quads of eight ids from a mesher that pads, lines with a third point for their
-//! orientation. VTK ignores what is too much; it is left out, and said.
+//! Cells with more points than their kind has, as some writers produce them: quads with eight ids from a
+//! mesher that pads, lines with a third point for their orientation. VTK ignores surplus points; they are
+//! removed with a note.
 
 use crate::base::VertexId;
 use crate::io::format::Notes;
 use crate::mesh::CellKind;
 
-/// Shortens the lists of such cells. Offsets that do not fit are left to those who check them.
+/// Truncates the lists of such cells. Invalid offsets are left to later checks.
 pub(super) fn trim(kinds: &[CellKind], offsets: &mut Vec<u32>, vertices: &mut Vec<VertexId>, notes: &Notes) {
     let too_long = |kind: CellKind, n: u32| kind.n_vertices().filter(|&most| n as usize > most);
     let is_too_long = |(&kind, w): (&CellKind, &[u32])| too_long(kind, w[1].saturating_sub(w[0])).is_some();

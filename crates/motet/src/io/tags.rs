@@ -1,29 +1,28 @@
-//! From the numbers that a file gives its points or cells to their places in arrays.
+//! Maps the numbers that a file gives to points or cells to their indices in arrays.
 
 use std::collections::HashMap;
 
 use crate::base::{Error, Result};
 
-/// Where each numbered thing stands.
+/// The index of each number.
 #[derive(Debug)]
 pub(super) enum Tags {
-    /// Place `i` has number `first + i`: what most files have.
+    /// Index `i` has the number `first + i`, as in most files.
     Running { first: u64, n: usize },
-    /// The place of number `first + i`, [`NOWHERE`] where there is none.
+    /// The index of number `first + i`, [`NOWHERE`] if it is not used.
     Dense { first: u64, places: Vec<u32> },
     /// Numbers with wide gaps.
     Sparse(HashMap<u64, u32>),
 }
 
 const NOWHERE: u32 = u32::MAX;
-/// Up to this many places a number are worth an array.
+/// Maximum array size per number for the dense form.
 const DENSE_LIMIT: usize = 8;
 
 impl Tags {
-    /// Takes the numbers of `what` in the order of their places.
+    /// Maps the numbers of `what`, given in the order of their indices.
     ///
-    /// # Errors
-    /// When a number occurs twice.
+    /// Fails if a number occurs twice.
     pub(super) fn new(numbers: &[u64], what: &str) -> Result<Self> {
         let first = numbers.iter().copied().min().unwrap_or(0);
         if numbers.iter().zip(0..).all(|(&number, place)| number - first == place) {
@@ -52,7 +51,7 @@ impl Tags {
         Ok(Self::Sparse(places))
     }
 
-    /// Where `number` stands.
+    /// The index of `number`, if it is used.
     #[inline]
     pub(super) fn place(&self, number: u64) -> Option<u32> {
         match self {

@@ -1,9 +1,8 @@
 //! SimVascular's mesh-complete folders: a volume, and a file for each of its faces.
 //!
-//! Read are two layouts: `mesh-complete.mesh.vtu` with `mesh-surfaces/*.vtp`, and
-//! `NAME.vtu` with `NAME_*.vtp` beside it, where the folder has one such volume.
-//! Written is the first, with `mesh-complete.exterior.vtp` and, where names of patches
-//! begin with `wall`, `walls_combined.vtp`.
+//! Two layouts are read: `mesh-complete.mesh.vtu` with `mesh-surfaces/*.vtp`, and `NAME.vtu` with
+//! `NAME_*.vtp` beside it, if the folder has a single volume of this kind. The first layout is written, with
+//! `mesh-complete.exterior.vtp` and, if names of patches begin with `wall`, `walls_combined.vtp`.
 
 mod read;
 mod write;

@@ -1,15 +1,14 @@
-//! A folder into one mesh.
+//! Reads a folder into one mesh.
 //!
-//! Points of a face are found in the volume by `GlobalNodeID`, or where a file has
-//! none by equal coordinates. Triangles of faces follow the cells of the volume,
-//! with the array `patch`: `ModelFaceID` where each face has its own, else running
-//! numbers in the order of the file names. Names of patches are those of the files.
+//! Points of a face are matched to the volume by `GlobalNodeID`, or by equal coordinates if a file has none.
+//! Triangles of faces follow the cells of the volume, with the array `patch`: `ModelFaceID` if each face has
+//! a distinct one, else consecutive numbers in the order of the file names. Patches are named after the
+//! files.
 //!
-//! A volume without regions is one, labelled 1.
+//! A volume without regions becomes a single region with label 1.
 //!
-//! Arrays on cells go on over the triangles where the face has them under the same
-//! name (`GlobalElementID`: the element behind the triangle); elsewhere there is 0,
-//! or NaN for real numbers.
+//! Arrays on cells continue over the triangles if the face has them under the same name (`GlobalElementID`:
+//! the element behind the triangle); otherwise the values are 0, or NaN for real numbers.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -22,10 +21,10 @@ use crate::io::tags::Tags;
 use crate::io::vtkxml;
 use crate::mesh::{Field, Mesh, Values};
 
-/// The files of one folder.
+/// The files of a folder.
 struct Layout {
     volume: PathBuf,
-    /// Name and file of each face, in the order of the names.
+    /// Name and file of each face, sorted by name.
     faces: Vec<(String, PathBuf)>,
 }
 
@@ -110,7 +109,7 @@ impl Layout {
     }
 }
 
-/// Stem and path of the files with this ending, by name; none where there is no folder.
+/// Stem and path of the files with this extension, sorted by name; empty if the folder does not exist.
 fn files(folder: &Path, ending: &str) -> Result<Vec<(String, PathBuf)>> {
     if !folder.is_dir() {
         return Ok(Vec::new());
@@ -149,7 +148,7 @@ fn found_by_id(tags: &Tags, ids: &[u64]) -> Result<Vec<VertexId>> {
     .remedy("the face belongs to another volume"))
 }
 
-/// Vertices of the volume by their exact coordinates.
+/// Vertices of the volume, indexed by exact coordinates.
 struct ByPoint {
     places: HashMap<[u64; 3], VertexId>,
 }
@@ -181,12 +180,13 @@ impl ByPoint {
     }
 }
 
-/// Adding 0 turns -0 into 0.
+/// Hash key of a point; adding 0 turns -0 into 0.
 fn key(point: &[f64; 3]) -> [u64; 3] {
     point.map(|x| (x + 0.0).to_bits())
 }
 
-/// A label a face: its `ModelFaceID` where all have one and they differ, else running numbers.
+/// A label for each face: its `ModelFaceID` if all faces have distinct positive ones, else consecutive
+/// numbers.
 fn face_labels<'f>(faces: impl Iterator<Item = &'f Mesh> + Clone) -> Vec<i32> {
     let own = |face: &Mesh| {
         let ids = face.cell_field(FACE_ID)?.values.to_i64()?;
@@ -202,7 +202,7 @@ fn face_labels<'f>(faces: impl Iterator<Item = &'f Mesh> + Clone) -> Vec<i32> {
     labels.filter(differ).unwrap_or_else(|| (1..).take(faces.count()).collect())
 }
 
-/// Goes on with the cell arrays of `mesh` over the cells of `face`, which have been added.
+/// Extends the cell arrays of `mesh` over the cells of `face`, which have just been added.
 fn extend_arrays(mesh: &mut Mesh, face: &Mesh) {
     let (n_all, n_face) = (mesh.cells.len(), face.cells.len());
     for theirs in &face.cell_data {
@@ -220,7 +220,7 @@ fn extend_arrays(mesh: &mut Mesh, face: &Mesh) {
     }
 }
 
-/// Appends values, in a type that holds both; false where there is none.
+/// Appends values, converted to a type that holds both; returns false if there is none.
 fn append(ours: &mut Values, theirs: &Values) -> bool {
     macro_rules! same {
         ($($variant:ident)*) => {
@@ -242,7 +242,7 @@ fn append(ours: &mut Values, theirs: &Values) -> bool {
     true
 }
 
-/// Fills up to `n` values: 0, NaN or an empty text.
+/// Pads to `n` values with 0, NaN or empty texts.
 fn blank(values: &mut Values, n: usize) {
     macro_rules! zeros {
         ($($variant:ident)*) => {

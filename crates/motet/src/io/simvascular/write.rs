@@ -1,8 +1,8 @@
-//! One mesh into a folder.
+//! Writes a mesh to a folder.
 //!
-//! Every patch becomes a face with the ids by which solvers find it: `GlobalNodeID` (its points in the volume),
-//! `GlobalElementID` (the element behind each facet), `ModelFaceID` (the label of the patch). Ids that the mesh has
-//! and that tell its points or elements apart are kept, else both are numbered from 1.
+//! Every patch becomes a face with the ids that solvers need: `GlobalNodeID` (its points in the volume),
+//! `GlobalElementID` (the element behind each facet), `ModelFaceID` (the label of the patch). Ids of the mesh
+//! are kept if they identify its points or elements uniquely; otherwise both are numbered from 1.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -65,13 +65,13 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     Ok(written)
 }
 
-/// Adds the one file that a writer made.
+/// Adds the single file of a writer under `path`.
 fn add(written: &mut Written, path: String, made: Written) {
     written.lost.extend(made.lost);
     written.files.extend(made.files.into_iter().map(|(_, bytes)| (path.clone(), bytes)));
 }
 
-/// The patch of each cell, and the cells of each patch by a name that can be a file's.
+/// The patch of each cell, and the cells of each patch, keyed by a valid file name.
 fn faces(mesh: &Mesh, surface_cells: &[usize]) -> (Labels, BTreeMap<String, Vec<usize>>) {
     let labels = mesh.patches().unwrap_or_default();
     let mut faces = BTreeMap::new();
@@ -89,13 +89,13 @@ fn faces(mesh: &Mesh, surface_cells: &[usize]) -> (Labels, BTreeMap<String, Vec<
     (labels, faces)
 }
 
-/// A mesh and the ids of its points and elements.
+/// A mesh with ids of its points and elements.
 struct Numbered<'m> {
     mesh: &'m Mesh,
     node_ids: Values,
-    /// For each cell; 0 for cells that are no volume cells.
+    /// Element id of each cell; 0 for cells that are not volume cells.
     element_ids: Vec<i64>,
-    /// The element behind a facet of the boundary, by the facet's sorted corners.
+    /// The element behind a boundary facet, keyed by the facet's sorted corners.
     behind: HashMap<Vec<VertexId>, i64>,
 }
 
@@ -138,7 +138,7 @@ impl<'m> Numbered<'m> {
         volume
     }
 
-    /// The surface of some cells, and how many of them are no facets of the boundary.
+    /// The surface formed by some cells, and how many of them are not boundary facets.
     fn face(&self, cells: &[usize], labels: &Labels) -> (Mesh, usize) {
         let facet = |&i: &usize| (self.mesh.cells.kinds()[i], self.mesh.cells.connectivity().list(i));
         let mut used: Vec<VertexId> = cells.iter().map(facet).flat_map(|(_, v)| v).copied().collect();
@@ -158,7 +158,7 @@ impl<'m> Numbered<'m> {
     }
 }
 
-/// In 32 bits where they fit, as SimVascular has them.
+/// Ids as 32-bit integers if they fit, as SimVascular uses.
 fn integers(ids: Vec<i64>) -> Values {
     let small: Option<Vec<i32>> = ids.iter().map(|&id| i32::try_from(id).ok()).collect();
     small.map_or(Values::I64(ids), Values::I32)

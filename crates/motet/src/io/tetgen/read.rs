@@ -1,4 +1,4 @@
-//! Reading TetGen's files, all of one stem.
+//! Reads TetGen's files with a common stem.
 
 use super::EDGE_NODES;
 use crate::base::{Error, Result, VertexId};
@@ -8,17 +8,17 @@ use crate::io::reading::read_beside;
 use crate::io::text::{Text, parse_float, parse_int};
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
-/// More numbers on a line than any program writes.
+/// Maximum number of columns, more than any program writes.
 const MAX_COLUMNS: usize = 1 << 16;
 
-/// One of the files: a head of a few counts, then a line for each thing.
+/// One of the files: a head of a few counts, then a line for each item.
 struct Table<'a> {
     text: Text<'a>,
     head: Vec<usize>,
 }
 
 impl<'a> Table<'a> {
-    /// Reads the head: `n_least` numbers at least, the first being how many lines follow.
+    /// Reads the head, which starts with the number of lines and is padded with zeros to `n_least` numbers.
     fn new(bytes: &'a [u8], what: &str, n_least: usize) -> Result<Self> {
         let mut text = Text::with_comments(bytes, b'#');
         text.peek().ok_or_else(|| text.ends(&format!("the head of the {what}")))?;
@@ -35,7 +35,7 @@ impl<'a> Table<'a> {
         Ok(Self { text, head })
     }
 
-    /// The numbers of the next line that is not empty.
+    /// Reads the numbers of the next non-empty line.
     fn row(&mut self, what: &str, row: &mut Vec<&'a [u8]>) -> Result<()> {
         row.clear();
         row.push(self.text.expect(what)?);
@@ -62,16 +62,16 @@ impl<'a> Table<'a> {
     }
 }
 
-/// Nodes, as the other files need them.
+/// Nodes, as needed by the other files.
 struct NodesFile {
     points: Vec<[f64; 3]>,
     fields: Vec<Field>,
-    /// The number of the first one.
+    /// The number of the first node.
     base: i64,
     dim: usize,
 }
 
-/// Reads the files that have the stem of the one named.
+/// Reads the files that share the stem of the given one.
 pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let path = input.path;
     let is_ele = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ele"));
@@ -103,7 +103,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     Ok(elements.into_mesh(nodes))
 }
 
-/// `number of points, dimension, number of attributes, number of markers`.
+/// Reads the node file, whose head is `number of points, dimension, number of attributes, number of markers`.
 fn read_nodes(bytes: &[u8]) -> Result<NodesFile> {
     let mut table = Table::new(bytes, "nodes", 4)?;
     let [n, dim, n_attributes, n_markers] = [table.head[0], table.head[1], table.head[2], table.head[3]];
@@ -143,7 +143,7 @@ fn read_nodes(bytes: &[u8]) -> Result<NodesFile> {
     Ok(NodesFile { points, fields, base, dim })
 }
 
-/// 32 bits where they suffice.
+/// Converts to 32 bits if all values fit.
 fn narrow(values: Vec<i64>) -> Values {
     match values.iter().map(|&v| i32::try_from(v).ok()).collect::<Option<Vec<i32>>>() {
         Some(narrow) => narrow.into(),
@@ -154,12 +154,12 @@ fn narrow(values: Vec<i64>) -> Values {
 #[derive(Default)]
 struct Elements {
     cells: Cells,
-    /// Columns of attributes; the first holds the markers of triangles and edges as well.
+    /// Columns of attributes; the first also holds the markers of triangles and edges.
     columns: Vec<Vec<f64>>,
 }
 
 impl Elements {
-    /// `number of tetrahedra, nodes in each, number of attributes`.
+    /// Reads the element file, whose head is `number of tetrahedra, nodes in each, number of attributes`.
     fn read_ele(&mut self, bytes: &[u8], nodes: &NodesFile) -> Result<()> {
         let mut table = Table::new(bytes, "elements", 3)?;
         let [n, n_nodes, n_attributes] = [table.head[0], table.head[1], table.head[2]];
@@ -179,7 +179,7 @@ impl Elements {
         self.rows(&mut table, n, kind, &order, nodes)
     }
 
-    /// `number of triangles or edges, number of markers`.
+    /// Reads a face or edge file, whose head is `number of triangles or edges, number of markers`.
     fn read_sides(&mut self, bytes: &[u8], nodes: &NodesFile, kind: CellKind, n_nodes: usize) -> Result<()> {
         let mut table = Table::new(bytes, "sides", 2)?;
         let [n, n_markers] = [table.head[0], table.head[1]];
