@@ -1,20 +1,19 @@
-//! Words and numbers of a text file, each with the line that it stands on.
+//! Words and numbers of a text file, with line numbers for errors.
 //!
-//! The line is found by counting only when something is wrong: a reader of
-//! millions of numbers pays nothing for it.
+//! Lines are counted only when an error occurs, so that reading millions of numbers costs nothing extra.
 
 use crate::base::{Error, Result};
 
-/// A place in a text, and the words from there on.
+/// A position in a text, from which words are read.
 #[derive(Clone, Debug)]
 pub(super) struct Text<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// What begins a comment, which goes on to the end of the line.
+    /// The byte that starts a comment, which extends to the end of the line.
     comment: Option<u8>,
 }
 
-/// What a number in a text takes at least: a digit and what divides it from the next.
+/// Minimum size of a number in a text: a digit and a separator.
 const BYTES_A_NUMBER: usize = 2;
 
 impl<'a> Text<'a> {
@@ -23,27 +22,27 @@ impl<'a> Text<'a> {
         Self { bytes, at: 0, comment: None }
     }
 
-    /// A text in which `comment` and all behind it on the line mean nothing.
+    /// A text in which `comment` and the rest of its line are ignored.
     pub(super) fn with_comments(bytes: &'a [u8], comment: u8) -> Self {
         Self { bytes, at: 0, comment: Some(comment) }
     }
 
-    /// How many bytes have been read.
+    /// Number of bytes read so far.
     pub(super) fn position(&self) -> usize {
         self.at
     }
 
-    /// Goes on reading at byte `position`.
+    /// Continues reading at byte `position`.
     pub(super) fn set_position(&mut self, position: usize) {
         self.at = position.min(self.bytes.len());
     }
 
-    /// All bytes from here on.
+    /// All bytes from the current position.
     pub(super) fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }
 
-    /// The next word, on whatever line; `None` at the end.
+    /// The next word on this or a later line; `None` at the end.
     pub(super) fn word(&mut self) -> Option<&'a [u8]> {
         loop {
             match self.word_in_line() {
@@ -54,7 +53,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// The next word of this line; `None` at its end, where the line break is still to come.
+    /// The next word of this line; `None` at the end of the line, before the line break.
     pub(super) fn word_in_line(&mut self) -> Option<&'a [u8]> {
         while self.bytes.get(self.at).is_some_and(|b| *b != b'\n' && b.is_ascii_whitespace()) {
             self.at += 1;
@@ -71,13 +70,12 @@ impl<'a> Text<'a> {
         (len > 0).then(|| &rest[..len])
     }
 
-    /// The next word, left in place.
+    /// The next word, without consuming it.
     pub(super) fn peek(&self) -> Option<&'a [u8]> {
         self.clone().word()
     }
 
-    /// What is left of this line, without its break; the next line comes next.
-    /// `None` at the end of the text.
+    /// Consumes the rest of this line with its break and returns it without; `None` at the end of the text.
     pub(super) fn line(&mut self) -> Option<&'a [u8]> {
         let rest = self.rest();
         if rest.is_empty() {
@@ -88,7 +86,7 @@ impl<'a> Text<'a> {
         Some(rest[..len].strip_suffix(b"\r").unwrap_or(&rest[..len]))
     }
 
-    /// Reads the next word, which must be there.
+    /// Reads the next word; an error at the end of the text.
     pub(super) fn expect(&mut self, what: &str) -> Result<&'a [u8]> {
         match self.word() {
             Some(word) => Ok(word),
@@ -96,24 +94,24 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Reads a whole number.
+    /// Reads an integer.
     pub(super) fn int(&mut self, what: &str) -> Result<i64> {
         let word = self.expect(what)?;
         parse_int(word).ok_or_else(|| self.unexpected(what, "a whole number", word))
     }
 
-    /// Reads a whole number of 32 bits, such as a label.
+    /// Reads a 32-bit integer, such as a label.
     pub(super) fn int32(&mut self, what: &str) -> Result<i32> {
         let n = self.int(what)?;
         i32::try_from(n).map_err(|_| self.error(format!("{what} {n} does not fit in 32 bits")))
     }
 
-    /// Reads how many things follow, of `numbers_each` numbers each, and holds
-    /// that against the bytes that are there, so that it is safe to allocate for.
+    /// Reads a number of items of `numbers_each` numbers each, and checks it against the remaining bytes, so
+    /// that it is safe to allocate memory for them.
     pub(super) fn count(&mut self, what: &str, numbers_each: usize) -> Result<usize> {
         let n = self.int(&format!("the number of {what}"))?;
         let bytes_each = BYTES_A_NUMBER * numbers_each;
-        // The last number of a file may lack what divides it from the next.
+        // The last number of a file may lack a separator.
         let room = (self.rest().len() + 1) / bytes_each.max(1);
         match usize::try_from(n) {
             Ok(n) if n <= room => Ok(n),
@@ -138,57 +136,56 @@ impl<'a> Text<'a> {
         Ok([self.float("coordinate x")?, self.float("coordinate y")?, self.float("coordinate z")?])
     }
 
-    /// An error on the line of the word read last.
+    /// An error on the line of the last word read.
     pub(super) fn error(&self, what: impl Into<String>) -> Error {
         Error::input(what).at(format!("line {}", self.line_number()))
     }
 
-    /// The line of the word read last, counted from 1.
+    /// The line of the last word read, counted from 1.
     pub(super) fn line_number(&self) -> usize {
         1 + self.bytes[..self.at].iter().filter(|&&b| b == b'\n').count()
     }
 
-    /// The error where `word` stands in place of what is expected.
+    /// The error for `word` in place of what is expected.
     pub(super) fn unexpected(&self, what: &str, expected: &str, word: &[u8]) -> Error {
         self.error(format!("{what}: expected {expected}, found {}", quoted(word)))
     }
 
-    /// The error where the text ends too early.
+    /// The error for a text that ends too early.
     pub(super) fn ends(&self, what: &str) -> Error {
         self.error(format!("the file ends where {what} should follow"))
             .remedy("the file is cut off: get it again")
     }
 }
 
-/// Where `byte` first stands.
+/// The first position of `byte`.
 pub(super) fn find(bytes: &[u8], byte: u8) -> Option<usize> {
     bytes.iter().position(|&b| b == byte)
 }
 
-/// Where `pattern` first stands.
+/// The first position of `pattern`.
 pub(super) fn find_all(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
     bytes.windows(pattern.len()).position(|w| w == pattern)
 }
 
-/// A word as messages show it: between quotes, cut off where it is long.
+/// A word for messages, quoted and truncated if long.
 pub(super) fn quoted(word: &[u8]) -> String {
     let shown: String = String::from_utf8_lossy(word).chars().take(40).collect();
     format!("`{}`{}", shown.escape_debug(), if word.len() > 40 { "..." } else { "" })
 }
 
-/// A whole number; `None` when `word` is none, or does not fit in 64 bits.
+/// Parses an integer; `None` if `word` is not one, or does not fit in 64 bits.
 pub(super) fn parse_int(word: &[u8]) -> Option<i64> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// A number in double precision; `None` when `word` is none, or is too large to
-/// be one. `nan` and `inf` are numbers here: whether a mesh may have them is
-/// for whoever uses it to say.
+/// Parses a double-precision number; `None` if `word` is not one, or is too large. Accepts `nan` and `inf`:
+/// whether a mesh may contain them is decided by its users.
 pub(super) fn parse_float(word: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(word).ok()?;
     let x: f64 = match text.parse() {
         Ok(x) => x,
-        // Fortran writes its double precision with a D.
+        // Fortran writes exponents of double-precision numbers with a D.
         Err(_) if text.contains(['d', 'D']) => text.replace(['d', 'D'], "e").parse().ok()?,
         Err(_) => return None,
     };
@@ -196,13 +193,13 @@ pub(super) fn parse_float(word: &[u8]) -> Option<f64> {
     (!overflowed).then_some(x)
 }
 
-/// Writes `x` with as many digits as bring it back bit for bit.
+/// Writes `x` with enough digits to recover it bit for bit.
 pub(super) fn push_float(out: &mut Vec<u8>, x: f64) {
     use std::io::Write;
     write!(out, "{x:?}").expect("writing into memory does not fail");
 }
 
-/// Writes numbers with blanks between.
+/// Writes numbers separated by blanks.
 pub(super) fn push_floats(out: &mut Vec<u8>, numbers: &[f64]) {
     for (i, &x) in numbers.iter().enumerate() {
         if i > 0 {

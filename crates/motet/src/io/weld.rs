@@ -1,12 +1,12 @@
-//! Points at which pieces of one mesh touch, made one.
+//! Merges points where pieces of one mesh touch.
 
 use crate::base::VertexId;
 use crate::io::format::Notes;
 use crate::mesh::{Mesh, firsts_at_place};
 
-/// Makes one of the points at exactly the same place that belong to different pieces, which begin at the points
-/// `starts`; the first of them stays, with its values. A place where a piece itself has several, as both sides of a slit
-/// do, is left as it is, since it cannot be known which belongs to which.
+/// Merges points of different pieces at exactly the same place; the pieces begin at the points `starts`. The
+/// first of the points is kept, with its values. A place where a single piece has several points, such as
+/// both sides of a slit, is left unchanged, since the correspondence is unknown.
 pub(super) fn weld(mesh: &mut Mesh, starts: &[usize], notes: &Notes) {
     let n = mesh.points.len();
     let mut starts: Vec<usize> = starts.iter().copied().filter(|&start| start < n).collect();
@@ -34,14 +34,15 @@ pub(super) fn weld(mesh: &mut Mesh, starts: &[usize], notes: &Notes) {
     keep_points(mesh, &kept, &new);
 }
 
-/// The mesh with those points alone, the cells with `new[v]` for each vertex `v`.
+/// Restricts the mesh to the points `kept`, and replaces each vertex `v` of its cells by `new[v]`.
 pub(super) fn keep_points(mesh: &mut Mesh, kept: &[usize], new: &[VertexId]) {
     mesh.cells = mesh.cells.renumbered(new);
     mesh.points = kept.iter().map(|&v| mesh.points[v]).collect();
     mesh.point_data = mesh.point_data.iter().map(|f| f.pick(kept.iter().copied())).collect();
 }
 
-/// Gives points their own places back where one piece has several at one; returns at how many places.
+/// Separates the points of places where a piece has several; returns the number of such places shared by
+/// pieces.
 fn split_ambiguous(firsts: &mut [VertexId], starts: &[usize]) -> usize {
     let mut last_piece = vec![usize::MAX; firsts.len()];
     let mut is_ambiguous = vec![false; firsts.len()];
@@ -53,7 +54,7 @@ fn split_ambiguous(firsts: &mut [VertexId], starts: &[usize]) -> usize {
         is_ambiguous[first] |= last_piece[first] == piece;
         last_piece[first] = piece;
     }
-    // Where all of them are of one piece, nothing was to be joined.
+    // If all points of a place belong to one piece, there was nothing to merge.
     let mut is_shared = vec![false; firsts.len()];
     (0..firsts.len())
         .for_each(|v| is_shared[firsts[v].index()] |= last_piece[firsts[v].index()] != piece_of(starts, v));
@@ -73,7 +74,7 @@ mod tests {
     use super::*;
     use crate::mesh::{CellKind, Cells, Field};
 
-    /// Points at these places of a line, each with a vertex cell.
+    /// A mesh of points at these places on a line, each with a vertex cell.
     fn on_a_line(places: &[f64]) -> Mesh {
         let mut cells = Cells::new();
         (0..places.len()).for_each(|v| cells.push(CellKind::VERTEX, [VertexId::new(v)]));

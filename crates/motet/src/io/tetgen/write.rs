@@ -1,4 +1,4 @@
-//! Writing TetGen's files: nodes, elements, and the triangles and edges that have labels of their own.
+//! Writes TetGen's files: nodes, elements, and the triangles and edges with labels of their own.
 
 use std::io::Write as _;
 
@@ -11,7 +11,7 @@ use crate::io::select::{keep_cells, lost_arrays};
 use crate::io::text::push_float;
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
-/// Writes `.node`, `.ele` and `.face`, and `.edge` where there are edges.
+/// Writes `.node`, `.ele` and `.face`, and `.edge` if there are edges.
 pub(super) fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     let n_tets = |kind| mesh.cells.kinds().iter().filter(|k| **k == kind).count();
     let quadratic = n_tets(CellKind::TETRA) == 0 && n_tets(CellKind::QUADRATIC_TETRA) > 0;
@@ -62,7 +62,7 @@ fn node_file(mesh: &Mesh, lost: &mut Vec<String>) -> Vec<u8> {
     out
 }
 
-/// The first attribute is the region; whole-number arrays follow.
+/// The element file; the first attribute is the region, integer arrays follow.
 fn ele_file(mesh: &Mesh, tetra: CellKind, labels: &[i32], lost: &mut Vec<String>) -> Vec<u8> {
     let (kept, other): (Vec<&Field>, Vec<&Field>) = mesh
         .cell_data
@@ -114,7 +114,7 @@ fn places_of(mesh: &Mesh, kind: CellKind) -> Vec<usize> {
     (0..mesh.cells.len()).filter(|&i| mesh.cells.kinds()[i] == kind).collect()
 }
 
-/// A sentence on arrays that keep their values but not their names.
+/// A message about arrays that keep their values but not their names.
 fn nameless(what: &str, fields: &[&Field], keeps_name: impl Fn(&Field) -> bool) -> Option<String> {
     let names: Vec<&str> = fields.iter().filter(|f| !keeps_name(f)).map(|f| f.name.as_str()).collect();
     (!names.is_empty()).then(|| {

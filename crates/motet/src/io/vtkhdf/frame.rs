@@ -1,11 +1,11 @@
-//! Which parts of a file make one mesh, and in which rows of each array they begin.
+//! Selects the parts of a file that make up one mesh, and the first row of each in every array.
 
 use std::ops::Range;
 
 use crate::base::{Error, Result};
 use crate::io::hdf::{Array, Group};
 
-/// The group of steps, in files that go over time.
+/// The group of steps in a transient file.
 pub(super) struct Steps {
     group: Group,
     /// The time of each step.
@@ -13,7 +13,7 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// The steps of a file; `None` where it has none.
+    /// Reads the steps of a file; `None` if it has none.
     pub(super) fn of(root: &Group) -> Result<Option<Self>> {
         let Some(group) = root.group("Steps")? else { return Ok(None) };
         let values = group.needed_array("Values")?;
@@ -26,12 +26,12 @@ impl Steps {
         Ok(Some(Self { group, times }))
     }
 
-    /// What the array `name` says of a step; `None` where there is no such array.
+    /// The row of the array `name` for a step; `None` if there is no such array.
     fn row(&self, name: &str, step: usize) -> Result<Option<Vec<usize>>> {
         self.group.array(name)?.map(|array| row(&array, step)).transpose()
     }
 
-    /// As [`Self::row`], of an array in a group.
+    /// The row for a step, like [`Self::row`], of an array in a subgroup.
     fn row_within(&self, group: &str, name: &str, step: usize) -> Result<Option<Vec<usize>>> {
         let array = self.group.group(group)?.map(|g| g.array(name)).transpose()?.flatten();
         array.map(|array| row(&array, step)).transpose()
@@ -46,7 +46,7 @@ fn whole(array: &Array, n: i64) -> Result<usize> {
     usize::try_from(n).map_err(|_| array.error(format!("{n} is no number of rows")))
 }
 
-/// The counts of an array, one a part.
+/// The counts of an array for a range of parts.
 pub(super) fn counts(group: &Group, name: &str, parts: &Range<usize>) -> Result<Vec<usize>> {
     let array = group.needed_array(name)?;
     array.ints(parts.clone())?.into_iter().map(|n| whole(&array, n)).collect()
@@ -56,12 +56,12 @@ pub(super) fn counts(group: &Group, name: &str, parts: &Range<usize>) -> Result<
 pub(super) struct Frame<'a> {
     root: &'a Group,
     step: Option<(&'a Steps, usize)>,
-    /// Its parts among all.
+    /// The parts that make up this mesh.
     pub(super) parts: Range<usize>,
 }
 
 impl<'a> Frame<'a> {
-    /// The mesh of a file without steps: all parts.
+    /// The mesh of a file without steps, which consists of all parts.
     pub(super) fn whole(root: &'a Group) -> Result<Self> {
         let parts = 0..root.needed_array("NumberOfPoints")?.rows();
         Ok(Self { root, step: None, parts })
@@ -79,7 +79,8 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Where the frame begins in the rows that the array `offsets` of the steps tells; `sum` counts what stands before where it does not.
+    /// The first row of the frame according to the array `offsets` of the steps, or, if it is not given
+    /// there, the result of `before`.
     pub(super) fn start(
         &self,
         offsets: &str,
@@ -93,25 +94,25 @@ impl<'a> Frame<'a> {
         told.map_or_else(before, Ok)
     }
 
-    /// The sum of the counts of the parts before this frame.
+    /// The sum of the counts of all parts before this frame.
     pub(super) fn before(&self, group: &Group, counted: &str) -> Result<usize> {
         let counts = counts(group, counted, &(0..self.parts.start))?;
         Ok(counts.iter().fold(0, |sum, n| sum.saturating_add(*n)))
     }
 
-    /// Where the points begin.
+    /// The first row of the points.
     pub(super) fn first_point(&self) -> Result<usize> {
         self.start("PointOffsets", 0, || self.before(self.root, "NumberOfPoints"))
     }
 
-    /// Where an array of `kind` (`PointData`, `CellData`) begins; `usual` where the steps say nothing of it.
+    /// The first row of an array of `kind` (`PointData`, `CellData`); `usual` if the steps do not specify it.
     pub(super) fn first_value(&self, kind: &str, name: &str, usual: usize) -> Result<usize> {
         let Some((steps, step)) = self.step else { return Ok(usual) };
         let row = steps.row_within(&format!("{kind}Offsets"), name, step)?;
         Ok(row.and_then(|row| row.first().copied()).unwrap_or(usual))
     }
 
-    /// The rows of an array about the mesh as a whole, and how many values each has.
+    /// The rows of a field data array, and the number of values in each.
     pub(super) fn field_rows(&self, name: &str, array: &Array) -> Result<(Range<usize>, usize)> {
         let all = (0..array.rows(), array.components());
         let Some((steps, step)) = self.step else { return Ok(all) };
@@ -122,7 +123,7 @@ impl<'a> Frame<'a> {
         };
         let start = steps.row_within("FieldDataOffsets", name, step)?.and_then(|row| row.first().copied());
         match start.or_else(|| (all.0.end == steps.times.len()).then_some(step)) {
-            // What changes its width over time is not told by rows: it comes as it stands.
+            // An array whose width changes over time is not addressed by rows: it is returned whole.
             Some(start) if components == all.1 => Ok((start..start.saturating_add(n), components)),
             _ => Ok(all),
         }

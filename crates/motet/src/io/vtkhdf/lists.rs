@@ -1,21 +1,21 @@
-//! Lists of ids as VTKHDF has them, part after part: where each list begins, and the ids of all.
+//! Lists of ids in VTKHDF, part by part: offsets of the lists, and the ids of all lists.
 
 use crate::base::{Csr, Result, VertexId};
 use crate::io::hdf::Group;
 
-/// The two arrays of lists, and where in them a frame begins.
+/// The two arrays of the lists, and the first row of a frame in each.
 pub(super) struct Source<'a> {
     pub(super) group: &'a Group,
-    /// The array that tells where each list begins; one number more than lists in each part.
+    /// Array of offsets, with one entry more than lists in each part.
     pub(super) offsets: &'a str,
-    /// The row of the first list among all lists of the file, one row more for each part before.
+    /// The first row in `offsets`, which has an additional row for each preceding part.
     pub(super) first_offset: usize,
-    /// The array of ids.
+    /// Array of ids.
     pub(super) ids: &'a str,
     pub(super) first_id: usize,
 }
 
-/// How many lists a part has, how many ids, and how many things these ids may mean.
+/// The number of lists and of ids of a part, and the bound on these ids.
 pub(super) struct Part {
     pub(super) n_lists: usize,
     pub(super) n_ids: usize,
@@ -23,7 +23,7 @@ pub(super) struct Part {
 }
 
 impl Source<'_> {
-    /// The lists of all parts, ids counted through.
+    /// Reads the lists of all parts, with ids renumbered consecutively over the parts.
     pub(super) fn read(&self, parts: &[Part]) -> Result<Csr<u32>> {
         let offsets = self.group.needed_array(self.offsets)?;
         let ids = self.group.needed_array(self.ids)?;

@@ -1,6 +1,6 @@
-//! VTKHDF (`.vtkhdf`, `.hdf`): VTK's meshes in HDF5, one mesh or many over time.
+//! VTKHDF (`.vtkhdf`, `.hdf`): VTK's meshes in HDF5, a single mesh or several over time.
 //!
-//! The layout is that of VTK's documentation, "VTKHDF File Format" (docs.vtk.org, versions 1.0 to 2.7):
+//! The layout follows VTK's documentation, "VTKHDF File Format" (docs.vtk.org, versions 1.0 to 2.7):
 //!
 //! ```text
 //! VTKHDF  Version, Type        UnstructuredGrid or PolyData
@@ -14,12 +14,12 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `frame` | which parts make a mesh, and where they begin |
-//! | `lists` | lists of ids, part after part |
+//! | `frame` | the parts of a mesh, and their first rows |
+//! | `lists` | lists of ids, part by part |
 //! | `read` | the mesh of a frame |
 //! | `series` | steps as files of a series: `flow.vtkhdf#3` |
-//! | `write` | a mesh out |
-//! | `steps` | meshes over time out |
+//! | `write` | writes a mesh |
+//! | `steps` | writes meshes over time |
 
 mod frame;
 mod lists;

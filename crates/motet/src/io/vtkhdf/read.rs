@@ -1,4 +1,4 @@
-//! The mesh of a file, or of one of its steps.
+//! Reads the mesh of a file, or of one of its steps.
 
 use crate::base::{Csr, Error, Point, Result, VertexId};
 use crate::io::format::{Input, Notes};
@@ -25,7 +25,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     mesh_of(&root, &Frame::of_step(&root, &steps, 0)?, input.notes)
 }
 
-/// The group that has everything, once its version and type are known.
+/// The root group of the data, after checks of its version and type.
 pub(super) fn root_of(file: &Group) -> Result<Group> {
     let root = file.group("VTKHDF")?.ok_or_else(|| {
         Error::input("is an HDF5 file, but has no group VTKHDF").remedy("name the file after what it holds")
@@ -48,7 +48,7 @@ pub(super) fn root_of(file: &Group) -> Result<Group> {
         }))
 }
 
-/// The mesh of a frame.
+/// Reads the mesh of a frame.
 pub(super) fn mesh_of(root: &Group, frame: &Frame<'_>, notes: &Notes) -> Result<Mesh> {
     let n_points = counts(root, "NumberOfPoints", &frame.parts)?;
     let first_point = frame.first_point()?;
@@ -99,7 +99,8 @@ fn read_points(root: &Group, first: usize, counts: &[usize]) -> Result<Vec<Point
     }
 }
 
-/// The lists of cells of a group, and where its cells begin; `column` is its place among the groups of cells.
+/// Reads the vertex lists of the cells of a group; also returns its first cell. `column` is the index of the
+/// group among the groups of cells.
 fn read_lists(
     group: &Group,
     frame: &Frame<'_>,
@@ -125,7 +126,7 @@ fn parts(n_lists: &[usize], n_ids: &[usize], n_things: &[usize]) -> Vec<Part> {
     counts.map(|((&n_lists, &n_ids), &n_things)| Part { n_lists, n_ids, n_things }).collect()
 }
 
-/// The cells of an unstructured grid, and where they begin.
+/// Reads the cells of an unstructured grid; also returns its first cell.
 fn read_grid(root: &Group, frame: &Frame<'_>, n_points: &[usize], notes: &Notes) -> Result<(Cells, usize)> {
     let (lists, first) = read_lists(root, frame, 0, n_points)?;
     let types = root.needed_array("Types")?;
@@ -145,7 +146,7 @@ fn read_grid(root: &Group, frame: &Frame<'_>, n_points: &[usize], notes: &Notes)
     Ok((cells.map_err(|e| e.at(root.place()))?, first))
 }
 
-/// The faces of each polyhedron.
+/// Reads the faces of each polyhedron.
 fn read_faces(
     root: &Group,
     frame: &Frame<'_>,
@@ -182,7 +183,8 @@ fn read_faces(
         let mut faces = Csr::default();
         for &face in list {
             let corners = corners.list(face as usize);
-            // Two polyhedra share a face; more uses of it are not bounded by the file.
+            // At most two polyhedra share a face; without this check the file would not bound the uses of a
+            // face.
             room = room.checked_sub(corners.len()).ok_or_else(|| {
                 Error::input("polyhedra name faces more often than twice").at("/VTKHDF/PolyhedronToFaces")
             })?;
@@ -193,7 +195,8 @@ fn read_faces(
     polyhedra.map(faces_of).collect()
 }
 
-/// The cells of polygonal data, and where they begin: in each part vertices, lines, polygons, strips, as arrays on cells have them.
+/// Reads the cells of polygonal data, in each part vertices, lines, polygons and strips, as in cell arrays;
+/// also returns the first cell.
 fn read_sections(root: &Group, frame: &Frame<'_>, n_points: &[usize]) -> Result<(Cells, usize)> {
     let mut sections = Vec::new();
     let (mut first_cell, mut n_ids) = (0usize, 0usize);
@@ -221,7 +224,7 @@ fn read_sections(root: &Group, frame: &Frame<'_>, n_points: &[usize]) -> Result<
     Ok((cells, first_cell))
 }
 
-/// The arrays of a group with a row for each point or cell.
+/// Reads the arrays of a group with a row for each point or cell.
 fn read_arrays(
     root: &Group,
     frame: &Frame<'_>,
@@ -245,7 +248,7 @@ fn read_arrays(
     Ok(fields)
 }
 
-/// The arrays about the mesh as a whole.
+/// Reads the field data arrays.
 fn read_field_data(root: &Group, frame: &Frame<'_>, notes: &Notes) -> Result<Vec<Field>> {
     let Some(group) = root.group("FieldData")? else { return Ok(Vec::new()) };
     let mut fields = Vec::new();

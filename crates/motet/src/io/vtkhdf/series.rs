@@ -1,4 +1,5 @@
-//! Steps of a file over time as if each were a file: `flow.vtkhdf#3` is step 3 of `flow.vtkhdf`, counted from 0.
+//! Addresses the steps of a transient file as files: `flow.vtkhdf#3` is step 3 of `flow.vtkhdf`, counted from
+//! 0.
 
 use std::path::{Path, PathBuf};
 
@@ -18,14 +19,14 @@ pub(in crate::io) struct StepPath {
 }
 
 impl StepPath {
-    /// What the path means, if it is that of a step.
+    /// Parses a path; `None` if it is not that of a step.
     pub(in crate::io) fn of(path: &Path) -> Option<Self> {
         let (name, step) = path.file_name()?.to_str()?.rsplit_once('#')?;
         let step = step.parse().ok()?;
         has_ending(name).then(|| Self { file: path.with_file_name(name), step })
     }
 
-    /// The path that means it.
+    /// The path of the step.
     fn path(&self) -> PathBuf {
         let mut path = self.file.clone().into_os_string();
         path.push(format!("#{}", self.step));
@@ -38,12 +39,12 @@ fn has_ending(name: &str) -> bool {
     FORMAT.endings.iter().any(|ending| name.ends_with(ending))
 }
 
-/// Whether a file of this name is to be VTKHDF.
+/// Whether the file name has the extension of VTKHDF.
 pub(in crate::io) fn is_named_so(path: &Path) -> bool {
     path.file_name().and_then(|name| name.to_str()).is_some_and(has_ending)
 }
 
-/// Whether this is a file of several steps.
+/// Whether this is an existing file with several steps.
 pub(in crate::io) fn is_transient(path: &Path) -> bool {
     is_named_so(path) && path.is_file() && times(path).is_ok_and(|frames| frames.len() > 1)
 }
@@ -61,7 +62,7 @@ pub(in crate::io) fn times(path: &Path) -> Result<Vec<(f64, PathBuf)>> {
     Ok(times.into_iter().enumerate().map(|(step, time)| (time, path_of(step))).collect())
 }
 
-/// The mesh of a step; of the file no more is read than that.
+/// Reads the mesh of a step, and no other part of the file.
 pub(in crate::io) fn read_step(path: &StepPath, notes: &Notes) -> Result<Mesh> {
     let root = root_of(&open_in_place(&path.file)?)?;
     let steps = Steps::of(&root)?.ok_or_else(|| Error::input("holds one mesh, and no steps"))?;

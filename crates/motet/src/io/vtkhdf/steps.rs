@@ -1,4 +1,5 @@
-//! Meshes over time as one VTKHDF file. Cells that are those of the step before, and arrays that are, stand in it once.
+//! Writes meshes over time to one VTKHDF file. Cells and arrays that equal those of the previous step are
+//! stored once.
 
 use crate::base::{Error, Result};
 use crate::io::format::{WriteOptions, Written};
@@ -7,16 +8,16 @@ use crate::io::labels::label_fields;
 use crate::io::vtkhdf::write::{packing, valid_name};
 use crate::mesh::{Cells, Field, Mesh, Values};
 
-/// Frames as they come.
+/// The frames added so far.
 #[derive(Debug, Default)]
 pub(in crate::io) struct Steps {
     times: Vec<f64>,
     points: Vec<f64>,
-    /// Where in the points each step begins.
+    /// The first point of each step.
     first_points: Vec<i64>,
-    /// For each step the part that its cells are.
+    /// The part with the cells of each step.
     parts: Vec<i64>,
-    /// Where in the cells, and in their vertices, each step begins.
+    /// The first cell, and the first vertex of the cells, of each step.
     first_cells: Vec<i64>,
     first_ids: Vec<i64>,
     cells: Parts,
@@ -26,7 +27,7 @@ pub(in crate::io) struct Steps {
     whole: Vec<Field>,
 }
 
-/// Cells that differ, one behind the other.
+/// Distinct sets of cells, concatenated.
 #[derive(Debug, Default)]
 struct Parts {
     n_points: Vec<i64>,
@@ -37,21 +38,20 @@ struct Parts {
     ids: Vec<i64>,
 }
 
-/// An array that every step has.
+/// An array present in every step so far.
 #[derive(Debug)]
 struct Growing {
     field: Field,
-    /// In which row each step begins.
+    /// The first row of each step.
     first: Vec<i64>,
-    /// The rows of the last one.
+    /// The values of the last step.
     last: Values,
 }
 
 impl Steps {
-    /// Adds a frame; frames come in the order of their times.
+    /// Adds a frame; frames must be added in the order of their times.
     ///
-    /// # Errors
-    /// When it has polyhedra, or its time does not come after the one before.
+    /// Fails if the mesh has polyhedra, or the time does not follow the previous one.
     pub(in crate::io) fn add(&mut self, time: f64, mesh: &Mesh) -> Result<()> {
         if !mesh.cells.polyhedron_faces().is_empty() {
             return Err(Error::input("polyhedra over time are not written to VTKHDF").remedy("write a .pvd"));
@@ -96,10 +96,9 @@ impl Steps {
         self.last = Some(mesh.cells.clone());
     }
 
-    /// The file.
+    /// Builds the file.
     ///
-    /// # Errors
-    /// When there is no frame, or the options ask for what HDF5 cannot do.
+    /// Fails if there are no frames, or the options request an unsupported compression.
     pub(in crate::io) fn into_file(mut self, options: &WriteOptions) -> Result<Written> {
         let packing = packing(options)?;
         let n = self.times.len();
@@ -176,7 +175,7 @@ fn int(group: &mut Node, name: &str, numbers: Vec<i64>, packing: Packing) {
     group.array(name, Values::I64(numbers), &[n], packing);
 }
 
-/// Adds the rows of a step to each array that all steps before had; at the first step all arrays are there.
+/// Appends the rows of a step to each array present in all previous steps; the first step defines the arrays.
 fn grow<'f>(all: &mut Vec<Growing>, fields: impl Iterator<Item = &'f Field>, is_first: bool) {
     let fields: Vec<&Field> = fields.collect();
     if is_first {

@@ -1,4 +1,4 @@
-//! There and back, steps, parts, and files that are damaged or wrong.
+//! Round trips, steps, parts, and damaged or invalid files.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ fn ids(ids: &[u32]) -> Vec<VertexId> {
     ids.iter().map(|&v| VertexId(v)).collect()
 }
 
-/// A tet, a triangle, and a tet as a polyhedron; arrays of every type.
+/// A tet, a triangle, and a tet stored as a polyhedron; arrays of several types.
 fn grid() -> Mesh {
     let mut cells = Cells::new();
     cells.push(CellKind::TETRA, ids(&[0, 1, 2, 3]));
@@ -64,7 +64,7 @@ fn grid() -> Mesh {
     mesh
 }
 
-/// NaN is not itself, so bits are compared.
+/// Compares meshes by their text, since NaN does not compare equal to itself.
 fn same(a: &Mesh, b: &Mesh) -> bool {
     format!("{a:?}") == format!("{b:?}")
 }
@@ -95,7 +95,7 @@ fn surfaces_are_polygonal_data_where_nothing_is_lost_by_it() {
     let (bytes, lost) = print(&mesh, Compression::Zlib);
     assert!(bytes.windows(8).any(|w| w == b"PolyData") && lost.is_empty());
     assert_eq!(parse(&bytes).unwrap().0, mesh);
-    // In polygonal data the line would come first.
+    // In polygonal data the line would precede the other cells.
     mesh.cells.push(CellKind::LINE, ids(&[2, 3]));
     mesh.cell_data.clear();
     let (bytes, _) = print(&mesh, Compression::Zlib);
@@ -139,7 +139,7 @@ fn flipped_bits_never_panic() {
     }
 }
 
-/// A file of one tet, as `change` wants it.
+/// A file with one tet, after `change` of its arrays.
 fn one_tet(change: impl FnOnce(&mut Vec<(&str, Vec<i64>)>)) -> Vec<u8> {
     let mut arrays = vec![
         ("NumberOfPoints", vec![4]),
@@ -199,7 +199,7 @@ fn arrays_that_do_not_fit_are_told_with_their_place() {
     assert!(refused(&Node::new("").into_file().unwrap()).contains("no group VTKHDF"));
 }
 
-/// Three steps of a tet that moves, its topology there once.
+/// Three steps of a moving tet, whose topology is stored once.
 fn transient(parts: &[i64]) -> Vec<u8> {
     let mut root = Node::new("VTKHDF");
     root.attribute("Version", Attribute::Ints(vec![2, 0]));

@@ -1,4 +1,4 @@
-//! A mesh as a VTKHDF file.
+//! Writes a mesh as a VTKHDF file.
 
 use crate::base::{Csr, Error, Result, VertexId};
 use crate::io::format::{Compression, WriteOptions, Written};
@@ -8,7 +8,7 @@ use crate::io::polygonal::{kind_in_section, section_of};
 use crate::io::vtkhdf::SECTIONS;
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values, unused_name};
 
-/// What every reader of VTKHDF knows, and what those have to know that are to see polyhedra.
+/// The version that every reader of VTKHDF supports, and the first with polyhedra.
 const VERSIONS: [[i64; 2]; 2] = [[2, 0], [2, 5]];
 
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
@@ -62,14 +62,15 @@ fn count(group: &mut Node, name: &str, n: usize) {
     group.array(name, Values::I64(vec![n as i64]), &[1], Packing::Plain);
 }
 
-/// Numbers in 64 bits, as VTK has its ids.
+/// Writes ids as 64-bit numbers, as VTK does.
 fn ids(group: &mut Node, name: &str, ids: impl Iterator<Item = u32>, packing: Packing) {
     let ids: Vec<i64> = ids.map(i64::from).collect();
     let n = ids.len();
     group.array(name, Values::I64(ids), &[n], packing);
 }
 
-/// The lists of polygonal data, where all cells come back from them as they are and in their order; else the mesh is a grid.
+/// The lists of polygonal data if they preserve all cells and their order; otherwise `None`, and the mesh is
+/// written as a grid.
 fn sections_of(cells: &Cells) -> Option<[Csr<VertexId>; 4]> {
     let mut lists: [Csr<VertexId>; 4] = Default::default();
     let mut last = 0;
@@ -88,7 +89,7 @@ fn section(name: &str, lists: &Csr<VertexId>, packing: Packing) -> Node {
     group
 }
 
-/// How many cells there are, where each begins, and their vertices.
+/// Writes the number of cells, their offsets and their vertices.
 fn connectivity(group: &mut Node, lists: &Csr<VertexId>, packing: Packing) {
     count(group, "NumberOfCells", lists.len());
     count(group, "NumberOfConnectivityIds", lists.items().len());
@@ -96,7 +97,7 @@ fn connectivity(group: &mut Node, lists: &Csr<VertexId>, packing: Packing) {
     ids(group, "Connectivity", lists.items().iter().map(|v| v.0), packing);
 }
 
-/// Where each list begins, and the last one ends.
+/// Writes the start of each list, and the end of the last.
 fn starts<T>(group: &mut Node, name: &str, lists: &Csr<T>, packing: Packing) {
     let ends = lists.iter().scan(0, |end, list| {
         *end += list.len() as u32;
@@ -153,7 +154,7 @@ fn arrays<'f>(
     group
 }
 
-/// The name, or one near it that VTKHDF can hold: neither slashes nor dots, and none twice.
+/// The name, or a similar one that VTKHDF can hold: without slashes and dots, and unique.
 pub(super) fn valid_name(name: &str, taken: &[String]) -> String {
     let clean: String = name.chars().map(|c| if matches!(c, '/' | '.' | '\0') { '_' } else { c }).collect();
     let clean = if clean.is_empty() { "unnamed".to_owned() } else { clean };

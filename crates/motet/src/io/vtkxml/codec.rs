@@ -1,4 +1,4 @@
-//! The compressions that VTK's XML files may use, a block at a time.
+//! Compression of single blocks in VTK's XML files.
 
 use std::io::Read as _;
 
@@ -8,14 +8,14 @@ use lzma_rust2::{CheckType, XzOptions, XzReader, XzWriter};
 use crate::base::{Error, Result};
 use crate::io::Compression;
 
-/// VTK writes at zlib's level 5; this level of zlib-rs gives files of the same
-/// size (within a percent on meshes) in less time.
+/// VTK uses level 5 of zlib; this level of zlib-rs gives files of the same size (within a percent on meshes)
+/// in less time.
 const ZLIB_LEVEL: u32 = 5;
 const XZ_PRESET: u32 = 5;
-/// Blocks hold some ten thousand bytes; xz at its strongest asks for 65 MiB.
+/// Memory limit: blocks hold some ten thousand bytes, and the strongest preset of xz needs 65 MiB.
 const XZ_MEMORY_KIB: u32 = 128 << 10;
 
-/// VTK's name of a compression in the attribute `compressor`; `None` where nothing is compressed.
+/// VTK's name of a compression in the attribute `compressor`; `None` for no compression.
 pub(super) fn vtk_name(compression: Compression) -> Option<&'static str> {
     match compression {
         Compression::None => None,
@@ -25,7 +25,7 @@ pub(super) fn vtk_name(compression: Compression) -> Option<&'static str> {
     }
 }
 
-/// The compression with VTK's name.
+/// The compression with this VTK name.
 pub(super) fn by_vtk_name(name: &str) -> Result<Compression> {
     [Compression::Zlib, Compression::Lz4, Compression::Lzma]
         .into_iter()
@@ -37,9 +37,8 @@ pub(super) fn by_vtk_name(name: &str) -> Result<Compression> {
         })
 }
 
-/// More than this a block of `n` bytes cannot become: a file that says so lies.
-/// The ratios are those of the formats (zlib 1032, lz4 255); xz has no bound, and
-/// reaches about 7000 on zeros.
+/// Upper bound on the size of a decompressed block of `n` bytes, which exposes wrong sizes in a file. The
+/// ratios are those of the formats (zlib 1032, lz4 255); xz has no bound, and reaches about 7000 on zeros.
 pub(super) fn largest_output(compression: Compression, n: usize) -> usize {
     let ratio = match compression {
         Compression::None => 1,
@@ -50,7 +49,7 @@ pub(super) fn largest_output(compression: Compression, n: usize) -> usize {
     n.saturating_mul(ratio).saturating_add(64)
 }
 
-/// Takes blocks apart; keeps its tables from one to the next.
+/// Decompresses blocks, reusing its tables.
 pub(super) struct Unpacker {
     compression: Compression,
     zlib: Option<Decompress>,
@@ -62,7 +61,7 @@ impl Unpacker {
         Self { compression, zlib }
     }
 
-    /// Fills `out` from one block, exactly. `Err` says what is wrong with the block.
+    /// Decompresses one block, which must fill `out` exactly. `Err` describes what is wrong with the block.
     pub(super) fn unpack(&mut self, block: &[u8], out: &mut [u8]) -> Result<(), String> {
         let n = match (&mut self.zlib, self.compression) {
             (Some(zlib), _) => {
@@ -96,7 +95,7 @@ fn unpack_xz(block: &[u8], out: &mut [u8]) -> Result<usize, String> {
     }
 }
 
-/// Packs blocks; keeps its tables from one to the next.
+/// Compresses blocks, reusing its tables.
 pub(super) struct Packer {
     compression: Compression,
     zlib: Option<Compress>,
@@ -109,7 +108,7 @@ impl Packer {
         Self { compression, zlib }
     }
 
-    /// Adds the packed `block` to `out`.
+    /// Appends the compressed `block` to `out`.
     pub(super) fn pack(&mut self, block: &[u8], out: &mut Vec<u8>) -> Result<()> {
         match (&mut self.zlib, self.compression) {
             (Some(zlib), _) => pack_zlib(zlib, block, out),
@@ -145,7 +144,7 @@ fn pack_zlib(zlib: &mut Compress, block: &[u8], out: &mut Vec<u8>) -> Result<()>
 fn pack_xz(block: &[u8], out: &mut Vec<u8>) -> Result<()> {
     let mut options = XzOptions::with_preset(XZ_PRESET);
     options.set_check_sum_type(CheckType::Crc32);
-    // No more dictionary than there is to look back on.
+    // A dictionary larger than the block has no use.
     options.lzma_options.dict_size = (block.len() as u32).next_power_of_two().max(1 << 12);
     let mut writer = XzWriter::new(out, options).map_err(|e| failed(&e))?;
     std::io::Write::write_all(&mut writer, block).map_err(|e| failed(&e))?;

@@ -1,4 +1,4 @@
-//! Elements and arrays of a VTK XML file, written out.
+//! Writes elements and arrays of a VTK XML file.
 
 use std::borrow::Cow;
 use std::io::Write;
@@ -12,16 +12,16 @@ use crate::io::scalar::{native_bytes, write_lines, write_text};
 use crate::io::vtkxml::codec::{Packer, vtk_name};
 use crate::mesh::{Field, Values};
 
-/// Bytes packed at a time: VTK's own choice, and the reach of zlib's window.
+/// Size of blocks before compression: VTK's own choice, and the size of zlib's window.
 const BLOCK: usize = 32 << 10;
-/// Room for an offset, which is known only when the array is written.
+/// Placeholder for an offset, which is only known when the array is written.
 const OFFSET_BLANKS: &str = "                      ";
 
-/// The values of an array to be written.
+/// The values of an array for writing.
 pub(super) enum Data<'a> {
     Values(&'a Values),
     Points(&'a [Point]),
-    /// Ids, or places in a list, as Int64.
+    /// Ids, or indices in a list, written as Int64.
     Ids(&'a [u32]),
     Int64(Vec<i64>),
     Bytes(&'a [u8]),
@@ -49,7 +49,7 @@ impl Data<'_> {
         }
     }
 
-    /// The bytes as they stand in memory; `None` for ids, which are widened on the way.
+    /// The bytes as stored in memory; `None` for ids, which are widened during writing.
     fn bytes(&self) -> Option<Cow<'_, [u8]>> {
         match self {
             Self::Values(values) => Some(native_bytes(values)),
@@ -60,8 +60,8 @@ impl Data<'_> {
         }
     }
 
-    /// Calls `each` on blocks of `BLOCK` bytes, the last one shorter; `each`
-    /// hears how many bytes there are in all first.
+    /// Calls `each` with the total number of bytes and each block of `BLOCK` bytes; the last block may be
+    /// shorter.
     fn blocks(&self, mut each: impl FnMut(usize, &[u8]) -> Result<()>) -> Result<()> {
         if let Some(bytes) = self.bytes() {
             return bytes.chunks(BLOCK).try_for_each(|block| each(bytes.len(), block));
@@ -75,7 +75,7 @@ impl Data<'_> {
         })
     }
 
-    /// All bytes, in as few pieces as may be.
+    /// Writes all bytes to `sink`, in as few calls as possible.
     fn give_to(&self, sink: &mut dyn Write) -> Result<()> {
         match self.bytes() {
             Some(bytes) => give(sink, &bytes),
@@ -96,21 +96,21 @@ fn give(sink: &mut dyn Write, bytes: &[u8]) -> Result<()> {
     sink.write_all(bytes).map_err(|e| Error::new(ErrorKind::Output, format!("cannot be written: {e}")))
 }
 
-/// A file on its way out.
+/// A file being written.
 pub(super) struct Writer<'a> {
     out: Vec<u8>,
     depth: usize,
     encoding: Encoding,
     compression: Compression,
     packer: Packer,
-    /// Arrays for the appended part: where their offset goes, and their data.
+    /// Arrays for the appended part: the position of their offset, and their data.
     appended: Vec<(usize, Data<'a>)>,
-    /// What could not be written as it was.
+    /// What could not be written unchanged.
     pub(super) lost: Vec<String>,
 }
 
 impl<'a> Writer<'a> {
-    /// Starts a file that holds `kind`.
+    /// Starts a file with data of `kind`.
     pub(super) fn new(kind: &str, options: &WriteOptions) -> Self {
         let ascii = options.encoding == Encoding::Ascii;
         let compression = if ascii { Compression::None } else { options.compression };
@@ -133,7 +133,7 @@ impl<'a> Writer<'a> {
         writer
     }
 
-    /// Opens an element: its name, and its attributes if it has any.
+    /// Opens an element; `tag` is its name with any attributes.
     pub(super) fn open(&mut self, tag: &str) {
         self.line(&format!("<{tag}>"));
         self.depth += 1;
@@ -150,7 +150,7 @@ impl<'a> Writer<'a> {
         self.out.push(b'\n');
     }
 
-    /// Writes an element with one array for each field; `rows` also says how many rows each has.
+    /// Writes an element with an array for each field; `rows` states whether to include the number of rows.
     pub(super) fn fields(&mut self, name: &str, fields: &[&'a Field], rows: bool) -> Result<()> {
         self.open(name);
         for field in fields {
@@ -202,7 +202,7 @@ impl<'a> Writer<'a> {
     fn base64(&mut self, data: &Data<'_>) -> Result<()> {
         let mut raw = Vec::new();
         let header = write_raw(&mut raw, data, self.compression, &mut self.packer)?;
-        // VTK reads the header of compressed data on its own, and so wants it padded.
+        // VTK decodes the header of compressed data separately, so it needs its own padding.
         let header = if self.compression == Compression::None { 0 } else { header };
         let text = STANDARD.encode(&raw[..header]) + &STANDARD.encode(&raw[header..]);
         self.out.extend(text.as_bytes());
@@ -210,11 +210,11 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// Closes everything, adds the appended arrays, and gives it all to `sink`;
-    /// returns what could not be written as it was.
+    /// Closes all elements, adds the appended arrays, and writes everything to `sink`; returns what could not
+    /// be written unchanged.
     ///
-    /// Arrays that are not packed go to the sink as they are: a copy of a large mesh
-    /// in memory would cost as much time as the writing itself.
+    /// Uncompressed arrays are written directly: copying a large mesh in memory would take as long as writing
+    /// it.
     pub(super) fn finish(mut self, kind: &str, sink: &mut dyn Write) -> Result<Vec<String>> {
         self.close(kind);
         let arrays = std::mem::take(&mut self.appended);
@@ -252,7 +252,7 @@ impl<'a> Writer<'a> {
         Ok(self.lost)
     }
 
-    /// `text` as the value of an attribute.
+    /// Escapes `text` for the value of an attribute.
     fn escaped(&mut self, text: &str) -> String {
         let breaks = ['\t', '\n', '\r'];
         let illegal =
@@ -276,7 +276,7 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Adds the header and the blocks of one array; returns the bytes of the header.
+/// Appends the header and the blocks of an array; returns the size of the header in bytes.
 fn write_raw(
     out: &mut Vec<u8>,
     data: &Data<'_>,
@@ -311,7 +311,7 @@ fn write_raw(
     Ok(header)
 }
 
-/// As text; texts as the numbers of their bytes.
+/// Writes an array as text; texts become the numbers of their bytes.
 fn write_ascii(out: &mut Vec<u8>, data: &Data<'_>) {
     match data {
         Data::Values(values @ Values::Text(_)) => write_lines(out, &native_bytes(values)),
@@ -323,12 +323,12 @@ fn write_ascii(out: &mut Vec<u8>, data: &Data<'_>) {
     }
 }
 
-/// The ids of lists, end to end, as plain numbers.
+/// Concatenated ids as plain numbers.
 pub(super) fn plain(ids: &[VertexId]) -> &[u32] {
     bytemuck::cast_slice(ids)
 }
 
-/// Where each list ends.
+/// The end of each list.
 pub(super) fn ends(lists: &Csr<VertexId>) -> &[u32] {
     &lists.offsets()[1..]
 }
