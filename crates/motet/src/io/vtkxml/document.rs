@@ -1,7 +1,6 @@
-//! The XML of a VTK file as a tree of elements, up to the appended data.
+//! Parses the XML of a VTK file into a tree of elements, up to the appended data.
 //!
-//! Raw appended bytes are no XML, so that reading stops at `<AppendedData>`; what
-//! follows it is kept as bytes.
+//! Raw appended bytes are not XML, so parsing stops at `<AppendedData>`; the rest is kept as bytes.
 
 use std::borrow::Cow;
 
@@ -10,27 +9,27 @@ use quick_xml::events::{BytesStart, Event};
 
 use crate::base::{Error, Result};
 
-/// VTK nests six deep; more is damage, or an attack on the stack.
+/// Maximum nesting depth: VTK nests six deep; more is damage, or an attack on the stack.
 const MAX_DEPTH: usize = 32;
 
-/// An element with its attributes, children and first piece of text that is not blank.
+/// An element with its attributes, its children and its first non-blank piece of text.
 #[derive(Debug, Default)]
 pub(super) struct Element<'a> {
     pub(super) name: String,
     attributes: Vec<(String, String)>,
     pub(super) children: Vec<Element<'a>>,
     pub(super) text: &'a [u8],
-    /// The line on which it starts, from 1.
+    /// The line on which the element starts, from 1.
     pub(super) line: usize,
 }
 
 impl<'a> Element<'a> {
-    /// The value of an attribute; `None` also where it is empty, as some writers leave it.
+    /// The trimmed value of an attribute; `None` if it is absent or empty, as some writers leave it.
     pub(super) fn attribute(&self, name: &str) -> Option<&str> {
         self.attributes.iter().find(|(n, _)| n == name).map(|(_, v)| v.trim()).filter(|v| !v.is_empty())
     }
 
-    /// An attribute as it stands, blanks at its ends and all.
+    /// The value of an attribute, with leading and trailing blanks.
     pub(super) fn raw_attribute(&self, name: &str) -> Option<&str> {
         self.attributes.iter().find(|(n, _)| n == name).map(|(_, v)| v.as_str())
     }
@@ -44,23 +43,23 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// A count that must be there.
+    /// A required count.
     pub(super) fn needed_count(&self, name: &str) -> Result<usize> {
         self.count(name)?
             .ok_or_else(|| Error::input(format!("the attribute {name} is missing")).at(self.place()))
     }
 
-    /// The first child of this name.
+    /// The first child with this name.
     pub(super) fn child(&self, name: &str) -> Option<&Element<'a>> {
         self.children.iter().find(|c| c.name == name)
     }
 
-    /// All children of this name.
+    /// All children with this name.
     pub(super) fn children_named<'s>(&'s self, name: &'s str) -> impl Iterator<Item = &'s Element<'a>> {
         self.children.iter().filter(move |c| c.name == name)
     }
 
-    /// Its name and line, for messages.
+    /// The line and the name of the element, for messages.
     pub(super) fn place(&self) -> String {
         match self.attribute("Name") {
             Some(name) => format!("line {}, array {name}", self.line),
@@ -69,15 +68,15 @@ impl<'a> Element<'a> {
     }
 }
 
-/// What stands behind `<AppendedData>`.
+/// The content of `<AppendedData>`.
 #[derive(Debug)]
 pub(super) struct Appended<'a> {
     pub(super) base64: bool,
-    /// From the byte behind the `_` to the end of the file.
+    /// The bytes from the one after the `_` to the end of the file.
     pub(super) bytes: &'a [u8],
 }
 
-/// A VTK file taken apart.
+/// A parsed VTK file.
 #[derive(Debug)]
 pub(super) struct Document<'a> {
     pub(super) root: Element<'a>,
@@ -95,7 +94,7 @@ impl<'a> Document<'a> {
 struct Parser<'a> {
     reader: Reader<&'a [u8]>,
     bytes: &'a [u8],
-    /// Lines are counted up to here.
+    /// Position up to which lines have been counted.
     counted: usize,
     line: usize,
     open: Vec<Element<'a>>,
@@ -135,7 +134,7 @@ impl<'a> Parser<'a> {
                     }
                 }
                 Ok(Event::End(_)) => {
-                    // The parser has checked that it is the end of what is open.
+                    // The parser has checked that the end tag matches the open element.
                     let Some(element) = self.open.pop() else {
                         return Err(self.fault("an end without a start".into()));
                     };
@@ -158,7 +157,7 @@ impl<'a> Parser<'a> {
         let mut attributes = Vec::new();
         for attribute in tag.attributes() {
             let attribute = attribute.map_err(|e| self.fault(format!("in <{name}>: {e}")))?;
-            // VTK writes names as they are, so that an ampersand may stand for itself.
+            // VTK writes names without escapes, so an ampersand may stand for itself.
             let value =
                 quick_xml::escape::unescape(&attribute.value).unwrap_or(Cow::Borrowed(&attribute.value));
             attributes.push((attribute.key.as_ref().to_owned(), value.into_owned()));

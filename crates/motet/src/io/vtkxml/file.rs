@@ -1,4 +1,4 @@
-//! A VTK XML file opened: what it holds, how it lays data down, and its arrays.
+//! An opened VTK XML file: its kind, its data layout and its arrays.
 
 use std::borrow::Cow;
 use std::rc::Rc;
@@ -19,10 +19,10 @@ use crate::mesh::{Field, Values};
 pub(super) struct File<'a> {
     document: Document<'a>,
     pub(super) notes: &'a Notes,
-    /// The appended data, where they are still in the file.
+    /// The appended data, if they were left in the file.
     tail: Option<&'a Tail>,
     layout: Layout,
-    /// Where arrays start in the appended data, in rising order.
+    /// Start offsets of arrays in the appended data, ascending.
     starts: Vec<usize>,
     room: Rc<Room>,
 }
@@ -32,7 +32,7 @@ impl<'a> File<'a> {
         Self::open_within(bytes, notes, Rc::new(Room::of(bytes.len() as u64)))
     }
 
-    /// Opens a file that is one of those that make up a mesh, and shares their room.
+    /// Opens one of the files that make up a mesh, which share a memory budget.
     pub(super) fn open_within(bytes: &'a [u8], notes: &'a Notes, room: Rc<Room>) -> Result<Self> {
         let document = Document::parse(bytes)?;
         let root = &document.root;
@@ -48,18 +48,18 @@ impl<'a> File<'a> {
         Ok(Self { document, notes, tail: None, layout, starts, room })
     }
 
-    /// Opens a file whose appended data is read array by array.
+    /// Opens a file whose appended data are read array by array.
     pub(super) fn open_tail(tail: &'a Tail, notes: &'a Notes) -> Result<Self> {
         let room = Rc::new(Room::of((tail.head.len() + tail.len) as u64));
         Ok(Self { tail: Some(tail), ..Self::open_within(&tail.head, notes, room)? })
     }
 
-    /// What the file holds: `UnstructuredGrid`, `PolyData`, `Collection`, ...
+    /// The kind of data: `UnstructuredGrid`, `PolyData`, `Collection`, ...
     pub(super) fn kind(&self) -> &str {
         self.document.root.attribute("type").unwrap_or("unknown")
     }
 
-    /// The element that holds the data set, named as the file's kind.
+    /// The element with the data set, which has the name of the file's kind.
     pub(super) fn data_set(&self) -> Result<&Element<'a>> {
         let kind = self.kind();
         self.document.root.child(kind).ok_or_else(|| {
@@ -69,7 +69,7 @@ impl<'a> File<'a> {
         })
     }
 
-    /// The arrays among the children of `element`, which may be missing.
+    /// The arrays among the children of `element`; none if there is no element.
     pub(super) fn arrays<'s>(
         &'s self,
         element: Option<&'s Element<'a>>,
@@ -81,13 +81,13 @@ impl<'a> File<'a> {
             .map(|element| Array::open(self, element))
     }
 
-    /// The array called `name` among the children of `element`.
+    /// The array called `name` among the children of `element`, if there is one.
     pub(super) fn array<'s>(&'s self, element: &'s Element<'a>, name: &str) -> Result<Option<Array<'s, 'a>>> {
         let mut named = element.children.iter().filter(|c| c.attribute("Name") == Some(name));
         named.next().map(|element| Array::open(self, element)).transpose()
     }
 
-    /// The array called `name`, which must be there.
+    /// The array called `name`; an error if it is missing.
     pub(super) fn needed_array<'s>(&'s self, element: &'s Element<'a>, name: &str) -> Result<Array<'s, 'a>> {
         self.array(element, name)?.ok_or_else(|| {
             Error::input(format!("the array {name} is missing"))
@@ -96,7 +96,8 @@ impl<'a> File<'a> {
         })
     }
 
-    /// One field for each array of `element`, `n_rows` rows each, or as many as it says (`None`).
+    /// A field for each array of `element`, with `n_rows` rows each, or with the number that the array
+    /// declares (`None`).
     pub(super) fn fields(&self, element: Option<&Element<'a>>, n_rows: Option<usize>) -> Result<Vec<Field>> {
         let mut fields = Vec::new();
         for array in self.arrays(element) {
@@ -144,7 +145,7 @@ enum Type {
     Text,
 }
 
-/// A `DataArray`, its attributes understood, its data not yet read.
+/// A `DataArray` with parsed attributes, whose data have not been read yet.
 #[derive(Debug)]
 pub(super) struct Array<'s, 'a> {
     file: &'s File<'a>,
@@ -185,17 +186,17 @@ impl<'s, 'a> Array<'s, 'a> {
         }
     }
 
-    /// The values: `n_rows` rows, or as many as there are.
+    /// The values: `n_rows` rows, or all that are present.
     pub(super) fn values(&self, n_rows: Option<usize>) -> Result<Values> {
         self.read(n_rows).map_err(|e| e.at(self.element.place()))
     }
 
-    /// The values as ids of points or cells, or as places in a list of them.
+    /// The values as ids of points or cells, or as indices in a list of ids.
     pub(super) fn ids(&self, n_rows: Option<usize>) -> Result<Vec<u32>> {
         self.ids_behind(&[], n_rows)
     }
 
-    /// Where each of `n` lists starts and the last one ends, from where each ends.
+    /// The start of each of `n` lists and the end of the last, computed from the end of each list.
     pub(super) fn offsets(&self, n: usize) -> Result<Vec<u32>> {
         self.ids_behind(&[0], Some(n))
     }
@@ -208,8 +209,8 @@ impl<'s, 'a> Array<'s, 'a> {
         Ok(if first.is_empty() { ids } else { [first, &ids].concat() })
     }
 
-    /// Binary ids of the usual types, converted block by block as they are
-    /// unpacked; `None` for all else, and where one does not fit.
+    /// Binary ids of the usual types, converted block by block during decompression; `None` for all others,
+    /// and if an id does not fit.
     fn fast_ids(&self, first: &[u32], n_rows: Option<usize>) -> Result<Option<Vec<u32>>> {
         let Type::Number(kind @ (Scalar::I32 | Scalar::U32 | Scalar::I64 | Scalar::U64)) = self.kind else {
             return Ok(None);
@@ -238,7 +239,7 @@ impl<'s, 'a> Array<'s, 'a> {
         })
     }
 
-    /// The values as `n` points in space.
+    /// The values as `n` points.
     pub(super) fn points(&self, n: usize) -> Result<Vec<Point>> {
         if self.components != 3 {
             return Err(Error::input(format!("points have {} components, 3 are needed", self.components))
@@ -271,7 +272,7 @@ impl<'s, 'a> Array<'s, 'a> {
     }
 
     fn texts(&self, bytes: &[u8], expected: Option<usize>) -> Result<Values> {
-        // A byte alone may end a text, and each has a place of its own in memory.
+        // A single byte may end a text, and each text takes memory of its own.
         let n = bytes.iter().filter(|&&b| b == 0).count() as u64;
         self.file.room.take(n.saturating_mul(2 * size_of::<String>() as u64))?;
         split_texts(bytes, expected)
@@ -285,7 +286,7 @@ impl<'s, 'a> Array<'s, 'a> {
         }
     }
 
-    /// The data, whose size is known and has its room.
+    /// The data, whose decompressed size has been charged to the memory budget.
     fn content(&self) -> Result<Content<'s>> {
         let content = self.packed()?;
         if let Content::Binary(payload) = &content {
@@ -331,7 +332,8 @@ impl<'s, 'a> Array<'s, 'a> {
             return Payload::open_file(tail, offset, next, self.file.layout);
         }
         if !appended.base64 {
-            // Blocks end where the next array starts, whichever way the file is read; plain data say themselves how long they are.
+            // In compressed data the array ends where the next one starts, whichever way the file is read;
+            // plain data declare their length.
             let end = if self.file.layout.compression == Compression::None { len } else { next };
             return Payload::open(Cow::Borrowed(&appended.bytes[offset..end]), self.file.layout);
         }
@@ -384,8 +386,8 @@ fn read_bits(payload: &Payload<'_>, expected: Option<usize>) -> Result<Values> {
     Ok(Values::U8((0..n).map(|i| bytes[i / 8] >> (7 - i % 8) & 1).collect()))
 }
 
-/// Texts stand in ASCII files as the numbers of their bytes; VTK writes those
-/// beyond 127 as negative numbers.
+/// Decodes texts in ASCII files, which are stored as the numbers of their bytes; VTK writes those above 127
+/// as negative numbers.
 fn ascii_characters(text: &str) -> Result<Vec<u8>> {
     text.split_ascii_whitespace()
         .map(|t| {
@@ -399,7 +401,7 @@ fn ascii_characters(text: &str) -> Result<Vec<u8>> {
 
 fn split_texts(bytes: &[u8], expected: Option<usize>) -> Result<Values> {
     let mut parts: Vec<&[u8]> = bytes.split(|&b| b == 0).collect();
-    // Every text ends with a zero, so that the last part is the empty rest.
+    // Every text ends with a zero byte, so the last part is empty.
     if parts.last().is_some_and(|rest| rest.is_empty()) {
         parts.pop();
     }

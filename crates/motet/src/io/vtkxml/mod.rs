@@ -1,10 +1,9 @@
 //! VTK's XML files: `.vtu`, `.vtp`, and the parts that both share.
 //!
-//! Written here rather than taken from the crate `vtkio`: its last stable version
-//! reads no compressed file, and its release candidate (0.7.0-rc2) fails on raw
-//! appended data, which is what ParaView writes, loses point data packed with xz
-//! without a word, and panics on polygonal data from PyVista. `quick-xml` reads
-//! the XML part; all behind it are byte offsets.
+//! Implemented here rather than with the crate `vtkio`: its last stable version reads no compressed files,
+//! and its release candidate (0.7.0-rc2) fails on raw appended data, which ParaView writes, silently loses
+//! point data compressed with xz, and panics on polygonal data from PyVista. `quick-xml` reads the XML part;
+//! the data after it are addressed by byte offsets.
 //!
 //! | file | idea |
 //! |---|---|
@@ -12,11 +11,11 @@
 //! | `payload` | one array's bytes: header and blocks |
 //! | `codec` | zlib, lz4, xz |
 //! | `tail` | large raw data, left in the file until an array is read |
-//! | `file` | the file's layout; arrays as values |
-//! | `pieces`, `parts` | pieces of a file, and files that name others, joined |
+//! | `file` | layout of the file; arrays as values |
+//! | `pieces`, `parts` | pieces of a file, and files that refer to others, joined |
 //! | `polyhedra` | faces of polyhedra, in both layouts |
 //! | `vtu`, `vtp` | the two kinds of meshes |
-//! | `writer` | elements and arrays out |
+//! | `writer` | writes elements and arrays |
 
 mod codec;
 mod document;
@@ -50,7 +49,7 @@ pub(super) const VTU: Format = Format {
 pub(super) const VTP: Format =
     Format { name: "VTK XML polygonal data", endings: &[".vtp"], read: Some(read), write: Some(write_vtp) };
 
-/// Files that name others, which together are a mesh.
+/// Files that refer to others, which together form a mesh.
 pub(super) const PARTS: Format = Format {
     name: "VTK XML in several files",
     endings: &[".pvtu", ".pvtp", ".vtm", ".vtmb", ".vtpd"],
@@ -58,7 +57,7 @@ pub(super) const PARTS: Format = Format {
     write: None,
 };
 
-/// Kinds of VTK XML files that are known, so that they can be refused with advice.
+/// Kinds of VTK XML files that are recognized only to reject them with advice.
 pub(super) const OTHERS: Format = Format {
     name: "VTK XML",
     endings: &[".vti", ".vtr", ".vts", ".pvti", ".pvtr", ".pvts"],
@@ -66,13 +65,13 @@ pub(super) const OTHERS: Format = Format {
     write: None,
 };
 
-/// Reads whichever kind of mesh the file says it holds.
+/// Reads the kind of mesh that the file declares.
 fn read(input: &Input<'_>) -> Result<Mesh> {
     let file = file::File::open(input.bytes, input.notes)?;
     if parts::is_of_parts(file.kind()) { parts::read(&file, input) } else { read_file(&file) }
 }
 
-/// As [`read`], from a file whose appended data is read array by array.
+/// Reads a mesh, like [`read`], from a file whose appended data are read array by array.
 pub(super) fn read_tail(tail: &Tail, notes: &Notes) -> Result<Mesh> {
     read_file(&file::File::open_tail(tail, notes)?)
 }

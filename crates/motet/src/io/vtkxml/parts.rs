@@ -1,4 +1,5 @@
-//! Files that name others: the parts of a parallel run (`.pvtu`, `.pvtp`), blocks of several meshes (`.vtm`, `.vtpd`).
+//! Files that refer to others: parts of a parallel run (`.pvtu`, `.pvtp`), and blocks of several meshes
+//! (`.vtm`, `.vtpd`).
 
 use std::path::Path;
 use std::rc::Rc;
@@ -14,10 +15,11 @@ use crate::io::vtkxml::{vtp, vtu};
 use crate::io::weld::weld;
 use crate::mesh::{CellKind, Field, Labels, Mesh};
 
-/// Blocks lie within blocks, and may name files of parts; more is a circle.
+/// Maximum depth of files that refer to files, which also stops cycles: blocks nest, and may refer to files
+/// of parts.
 const MAX_DEPTH: usize = 4;
 
-/// Whether a kind of file names others.
+/// Whether a kind of file refers to others.
 pub(super) fn is_of_parts(kind: &str) -> bool {
     matches!(kind, "PUnstructuredGrid" | "PPolyData") || is_of_blocks(kind)
 }
@@ -32,7 +34,7 @@ fn is_of_blocks(kind: &str) -> bool {
     )
 }
 
-/// One part: what it is called, and its mesh.
+/// A part: its name and its mesh.
 struct Part {
     name: String,
     mesh: Mesh,
@@ -43,7 +45,7 @@ struct Reader<'a> {
     room: Rc<Room>,
 }
 
-/// Reads all files that `file` names, in its order, and joins them.
+/// Reads all files that `file` refers to, in its order, and joins them.
 pub(super) fn read(file: &File<'_>, input: &Input<'_>) -> Result<Mesh> {
     let reader = Reader { input, room: Rc::new(Room::of(input.bytes.len() as u64)) };
     let mut parts = Vec::new();
@@ -107,7 +109,7 @@ impl Reader<'_> {
     }
 }
 
-/// The name, file and line of all that an element names, however deep, in the order of the file.
+/// Collects the name, file and line of every reference within an element, in the order of the file.
 fn collect(element: &Element<'_>, name: &str, found: &mut Vec<(String, String, usize)>) {
     let own = element.attribute("name").or(element.attribute("Name")).unwrap_or(name);
     let file = match element.name.as_str() {
@@ -123,7 +125,8 @@ fn collect(element: &Element<'_>, name: &str, found: &mut Vec<(String, String, u
 
 type LabelsOf = fn(&Mesh) -> Option<Labels>;
 
-/// Names of blocks become labels where the blocks have none: regions of volume cells, patches of surface cells.
+/// Turns names of blocks into labels if the blocks have none: regions of volume cells, patches of surface
+/// cells.
 fn label_blocks(parts: &mut [Part]) {
     let labels: [(usize, &str, LabelsOf); 2] = [(3, "region", Mesh::regions), (2, "patch", Mesh::patches)];
     for (dim, array, of) in labels {

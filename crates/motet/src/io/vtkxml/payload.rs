@@ -1,11 +1,10 @@
-//! The bytes of one binary array: its header, its blocks, and what they unpack to.
+//! The bytes of one binary array: its header, its blocks, and their decompression.
 //!
 //! ```text
 //! plain        [bytes] data
 //! compressed   [blocks][block size][size of the last, 0 = full][packed size]... block block ...
 //! ```
-//! A number in brackets has the file's `header_type`. In base64, header and data may
-//! each be padded on their own.
+//! A number in brackets has the file's `header_type`. In base64, header and data may be padded separately.
 
 use std::borrow::Cow;
 
@@ -26,42 +25,42 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
         .with_decode_allow_trailing_bits(true),
 );
 
-/// Bytes of a file that are converted at a time: they stay in the cache.
+/// Bytes of a file that are converted at a time, few enough to stay in the cache.
 const CHUNK: usize = 256 << 10;
 
-/// How the file lays its binary data down, from the attributes of `VTKFile`.
+/// The layout of the binary data in a file, from the attributes of `VTKFile`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout {
     pub(super) order: ByteOrder,
-    /// Bytes of a number in the header: 4 or 8.
+    /// Size in bytes of a number in the header: 4 or 8.
     pub(super) word: usize,
     pub(super) compression: Compression,
 }
 
-/// Where the bytes of an array are, its header first.
+/// Location of the bytes of an array, including its header.
 #[derive(Debug)]
 enum Source<'a> {
     Memory(Cow<'a, [u8]>),
-    /// Still in the file, from this byte of the appended data on.
+    /// In the file, from this byte of the appended data.
     File(&'a Tail, usize),
 }
 
-/// One array's bytes, its header read and found to be possible.
+/// The bytes of an array, whose header has been read and checked.
 #[derive(Debug)]
 pub(super) struct Payload<'a> {
     bytes: Source<'a>,
     compression: Compression,
-    /// Where the data starts behind the header.
+    /// Where the data start after the header.
     start: usize,
-    /// Packed size of each block; one block in a plain array.
+    /// Compressed size of each block; a single block in a plain array.
     packed: Vec<usize>,
     block: usize,
-    /// Bytes when unpacked.
+    /// Decompressed size in bytes.
     len: usize,
 }
 
 impl<'a> Payload<'a> {
-    /// The array at the start of `bytes`.
+    /// Opens the array at the start of `bytes`.
     pub(super) fn open(bytes: Cow<'a, [u8]>, layout: Layout) -> Result<Self> {
         match layout.compression {
             Compression::None => Self::open_plain(bytes, layout),
@@ -69,12 +68,12 @@ impl<'a> Payload<'a> {
         }
     }
 
-    /// The array at the start of base64 `text`.
+    /// Opens the array at the start of base64 `text`.
     pub(super) fn open_base64(text: &[u8], layout: Layout) -> Result<Self> {
         Self::open(Cow::Owned(decode_base64(text)?), layout)
     }
 
-    /// The array that starts at byte `at` of the appended data, and ends before `end`.
+    /// Opens the array that starts at byte `at` of the appended data and ends at `end` or before.
     pub(super) fn open_file(tail: &'a Tail, at: usize, end: usize, layout: Layout) -> Result<Self> {
         let in_file = if layout.compression == Compression::None { layout.word } else { end - at };
         let mut bytes = vec![0; in_file.min(tail.len - at)];
@@ -140,7 +139,7 @@ impl<'a> Payload<'a> {
             }
             left -= size;
         }
-        // No overflow: every block was just found to be possible.
+        // No overflow: the size of every block has just been checked.
         let len = (n_blocks - 1) * block + last;
         if last > block {
             return Err(damaged(format!("its last block has {last} bytes, the others {block}")));
@@ -148,12 +147,12 @@ impl<'a> Payload<'a> {
         Ok(Self { bytes: Source::Memory(bytes), compression: layout.compression, start, packed, block, len })
     }
 
-    /// How many bytes the array has, unpacked.
+    /// Decompressed size of the array in bytes.
     pub(super) fn len(&self) -> usize {
         self.len
     }
 
-    /// Puts the first `out.len()` bytes of the array into `out`; there are as many.
+    /// Copies the first `out.len()` bytes of the array, which must have that many, to `out`.
     pub(super) fn read_into(&self, out: &mut [u8]) -> Result<()> {
         if out.is_empty() {
             return Ok(());
@@ -175,12 +174,12 @@ impl<'a> Payload<'a> {
         Ok(())
     }
 
-    /// Bytes that are unpacked at a time.
+    /// Number of bytes decompressed at a time.
     pub(super) fn block(&self) -> usize {
         self.block
     }
 
-    /// Calls `each` with all bytes of the array, a block at a time.
+    /// Calls `each` with all bytes of the array, one block at a time.
     pub(super) fn for_each_block(&self, mut each: impl FnMut(&[u8])) -> Result<()> {
         let bytes = match &self.bytes {
             Source::File(tail, at) => return for_each_chunk(tail, at + self.start, self.len, each),
@@ -251,7 +250,7 @@ impl Words<'_> {
     }
 }
 
-/// Bytes from base64 text that may be broken by blanks, and padded within.
+/// Decodes base64 text, which may contain blanks and padding inside.
 pub(super) fn decode_base64(text: &[u8]) -> Result<Vec<u8>> {
     let mut compact = Cow::Borrowed(text.trim_ascii());
     if compact.iter().any(u8::is_ascii_whitespace) {
@@ -302,7 +301,7 @@ mod tests {
         for compression in [Compression::Zlib, Compression::Lz4, Compression::Lzma] {
             let layout = Layout { compression, ..layout };
             assert!(Payload::open(Cow::Borrowed(&file), layout).is_err());
-            // One block of 8 bytes that promises 2^40.
+            // One block of 8 bytes that declares a size of 2^40.
             let bomb: Vec<u8> = [1u64, 1 << 40, 0, 8, 0].iter().flat_map(|w| w.to_le_bytes()).collect();
             let error = Payload::open(Cow::Borrowed(&bomb), layout).unwrap_err();
             assert!(error.to_string().contains("cannot hold 1099511627776"), "{error}");

@@ -1,4 +1,4 @@
-//! Several pieces of one file become one mesh.
+//! Joins several pieces of one file into one mesh.
 
 use crate::base::{Csr, Error, Result, VertexId};
 use crate::io::format::Notes;
@@ -9,8 +9,8 @@ use crate::io::vtkxml::file::File;
 use crate::io::weld::weld;
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
-/// Reads every `Piece` of the data set with `read_piece` and joins them in the
-/// order of the file, with the field data.
+/// Reads every `Piece` of the data set with `read_piece`, joins them in the order of the file, and adds the
+/// field data.
 pub(super) fn read_pieces<'a>(
     file: &File<'a>,
     read_piece: impl Fn(&File<'a>, &Element<'a>) -> Result<Mesh>,
@@ -32,7 +32,7 @@ pub(super) fn read_pieces<'a>(
     Ok(mesh)
 }
 
-/// Pieces joined so far, and where the points of each begin.
+/// The pieces joined so far, and the first point of each.
 #[derive(Default)]
 pub(super) struct Whole {
     mesh: Option<Mesh>,
@@ -40,13 +40,13 @@ pub(super) struct Whole {
 }
 
 impl Whole {
-    /// Adds a piece. One that is empty says nothing about arrays.
+    /// Adds a piece. An empty piece is not checked for matching arrays.
     pub(super) fn add(&mut self, piece: Mesh) -> Result<()> {
         let is_empty = |mesh: &Mesh| mesh.points.is_empty() && mesh.cells.is_empty();
         self.mesh = match self.mesh.take() {
             Some(whole) if is_empty(&piece) => Some(whole),
             Some(whole) if !is_empty(&whole) => {
-                // Before ids are raised: afterwards they would be found among another piece's points.
+                // Must precede the shift of ids, after which invalid ids could match points of another piece.
                 piece.validate()?;
                 if self.starts.len() == 1 {
                     whole.validate()?;
@@ -62,13 +62,13 @@ impl Whole {
         Ok(())
     }
 
-    /// The mesh, and where the points of each piece begin.
+    /// The mesh, and the first point of each piece.
     pub(super) fn into_parts(self) -> (Mesh, Vec<usize>) {
         (self.mesh.unwrap_or_default(), self.starts)
     }
 }
 
-/// Leaves the arrays that all of the meshes have, but for those that are empty, and tells which others there were.
+/// Keeps only the arrays that all non-empty meshes have, and adds a note on the others.
 pub(super) fn common_arrays<'m>(meshes: impl Iterator<Item = &'m mut Mesh>, notes: &Notes) {
     let mut meshes: Vec<_> = meshes.filter(|mesh| !mesh.points.is_empty()).collect();
     for (what, of) in [("point", point_data as fn(&mut Mesh) -> &mut Vec<Field>), ("cell", cell_data)] {
@@ -137,7 +137,7 @@ fn join_fields(whole: &mut [Field], piece: Vec<Field>, what: &str) -> Result<()>
     Ok(())
 }
 
-/// Adds `more` to `cells`, ids raised by `shift`.
+/// Appends `more` to `cells`, with `shift` added to its ids.
 fn push_cells(cells: &mut Cells, more: &Cells, shift: u32) -> Result<()> {
     if cells.connectivity().items().len() + more.connectivity().items().len() > VertexId::MAX_COUNT {
         return Err(

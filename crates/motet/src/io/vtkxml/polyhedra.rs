@@ -1,4 +1,4 @@
-//! Faces of polyhedra, in the two layouts that VTK has for them.
+//! Faces of polyhedra, in both of VTK's layouts.
 //!
 //! ```text
 //! old          faces                 n faces, then for each: n vertices, vertex, vertex, ...
@@ -8,7 +8,7 @@
 //!              polyhedron_to_faces   faces, cell after cell
 //!              polyhedron_offsets    where the faces of each cell end
 //! ```
-//! The old one is written: every VTK reads it.
+//! The old layout is written, since every version of VTK reads it.
 
 use crate::base::{Csr, Error, Result, VertexId};
 use crate::io::polyhedra::{face_stream, next_polyhedron};
@@ -16,8 +16,8 @@ use crate::io::vtkxml::document::Element;
 use crate::io::vtkxml::file::File;
 use crate::mesh::{CellKind, Cells};
 
-/// The faces of each polyhedron, in the order of the cells; `cells` is the
-/// element that has the arrays, `kinds` the kind of each cell.
+/// Reads the faces of each polyhedron, in the order of the cells; `cells` is the element with the arrays,
+/// `kinds` the kind of each cell.
 pub(super) fn read(file: &File<'_>, cells: &Element<'_>, kinds: &[CellKind]) -> Result<Vec<Csr<VertexId>>> {
     let new = cells.children.iter().any(|c| c.attribute("Name") == Some("polyhedron_to_faces"));
     if new { read_new(file, cells, kinds) } else { read_old(file, cells, kinds) }
@@ -48,7 +48,7 @@ fn read_new(file: &File<'_>, cells: &Element<'_>, kinds: &[CellKind]) -> Result<
         let mut of_cell = Csr::default();
         for &face in faces {
             let face = list(&face_ends, &vertices, face as usize).ok_or_else(|| misfit(cell))?;
-            // A face may be named again and again: the sum is not bounded by the file.
+            // A face may be used repeatedly, so that the file does not bound the sum.
             if of_cell.items().len() + face.len() > vertices.len() {
                 return Err(misfit(cell));
             }
@@ -71,7 +71,7 @@ fn misfit(cell: usize) -> Error {
         .remedy("the file is damaged: write it again")
 }
 
-/// `faces` and `faceoffsets` of the old layout.
+/// The arrays `faces` and `faceoffsets` of the old layout.
 pub(super) fn old_layout(cells: &Cells) -> (Vec<i64>, Vec<i64>) {
     let (mut stream, mut ends) = (Vec::new(), Vec::with_capacity(cells.len()));
     let mut polyhedra = cells.polyhedron_faces().iter();

@@ -1,8 +1,7 @@
-//! The raw appended arrays of a file, read one by one instead of all at once.
+//! Raw appended arrays left in the file and read one by one.
 //!
-//! Half of the time of reading a large uncompressed file whole went into memory
-//! that is filled once and thrown away (53 MB: 26 ms of 46 ms); from the file into
-//! the array it belongs to, the same bytes take 4 ms.
+//! When large uncompressed files were read as a whole, half of the time went into memory that is filled once
+//! and then discarded (53 MB: 26 ms of 46 ms); reading the same bytes directly into their arrays takes 4 ms.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -11,24 +10,24 @@ use std::path::Path;
 use crate::base::{Error, Result};
 use crate::io::vtkxml::document::Document;
 
-/// Smaller files are read whole.
+/// Files below this size are read as a whole.
 const SMALL: u64 = 256 << 10;
-/// The elements in front of appended data are much shorter.
+/// Maximum size of the elements before the appended data, which are usually much shorter.
 const LONGEST_HEAD: u64 = 1 << 20;
 
-/// A file whose head is in memory and whose raw appended data is not.
+/// A file whose head is in memory and whose raw appended data are not.
 #[derive(Debug)]
 pub(in crate::io) struct Tail {
     file: File,
-    /// All up to the first byte of the appended data.
+    /// The bytes before the first one of the appended data.
     pub(super) head: Vec<u8>,
-    /// Bytes behind the head.
+    /// Number of bytes after the head.
     pub(super) len: usize,
 }
 
 impl Tail {
-    /// `None` for a file that is to be read whole: one that is no VTU or VTP file by
-    /// its ending, a small one, one without raw appended data, one that cannot be read.
+    /// Opens a file in this way; `None` for a file to be read as a whole: one without the extension of VTU or
+    /// VTP, a small one, one without raw appended data, or one that cannot be read.
     pub(in crate::io) fn of(path: &Path) -> Option<Self> {
         path.extension().filter(|e| e.eq_ignore_ascii_case("vtu") || e.eq_ignore_ascii_case("vtp"))?;
         let mut file = File::open(path).ok()?;
@@ -41,7 +40,7 @@ impl Tail {
         Some(Self { file, head, len: usize::try_from(size - start as u64).ok()? })
     }
 
-    /// Fills `out` from byte `at` of the appended data on.
+    /// Fills `out` with the appended data from byte `at`.
     pub(super) fn read_at(&self, at: usize, out: &mut [u8]) -> Result<()> {
         let mut file = &self.file;
         let place = (self.head.len() + at) as u64;
@@ -50,8 +49,8 @@ impl Tail {
     }
 }
 
-/// Where raw appended data starts, behind the underscore. The parser says it, and not a search for words: these stand
-/// in comments and in other attributes, too.
+/// Where raw appended data start, after the underscore. Determined by the parser, since a text search would
+/// also find comments and other attributes.
 fn appended_start(head: &[u8]) -> Option<usize> {
     let appended = Document::parse(head).ok()?.appended.filter(|appended| !appended.base64)?;
     Some(head.len() - appended.bytes.len())
@@ -72,7 +71,7 @@ mod tests {
 
     #[test]
     fn what_only_looks_like_raw_data_is_read_whole() {
-        // Base64 is what VTK takes where the encoding is not told.
+        // VTK's default encoding is base64.
         assert_eq!(appended_start(b"<V><AppendedData encod#ng=\"raw\">\n _xyz"), None);
         assert_eq!(appended_start(b"<V><AppendedData encoding=\"base64\" note=\"raw\">\n _xyz"), None);
         assert_eq!(appended_start(b"<V><!-- <AppendedData encoding=\"raw\"> _x --><B/></V>"), None);

@@ -59,10 +59,10 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>) -> Result<Cells> {
     Ok(cells)
 }
 
-/// The cells of a mesh by section, and what that changes.
+/// The cells of a mesh by section, and what the sorting changes.
 struct Sections {
     lists: [Csr<VertexId>; 4],
-    /// The cells in the order of the file; `None` where that is the mesh's own.
+    /// The cells in the order of the file; `None` if it is the order of the mesh.
     order: Option<Vec<usize>>,
     lost: Vec<String>,
 }
@@ -115,7 +115,7 @@ impl Sections {
 
 fn corners(cells: &Cells, cell: CellId) -> impl Iterator<Item = VertexId> {
     let v = cells.vertices(cell);
-    // A pixel counts its vertices in rows, a quad around.
+    // The vertices of a pixel are numbered row by row, those of a quad around it.
     let pixel = cells.kind(cell) == CellKind::PIXEL;
     (0..v.len()).map(move |i| if pixel { v[[0, 1, 3, 2][i]] } else { v[i] })
 }

@@ -32,7 +32,7 @@ fn read_piece<'a>(file: &File<'a>, piece: &Element<'a>) -> Result<Mesh> {
     })
 }
 
-/// The points of a piece.
+/// Reads the points of a piece.
 pub(super) fn read_points(file: &File<'_>, piece: &Element<'_>, n: usize) -> Result<Vec<[f64; 3]>> {
     if n > VertexId::MAX_COUNT {
         return Err(Error::input(format!("{n} points are more than a mesh can hold")).at(piece.place()));
@@ -85,7 +85,7 @@ pub(in crate::io) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Writte
     Ok(Written { lost, ..Written::one(bytes) })
 }
 
-/// Writes to `sink`; returns what was lost.
+/// Writes a mesh to `sink`; returns what the format could not hold.
 pub(in crate::io) fn write_to(
     mesh: &Mesh,
     options: &WriteOptions,
