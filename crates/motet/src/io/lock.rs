@@ -23,7 +23,8 @@ impl OutputLock {
     /// Takes the lock of an output. On a file system without locks the result does not hold, see
     /// [`Self::is_held`].
     ///
-    /// # Errors If another process holds the lock, or the lock file beside the output cannot be created.
+    /// # Errors
+    /// If another process holds the lock, or the lock file beside the output cannot be created.
     pub fn take(output: &Path) -> Result<Self> {
         let name = output.file_name().unwrap_or_default().to_string_lossy();
         let path = folder_of(output).join(format!("{DRAFT}{name}.lock"));

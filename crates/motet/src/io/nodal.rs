@@ -29,8 +29,8 @@ pub struct NodalSeries {
 impl NodalSeries {
     /// A series of vectors; `frames` holds a vector for each node at each time.
     ///
-    /// # Panics If the number of `frames` differs from that of the times, or the length of a frame from that
-    /// of `ids`.
+    /// # Panics
+    /// If the number of `frames` differs from that of the times, or the length of a frame from that of `ids`.
     pub fn of_vectors(times: Vec<f64>, ids: Vec<i64>, frames: &[Vec<Point>]) -> Self {
         assert!(frames.len() == times.len() && frames.iter().all(|frame| frame.len() == ids.len()));
         let of_node = |node: usize| frames.iter().flat_map(move |frame| frame[node]);
@@ -40,8 +40,9 @@ impl NodalSeries {
 
     /// Reads a file.
     ///
-    /// # Errors If the file cannot be read or is invalid: malformed or non-finite numbers, times that do not
-    /// ascend, a duplicate node, or fewer or more numbers than its first line declares. Reports the line.
+    /// # Errors
+    /// If the file cannot be read or is invalid: malformed or non-finite numbers, times that do not ascend, a
+    /// duplicate node, or fewer or more numbers than its first line declares. Reports the line.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
@@ -51,7 +52,8 @@ impl NodalSeries {
 
     /// Parses the content of a file, as [`read`](Self::read) does.
     ///
-    /// # Errors If the content is invalid, see [`read`](Self::read).
+    /// # Errors
+    /// If the content is invalid, see [`read`](Self::read).
     pub fn parse(bytes: &[u8]) -> Result<Self> {
         let mut text = Text::new(bytes);
         let components = text.count("components", 1)?;
@@ -93,7 +95,8 @@ impl NodalSeries {
 
     /// Writes a file, with enough digits to recover each number to the bit.
     ///
-    /// # Errors If the file cannot be written; its previous content is then unchanged.
+    /// # Errors
+    /// If the file cannot be written; its previous content is then unchanged.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
         let mut out = Vec::new();
         let tell = "writing into memory does not fail";
@@ -115,9 +118,11 @@ impl NodalSeries {
 
     /// The vectors of all nodes at the time with index `time`.
     ///
-    /// # Errors If there are not three components.
+    /// # Errors
+    /// If there are not three components.
     ///
-    /// # Panics If there is no such time.
+    /// # Panics
+    /// If there is no such time.
     pub fn vectors(&self, time: usize) -> Result<Vec<Point>> {
         if self.components != 3 {
             return Err(Error::input(format!(

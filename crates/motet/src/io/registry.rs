@@ -90,7 +90,9 @@ fn for_writing(path: &Path) -> Result<&'static Format> {
 /// Checks whether a mesh can be written to `path`, so that a long run can check before it starts: the
 /// extension must belong to a format with a writer, and the parent folder must exist.
 ///
-/// # Errors Of kind [`ErrorKind::Options`] for the extension, [`ErrorKind::Io`] for the folder.
+/// # Errors
+/// Of kind [`ErrorKind::Options`] for the extension or a non-empty target folder, [`ErrorKind::Io`] for a missing parent
+/// folder.
 pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
     let writable = match for_writing(path) {
@@ -131,14 +133,16 @@ fn folder_format(path: &Path) -> &'static Format {
 
 /// Reads a file or folder in the format of its extension; `flow.vtkhdf#3` is step 3 of that file.
 ///
-/// # Errors An error names the file and the place in it, what was expected and found, and a remedy.
+/// # Errors
+/// An error names the file and the place in it, what was expected and found, and a remedy.
 pub fn read(path: impl AsRef<Path>) -> Result<Mesh> {
     read_noted(path).map(|(mesh, _)| mesh)
 }
 
 /// Reads like [`read`], and also returns notes on what the reader skipped, each a message for the user.
 ///
-/// # Errors The same as for [`read`].
+/// # Errors
+/// The same as for [`read`].
 pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     let path = path.as_ref();
     let notes = Notes::default();
@@ -156,7 +160,8 @@ pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
 ///
 /// Returns what the format could not hold.
 ///
-/// # Errors If the format cannot hold the mesh, or the file cannot be written.
+/// # Errors
+/// If the format cannot hold the mesh, or the file cannot be written.
 pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Result<Vec<String>> {
     let path = path.as_ref();
     let format = for_writing(path)?;

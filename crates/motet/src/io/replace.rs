@@ -19,14 +19,16 @@ const MAX_LINKS: usize = 40;
 /// Writes `bytes` to a temporary file beside `path`, then renames it. Returns notes for the user on the
 /// replaced file.
 ///
-/// # Errors If the file cannot be written; the previous content of `path` is then unchanged.
+/// # Errors
+/// If the file cannot be written; the previous content of `path` is then unchanged.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<Vec<String>> {
     replace_all(&[(path.to_owned(), bytes)])
 }
 
 /// Writes all files beside their targets, then renames them all: if one cannot be written, none is changed.
 ///
-/// # Errors The same as for [`replace`].
+/// # Errors
+/// The same as for [`replace`].
 pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<Vec<String>> {
     let written: Vec<(&Path, Draft)> = files
         .iter()
@@ -166,7 +168,8 @@ pub fn remove_drafts(folder: &Path, is_own: impl Fn(&str) -> bool) {
 
 /// Flushes a file and its directory entry to disk.
 ///
-/// # Errors If the system reports a failure.
+/// # Errors
+/// If the system reports a failure.
 pub fn sync(path: &Path) -> Result<()> {
     let failed = |e: std::io::Error| Error::output(path, e);
     // Some systems only sync files opened for writing.
@@ -177,7 +180,8 @@ pub fn sync(path: &Path) -> Result<()> {
 /// Flushes `from` to disk and renames it to `to` in the same folder: after a crash at any time, one of the
 /// two versions is present and complete.
 ///
-/// # Errors If the system reports a failure.
+/// # Errors
+/// If the system reports a failure.
 pub fn settle(from: &Path, to: &Path) -> Result<()> {
     let failed = |e: std::io::Error| Error::output(to, e);
     OpenOptions::new().write(true).open(from).and_then(|file| file.sync_all()).map_err(failed)?;

@@ -1,6 +1,6 @@
 //! Limits the memory for the decompressed content of a file.
 //!
-//! Data may decompress to a thousand times their size, so a file of a few megabytes could fill any memory.
+//! Data may decompress to a thousand times their size, so a file of a few megabytes could exhaust the memory.
 //! The size is known before decompression, and no mesh compresses that well: content beyond the limit is
 //! rejected.
 

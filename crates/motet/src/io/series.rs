@@ -39,8 +39,9 @@ pub fn file_of(path: impl AsRef<Path>) -> PathBuf {
 /// A file without a time gets its index in the series. Names are relative to the folder of the series. The
 /// steps of a VTKHDF file have paths such as `flow.vtkhdf#3`, which [`read`](super::read) accepts.
 ///
-/// # Errors If the file cannot be read or is not a series, a time is not finite, or several files share a
-/// time. Reports the place.
+/// # Errors
+/// If the file cannot be read or is not a series, a time is not finite, or several files share a time.
+/// Reports the place.
 pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
     let path = path.as_ref();
     if !can_write_series(path) && vtkhdf::is_transient(path) {
@@ -55,7 +56,8 @@ pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
 
 /// Parses the content of a series file like [`read_series`]; names are returned as stored.
 ///
-/// # Errors The same as for [`read_series`], except for those of reading the file.
+/// # Errors
+/// The same as for [`read_series`], except for those of reading the file.
 pub fn parse_series(bytes: &[u8]) -> Result<Vec<(f64, String)>> {
     let mut reader = Reader::from_reader(bytes);
     let mut is_series = false;
@@ -117,7 +119,8 @@ fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
 ///
 /// Returns what the format could not hold.
 ///
-/// # Errors Those of the frames; those of [`write()`]; if the extension is not that of a series.
+/// # Errors
+/// Those of the frames; those of [`write()`]; if the extension is not that of a series.
 pub fn write_series(
     path: impl AsRef<Path>,
     frames: impl IntoIterator<Item = Result<(f64, Mesh)>>,
@@ -166,7 +169,8 @@ impl SeriesWriter {
     /// Takes the lock of the series, unless this writer already has it; returns false on a file system
     /// without locks.
     ///
-    /// # Errors If another writer holds the lock, whose process is reported, or the folder is not writable.
+    /// # Errors
+    /// If another writer holds the lock, whose process is reported, or the folder is not writable.
     pub fn lock(&mut self) -> Result<bool> {
         let lock = match self.lock.take() {
             Some(lock) => lock,
@@ -177,7 +181,8 @@ impl SeriesWriter {
 
     /// Keeps the first `n` frames of the existing series; frames after them are written again.
     ///
-    /// # Errors If there is no such series, or it has fewer frames.
+    /// # Errors
+    /// If there is no such series, or it has fewer frames.
     pub fn go_on_after(&mut self, n: usize) -> Result<()> {
         let bytes = std::fs::read(&self.path).map_err(|e| Error::io(&self.path, e))?;
         let mut frames = parse_series(&bytes).map_err(|e| e.in_file(&self.path))?;
@@ -205,7 +210,8 @@ impl SeriesWriter {
     ///
     /// Returns the file of the frame, and what the format could not hold.
     ///
-    /// # Errors Those of [`write()`]; if another writer is writing this series.
+    /// # Errors
+    /// Those of [`write()`]; if another writer is writing this series.
     pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<(PathBuf, Vec<String>)> {
         self.lock()?;
         let k = self.frames.len();

@@ -47,7 +47,7 @@ pub(super) struct Set {
 pub(super) enum Entry {
     /// Numbers from `first` to `last` with a step of `step`, in an instance or in this scope.
     Ids { first: u64, last: u64, step: u64, instance: Option<String> },
-    /// Another set of the same sort.
+    /// Another set of the same kind.
     Set(Reference),
     /// The nodes of a set of elements.
     NodesOf(String),

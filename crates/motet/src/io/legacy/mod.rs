@@ -9,8 +9,8 @@
 //! |---|---|
 //! | `source` | words, lines and numbers of the file, with the place for messages |
 //! | `arrays` | arrays of any type, their names and metadata |
-//! | `read` | sections to a mesh |
-//! | `write` | a mesh to sections |
+//! | `read` | converts sections to a mesh |
+//! | `write` | converts a mesh to sections |
 
 mod arrays;
 mod read;
