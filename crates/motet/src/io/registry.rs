@@ -91,8 +91,8 @@ fn for_writing(path: &Path) -> Result<&'static Format> {
 /// extension must belong to a format with a writer, and the parent folder must exist.
 ///
 /// # Errors
-/// Of kind [`ErrorKind::Options`] for the extension or a non-empty target folder, [`ErrorKind::Io`] for a missing parent
-/// folder.
+/// Of kind [`ErrorKind::Options`] for the extension or a non-empty target folder, [`ErrorKind::Io`] for a
+/// missing parent folder.
 pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
     let writable = match for_writing(path) {

@@ -95,7 +95,7 @@ impl<'a> Around<'a> {
         })
     }
 
-    /// Resolves the members of all sets of one kind, in the order of their definition in the file.
+    /// Resolves the members of all sets of one kind, in the order of the file.
     pub(super) fn members(&self, sets: &Sets, sort: Sort) -> Result<Members> {
         let mut found: Vec<Gathered> = sets.all.iter().map(|_| Gathered::default()).collect();
         let mut n_runs = 0;

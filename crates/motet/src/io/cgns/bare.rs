@@ -1,4 +1,4 @@
-//! Files that meshio writes with this extension: groups without labels, types and sizes, which hold tets.
+//! Files `.cgns` written by meshio: groups without labels, types and sizes, which hold tets.
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::cgns::node::Node;

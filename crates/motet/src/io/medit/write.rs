@@ -9,7 +9,7 @@ use crate::io::format::Written;
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
-/// Writes a mesh, and the arrays that were read from a solution.
+/// Writes a mesh, and its arrays `medit:sol...` as a solution beside it.
 pub(super) fn mesh(mesh: &Mesh, binary: bool) -> Result<Written> {
     let (mesh, lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
     let mut parts = Parts::of(&mesh, binary, |f| is_solution(f) && f.name.starts_with(SOLUTION), lost);

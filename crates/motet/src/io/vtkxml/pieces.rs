@@ -40,7 +40,7 @@ pub(super) struct Whole {
 }
 
 impl Whole {
-    /// Adds a piece. An empty piece is not checked for matching arrays.
+    /// Adds a piece; the arrays of an empty piece are ignored.
     pub(super) fn add(&mut self, piece: Mesh) -> Result<()> {
         let is_empty = |mesh: &Mesh| mesh.points.is_empty() && mesh.cells.is_empty();
         self.mesh = match self.mesh.take() {
