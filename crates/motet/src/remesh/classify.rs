@@ -1,4 +1,4 @@
-//! In which way a tet is degenerate: the four types of the paper.
+//! How a tet is degenerate: the four types of the paper.
 //!
 //! ```text
 //!   I    two opposite edges cross closely           (sliver)     split both, join the new vertices
@@ -6,8 +6,9 @@
 //!   III  a vertex lies within the facet opposite    (cap)        collapse the vertex
 //!   IV   an edge is short                           (needle)     collapse the edge
 //! ```
-//! The limits are those of Moyle and Ventikos 2008, *Local remeshing for large amplitude grid deformations*, table 2. Lengths are parts of the mean
-//! length of the tet's edges: the text does not say of what.
+//! The limits are those of Moyle and Ventikos 2008, *Local remeshing for large amplitude grid deformations*,
+//! table 2. Lengths are relative to the mean edge length of the tet: the paper does not say what they are
+//! relative to.
 
 use serde::Serialize;
 
@@ -15,29 +16,29 @@ use crate::base::Point;
 use crate::geometry::tet::{EDGES, FACETS};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
 
-/// Two opposite edges that are closer than this make a tet of type I.
+/// A tet with two opposite edges closer than this is of type I.
 pub const EDGE_TO_EDGE: f64 = 0.18;
-/// A vertex that is closer than this to an edge opposite makes it one of type II.
+/// A tet with a vertex closer than this to an opposite edge is of type II.
 pub const VERTEX_TO_EDGE: f64 = 0.21;
-/// An edge shorter than this makes it one of type IV.
+/// A tet with an edge shorter than this is of type IV.
 pub const SHORTEST_EDGE: f64 = 0.2;
 
-/// How a bad tet is degenerate, and where: places of its vertices and edges ([`EDGES`]).
+/// How a bad tet is degenerate, and where: its vertices and edges by local number ([`EDGES`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Defect {
     /// Type I: edges `edge` and `5 - edge` cross closely.
     CrossedEdges {
-        /// One of them.
+        /// The first of the two edges.
         edge: usize,
     },
-    /// Type II: a vertex close to an edge that is not its own.
+    /// Type II: a vertex close to an edge that it does not belong to.
     VertexAtEdge {
         /// The vertex.
         vertex: usize,
         /// The edge.
         edge: usize,
     },
-    /// Type III: a vertex whose foot lies within the opposite facet.
+    /// Type III: a vertex whose projection lies within the opposite facet.
     VertexOverFacet {
         /// The vertex.
         vertex: usize,
@@ -47,12 +48,12 @@ pub enum Defect {
         /// The edge.
         edge: usize,
     },
-    /// None of them.
+    /// None of the four types.
     Other,
 }
 
 impl Defect {
-    /// 0 for type I to 3 for type IV, 4 for none of them.
+    /// Index of the type: 0 for type I to 3 for type IV, 4 for none of them.
     pub fn number(self) -> usize {
         match self {
             Self::CrossedEdges { .. } => 0,
@@ -64,15 +65,15 @@ impl Defect {
     }
 }
 
-/// Names of the types, by [`Defect::number`].
+/// Names of the types, indexed by [`Defect::number`].
 pub const DEFECT_NAMES: [&str; 5] = ["I", "II", "III", "IV", "other"];
 
-/// How a bad tet is degenerate.
+/// The type of a bad tet, by the limits of the paper.
 pub fn classify(tet: [Point; 4]) -> Defect {
     classify_by(tet, |lengths| lengths.iter().sum::<f64>() / 6.0)
 }
 
-/// The same with lengths as parts of what `unit` makes of the six.
+/// The type of a bad tet, with lengths relative to `unit` of its six edge lengths.
 fn classify_by(tet: [Point; 4], unit: impl Fn([f64; 6]) -> f64) -> Defect {
     let lengths = EDGES.map(|[i, j]| norm(sub(tet[j], tet[i])));
     let mean = unit(lengths);
@@ -96,7 +97,7 @@ fn classify_by(tet: [Point; 4], unit: impl Fn([f64; 6]) -> f64) -> Defect {
         .unwrap_or(Defect::Other)
 }
 
-/// The vertex that is closest to an edge not its own, measured where its foot lies within the edge.
+/// The vertex closest to an edge that it does not belong to, where its projection lies within the edge.
 fn vertex_to_edge(tet: [Point; 4]) -> (f64, Defect) {
     let mut best = (f64::INFINITY, Defect::Other);
     for (edge, [i, j]) in EDGES.into_iter().enumerate() {
@@ -112,7 +113,7 @@ fn vertex_to_edge(tet: [Point; 4]) -> (f64, Defect) {
     best
 }
 
-/// The opposite edges that are closest, measured where they pass each other between their ends.
+/// The closest pair of opposite edges, where they pass each other between their ends.
 fn edge_to_edge(tet: [Point; 4]) -> (f64, Defect) {
     let mut best = (f64::INFINITY, Defect::Other);
     for edge in 0..3 {
@@ -124,7 +125,7 @@ fn edge_to_edge(tet: [Point; 4]) -> (f64, Defect) {
     best
 }
 
-/// The distance of two lines where the closest points lie within both segments.
+/// The distance of two segments if the closest points of their lines lie within both.
 fn passing_distance([a, b]: [Point; 2], [c, d]: [Point; 2]) -> Option<f64> {
     let (u, v, w) = (sub(b, a), sub(d, c), sub(c, a));
     let n = cross(u, v);
@@ -135,7 +136,7 @@ fn passing_distance([a, b]: [Point; 2], [c, d]: [Point; 2]) -> Option<f64> {
     (within(s) && within(t)).then(|| dot(w, n).abs() / n_squared.sqrt())
 }
 
-/// Whether the foot of a vertex on the plane of the opposite facet lies within the facet.
+/// Whether the projection of a vertex onto the plane of the opposite facet lies within the facet.
 fn foot_is_inside(tet: [Point; 4], vertex: usize) -> bool {
     let [a, b, c] = FACETS[vertex].map(|i| tet[i]);
     let normal = cross(sub(b, a), sub(c, a));
@@ -149,14 +150,15 @@ mod tests {
     use crate::base::mixed;
     use crate::geometry::quality::eas;
 
-    /// A number in [-1, 1) from a state.
+    /// The next pseudo-random number in [-1, 1).
     fn next(state: &mut u64) -> f64 {
         let number = mixed(*state);
         *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         (number >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    /// Degenerate tets made on purpose, types I to IV in turn, each corner moved by up to `noise` of the size.
+    /// A tet degenerate by construction, of type I to IV by `kind`, with each coordinate perturbed by up to
+    /// `noise`.
     fn made(state: &mut u64, kind: usize, noise: f64) -> [Point; 4] {
         let t = 0.5 + 0.3 * next(state);
         let s = 0.5 + 0.3 * next(state);
@@ -170,7 +172,7 @@ mod tests {
         ideal.map(|p| p.map(|x| x + noise * next(state)))
     }
 
-    /// What the limits are parts of: how often a tet that was made of a type is told to be of it.
+    /// Compares units for the limits: how often a tet constructed as one type is classified as that type.
     #[test]
     fn the_mean_edge_tells_the_types_best() {
         type Unit = fn([f64; 6]) -> f64;

@@ -1,4 +1,4 @@
-//! The mesh as it was given: in which of its tets a place lies, and what fields of its vertices are there.
+//! The mesh as it was given: finds the tet that contains a point, and interpolates values at its vertices.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::kernel::{Complex, VertexChange};
 use crate::mesh::TetMesh;
 use crate::spatial::{Bounds, BoxTree, around};
 
-/// The tets of a mesh before anything changes, to be searched.
+/// The tets of a mesh before anything changes, in a search tree.
 #[derive(Debug)]
 pub(super) struct Given {
     tree: BoxTree,
@@ -26,12 +26,13 @@ impl Given {
         Self { tree: BoxTree::new(&boxes), points: mesh.points.clone(), tets: mesh.tets.clone() }
     }
 
-    /// Where each vertex was.
+    /// The position of each vertex.
     pub(super) fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// The vertices of the tet that holds a point, the first of those that do, and the weights that make the point of them; of the nearest tet where none does. `None`: there is no tet.
+    /// The vertices of the first tet that contains a point, and its barycentric weights; of the nearest tet
+    /// if none does. `None` if there are no tets.
     pub(super) fn at(&self, point: Point) -> Option<([VertexId; 4], [f64; 4])> {
         let measure = |id: u32| {
             let tet = self.tets[id as usize].map(|v| self.points[v.index()]);
@@ -50,25 +51,26 @@ fn swapped([a, b, c, d]: [f64; 4]) -> [f64; 4] {
     [a, b, d, c]
 }
 
-/// The mesh in another pose, with its vertices at other places: when the walls are at rest, or after the next step. There, too, it is to be good.
+/// The mesh in another pose, with its vertices at other places: when the walls are at rest, or after the next
+/// step. Tets are to be good there, too.
 #[derive(Debug)]
 pub(super) struct Pose {
     given: Arc<Given>,
-    /// Where each vertex is as it was given.
+    /// Position in this pose of each vertex of the given mesh.
     of_given: Vec<Point>,
-    /// Where each vertex is as it is now.
+    /// Position in this pose of each vertex of the mesh as it is now.
     points: Vec<Point>,
-    /// EAS of each tet; no number until somebody has asked.
+    /// EAS of each tet; NaN until it is first requested.
     qualities: Vec<Cell<f64>>,
 }
 
 impl Pose {
-    /// `of_given`: where each vertex that was given is in the other pose.
+    /// A pose in which each vertex of the given mesh is at `of_given`.
     pub(super) fn new(given: Arc<Given>, of_given: Vec<Point>) -> Self {
         Self { given, points: of_given.clone(), of_given, qualities: Vec::new() }
     }
 
-    /// Follows all that has changed.
+    /// Updates the pose after any number of changes.
     pub(super) fn update(&mut self, complex: &Complex) {
         let places = (0..complex.n_vertex_slots()).map(|v| self.place(complex, VertexId::new(v)));
         self.points = places.collect();
@@ -76,7 +78,7 @@ impl Pose {
         self.qualities.resize(complex.n_slots(), Cell::new(f64::NAN));
     }
 
-    /// Follows a change that inserted tets.
+    /// Updates the pose after one change that inserted these tets.
     pub(super) fn follow(&mut self, complex: &Complex, vertex: VertexChange, inserted: &[TetId]) {
         if let VertexChange::Move(vertex, _) = vertex {
             self.points[vertex.index()] = self.place(complex, vertex);
@@ -85,13 +87,13 @@ impl Pose {
         inserted.iter().for_each(|tet| self.qualities[tet.index()].set(f64::NAN));
     }
 
-    /// Where a vertex is in the other pose.
+    /// The position of a vertex in this pose.
     #[inline]
     pub(super) fn point(&self, vertex: VertexId) -> Point {
         self.points[vertex.index()]
     }
 
-    /// EAS of a tet in the other pose.
+    /// EAS of a tet in this pose.
     #[inline]
     pub(super) fn quality(&self, complex: &Complex, tet: TetId) -> f64 {
         let known = &self.qualities[tet.index()];
@@ -101,7 +103,8 @@ impl Pose {
         known.get()
     }
 
-    /// Where a vertex belongs in the other pose: one that was inserted or has moved goes with its place in the mesh that was given.
+    /// The position of a vertex in this pose: one that was inserted or moved is interpolated in the tet of
+    /// the given mesh that contains it.
     fn place(&self, complex: &Complex, vertex: VertexId) -> Point {
         let place = complex.point(vertex);
         if self.given.points().get(vertex.index()) == Some(&place) {

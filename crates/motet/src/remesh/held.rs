@@ -1,4 +1,5 @@
-//! What stays to the bit: regions and patches that are named, what is marked as required, and facets of the boundary that have a twin.
+//! What stays to the bit: named regions and patches, entities marked as required, and facets of the boundary
+//! that have a twin.
 
 use serde::Serialize;
 
@@ -8,22 +9,23 @@ use crate::base::{CellId, Error, Point, Result, TetId, VertexId};
 use crate::kernel::{Complex, Hold, WallId};
 use crate::mesh::{CellKind, Labels, Mesh, TetMesh, TetPart, firsts_at_place};
 
-/// What is held: tets of regions, tets one by one, and facets of patches stay, with their vertices.
+/// What is held: the tets of regions, single tets, and the facets of patches stay, with their vertices.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Held {
     /// Regions whose tets stay.
     pub regions: Vec<i32>,
     /// Patches whose triangles stay; the tets beside them may change.
     pub patches: Vec<i32>,
-    /// Tets that stay, by the ids of their cells; those of other cells mean nothing.
+    /// Tets that stay, by their cell ids; ids of other cells are ignored.
     pub cells: Vec<CellId>,
 }
 
 impl Held {
-    /// What words mean: names or numbers of regions and patches. A word that is both means both.
+    /// Finds the regions and patches with the given names or numbers. A word that is both a region and a
+    /// patch holds both.
     ///
     /// # Errors
-    /// When a word is neither; it lists what there is.
+    /// If a word is neither; the error lists the regions and patches of the mesh.
     pub fn of_names(mesh: &Mesh, words: &[String]) -> Result<Self> {
         let mut held = Self::default();
         let [regions, patches] = [mesh.regions(), mesh.patches()].map(Option::unwrap_or_default);
@@ -49,18 +51,18 @@ impl Held {
     }
 }
 
-/// What is held one by one.
+/// Entities that are held one by one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Required {
     tets: Vec<TetId>,
-    /// By their places among the triangles and lines of the mesh.
+    /// Indices into the triangles of the mesh; those of `lines`, into its lines.
     triangles: Vec<u32>,
     lines: Vec<u32>,
     vertices: Vec<VertexId>,
 }
 
 impl Required {
-    /// What the arrays of a mesh mark: see [`marks`](crate::mesh::marks).
+    /// The entities that arrays of a mesh mark as required: see [`marks`](crate::mesh::marks).
     pub(super) fn of(mesh: &Mesh, part: &TetPart) -> Self {
         let places = |kind: CellKind, to_cell: &[CellId]| -> Vec<u32> {
             let cells = mesh.required_cells(kind).into_iter().map(CellId::new);
@@ -75,7 +77,7 @@ impl Required {
     }
 }
 
-/// Holds it all; `adapts` says whether walls may change at all.
+/// Fixes everything that is `held` or `required`; `adapts` says whether walls may change at all.
 pub(super) fn hold(complex: &mut Complex, mesh: &TetMesh, held: &Held, required: &Required, adapts: bool) {
     let regions: BTreeSet<i32> = held.regions.iter().copied().collect();
     let of_regions = (0..mesh.tets.len()).filter(|&t| regions.contains(&mesh.regions[t])).map(TetId::new);
@@ -106,8 +108,8 @@ pub(super) fn hold(complex: &mut Complex, mesh: &TetMesh, held: &Held, required:
     required.vertices.iter().for_each(|&v| complex.set_hold(v, Hold::Fixed));
 }
 
-/// The facets of the boundary that lie on others, vertex on vertex: both sides of a slit, or of an interface whose points are there twice. Changed one by one they would no longer
-/// fit.
+/// The facets of the boundary that coincide with others, vertex on vertex: both sides of a slit, or of an
+/// interface with duplicate points. If they changed one by one, they would no longer fit.
 fn twins(complex: &Complex) -> Vec<WallId> {
     let outer = || complex.walls().filter(|(_, wall)| wall.sides[1].is_none());
     let mut vertices: Vec<VertexId> = outer().flat_map(|(_, wall)| complex.facet(wall.sides[0])).collect();

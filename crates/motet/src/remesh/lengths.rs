@@ -1,4 +1,4 @@
-//! How well edges have the sizes that are asked for.
+//! How well edges match the requested sizes.
 
 use serde::Serialize;
 
@@ -7,26 +7,28 @@ use crate::geometry::tet::EDGES;
 use crate::kernel::{Complex, Hold};
 use crate::remesh::sizes::{LONG, SHORT, SizeField};
 
-/// The edges of a mesh beside their sizes: each length as a part of the mean size at its ends.
+/// Statistics of the edge lengths of a mesh, each length divided by the mean size at its ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Lengths {
-    /// How many edges tets have.
+    /// The number of edges of the tets.
     pub edges: usize,
     /// How many are longer than [`LONG`](crate::remesh::LONG).
     pub too_long: usize,
     /// How many are shorter than [`SHORT`](crate::remesh::SHORT).
     pub too_short: usize,
-    /// How many of the too long are held: at a surface that is kept, of boundary layers that are kept, or of cells of other kinds.
+    /// How many edges that are too long are held: on a surface that is kept, of boundary layers that are
+    /// kept, or of cells of other kinds.
     pub too_long_held: usize,
-    /// How many of the too short are held so.
+    /// How many edges that are too short are held in this way.
     pub too_short_held: usize,
-    /// The shortest; 0 where there is no edge.
+    /// The smallest ratio; 0 if there are no edges.
     pub min: f64,
-    /// The mean over all edges.
+    /// The mean ratio over all edges.
     pub mean: f64,
-    /// The standard deviation of the natural logarithm: 0 where every edge has its size, or all miss it by the same factor.
+    /// The standard deviation of the natural logarithm of the ratio: 0 if every edge has its size, or all
+    /// miss it by the same factor.
     pub spread: f64,
-    /// The longest.
+    /// The largest ratio.
     pub max: f64,
 }
 
@@ -65,7 +67,7 @@ impl Lengths {
     }
 }
 
-/// Edges of tets that no change may touch and of walls that none may remove, in rising order.
+/// Edges of locked tets and of fixed walls, sorted.
 pub(super) fn locked_edges(complex: &Complex) -> Vec<[VertexId; 2]> {
     let mut edges = edges_of(complex, complex.tets().filter(|&t| complex.is_locked(t)));
     for (_, wall) in complex.walls().filter(|(id, _)| complex.is_fixed_wall(*id)) {
@@ -77,7 +79,7 @@ pub(super) fn locked_edges(complex: &Complex) -> Vec<[VertexId; 2]> {
     edges
 }
 
-/// Every edge of some tets once, lower vertex first, in rising order.
+/// Every edge of some tets once, lower vertex first, sorted.
 fn edges_of(complex: &Complex, tets: impl Iterator<Item = TetId>) -> Vec<[VertexId; 2]> {
     let of = |tet: [VertexId; 4]| EDGES.map(|[i, j]| [tet[i].min(tet[j]), tet[i].max(tet[j])]);
     let mut edges: Vec<_> = tets.flat_map(|t| of(complex.vertices(t))).collect();

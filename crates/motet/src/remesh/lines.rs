@@ -1,4 +1,5 @@
-//! Lines as they came, and how far they may stray: as walls do from their patches, lines stay within a distance of those of their label.
+//! Lines as they were given, and how far they may stray: as walls do from their patches, lines stay within a
+//! distance of the lines of their label.
 
 use std::collections::BTreeMap;
 
@@ -32,7 +33,8 @@ impl FirstLines {
         Self { labels: labels.into_iter().map(|(label, segments)| (label, of_label(segments))).collect() }
     }
 
-    /// Whether the lines that a change brings or moves stay within `reach` of those that were there, and what a vertex leaves behind stays within `reach` of them.
+    /// Whether the lines that a change inserts or moves stay within `reach` of the first ones of their label,
+    /// and the place that a vertex leaves lies within `reach` of the new ones.
     pub(super) fn accepts(&self, complex: &Complex, change: &Change, reach: f64) -> bool {
         let lines = lines_after(complex, change);
         let covers = |left: Point| lines.iter().any(|(_, ends)| distance(on(*ends, left), left) <= reach);
@@ -40,7 +42,8 @@ impl FirstLines {
             && (lines.is_empty() || left_behind(complex, change).is_none_or(covers))
     }
 
-    /// Looks at the ends, the middle and the middles of the halves.
+    /// Whether a segment is near the lines of its label, sampled at its ends, its midpoint and the midpoints
+    /// of its halves.
     fn is_near(&self, label: u32, [a, b]: [Point; 2], reach: f64) -> bool {
         let Some(OfLabel { tree, segments }) = self.labels.get(&label) else { return false };
         [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().all(|share| {
@@ -54,12 +57,12 @@ impl FirstLines {
     }
 }
 
-/// The place of a segment closest to a point.
+/// The point of a segment closest to `p`.
 fn on([a, b]: [Point; 2], p: Point) -> Point {
     add(a, scale(sub(b, a), segment::closest([a, b], p)))
 }
 
-/// The place that a change takes a vertex from.
+/// The place from which a change moves or removes a vertex.
 fn left_behind(complex: &Complex, change: &Change) -> Option<Point> {
     match change.vertex {
         VertexChange::Move(v, _) | VertexChange::Remove(v) => Some(complex.point(v)),
@@ -67,7 +70,7 @@ fn left_behind(complex: &Complex, change: &Change) -> Option<Point> {
     }
 }
 
-/// The lines that a change brings, and those of a vertex that it moves, where they are then.
+/// The lines that a change inserts, and the lines of a vertex that it moves, at their new place.
 fn lines_after(complex: &Complex, change: &Change) -> Vec<(u32, [Point; 2])> {
     let mut lines: Vec<(u32, [Point; 2])> = Vec::new();
     for new in &change.lines {
@@ -89,7 +92,8 @@ mod tests {
     use crate::kernel::{NewLine, Star};
     use crate::mesh::TetMesh;
 
-    /// A fan of tets round a line from (0, 0, 0) to (1, 0, 0) whose inner vertices have these heights, evenly apart; label 1.
+    /// A fan of tets around a line from (0, 0, 0) to (1, 0, 0) whose evenly spaced inner vertices have these
+    /// heights; label 1.
     fn fan(heights: &[f64]) -> Complex {
         let n = heights.len() + 1;
         let height = |i: usize| if i == 0 || i == n { 0.0 } else { heights[i - 1] };
@@ -126,7 +130,7 @@ mod tests {
             off[end][2] = 0.1;
             assert!(first.is_near(label, off, 0.1 + 1e-12) && !first.is_near(label, off, 0.099));
         }
-        // Between its ends, in the middle or in the middle of a half, it is away from a line that bends.
+        // The midpoint of the segment, or that of one of its halves, is away from a line that bends.
         for heights in [[0.0, 0.2, 0.0], [0.2, 0.0, 0.0], [0.0, 0.0, 0.2]] {
             let first = FirstLines::of(&fan(&heights));
             assert!(first.is_near(label, ends, 0.2) && !first.is_near(label, ends, 0.1), "{heights:?}");
@@ -147,13 +151,13 @@ mod tests {
         };
         assert!(accepts([0.3, 0.0, 0.0], 1e-12), "along the line");
         assert!(!accepts([0.3, 0.1, 0.0], 0.09) && accepts([0.3, 0.1, 0.0], 0.11));
-        // The middles of the two lines are near, their common end is not.
+        // The midpoints of the two lines are near, their common end is not.
         assert!(!accepts([0.5, 0.0, 0.16], 0.15));
     }
 
     #[test]
     fn the_end_of_a_spike_is_not_left_behind() {
-        // Both legs of the spike are near to what joins their feet, its end is not.
+        // Both legs of the spike are near the line that joins their feet; its tip is not.
         let mut complex = fan(&[0.0]);
         let mut change = Change::default();
         change

@@ -1,27 +1,28 @@
-//! Floor 6: bad tets found, classified, repaired, and only those.
+//! Floor 6: bad tets found, classified and repaired, and nothing else touched.
 //!
 //! | step | file | how |
 //! |---|---|---|
-//! | find | `run` | EAS below a limit; four tets at a time, a closer look only where that leaves a doubt |
+//! | find | `run` | tets with EAS below a limit; evaluated four at a time, recomputed only where that leaves a doubt |
 //! | reconnect | `repair::stages` | edges removed by dynamic programming, facets removed: the paper's stage one |
 //! | by type | `classify` | the paper's types I to IV, each with its own repair: stage two |
 //! | by length | `repair::by_length` | edges far from the local average length collapsed or split, where the surface is kept: the paper's rule for type IV |
-//! | beyond | `repair::stages` | vertices moved, collapsed, inserted; what lies round the stubborn made better first |
-//! | divide | `repair::divide` | what nothing helps is divided, as long as that leaves fewer |
-//! | improve | `repair::improve` | swaps and moved vertices that make tets better on the whole, and none bad |
-//! | density | `repair::density` | as many vertices as there were: long edges divided, short ones collapsed |
-//! | thin | `repair::thin` | vertices that came and lie close to others go again where they are not needed |
-//! | choose | `repair::candidate` | of the changes that repair a tet the one that touches the fewest that nothing has touched |
-//! | surface | `surface` | kept to the bit, or within a distance of what it was |
+//! | beyond | `repair::stages` | vertices moved, collapsed, inserted; the surroundings of stubborn tets improved first |
+//! | divide | `repair::divide` | tets that no operation repairs are divided, as long as that leaves fewer bad ones |
+//! | improve | `repair::improve` | swaps and moved vertices that improve tets as a whole and leave none bad |
+//! | density | `repair::density` | the number of vertices kept: long edges divided, short ones collapsed |
+//! | thin | `repair::thin` | inserted vertices that lie close to others removed again where they are not needed |
+//! | choose | `repair::candidate` | of the changes that repair a tet, the one that touches the fewest tets still untouched |
+//! | surface | `surface` | kept to the bit, or within a distance of the input surface |
 //! | lines | `lines` | labelled edges divided and merged along themselves, within the same distance |
-//! | hold | `held` | named regions and patches, required entities and facets with a twin stay to the bit |
-//! | sizes | `sizes`, `repair::sizing` | where lengths are asked for: edges far longer split, far shorter collapsed |
+//! | hold | `held` | named regions and patches, required entities and facets with a twin kept to the bit |
+//! | sizes | `sizes`, `repair::sizing` | where edge lengths are requested: edges far longer split, far shorter collapsed |
 //! | layers | [`crate::mesh::OrientedTets`] | tets of boundary layers are thin on purpose, and stay |
-//! | explain | `left` | which tet is left, where, why |
+//! | explain | `left` | which bad tets are left, where, and why |
 //! | whole meshes | `whole` | cells of other kinds put back, arrays carried across |
 //!
-//! Every change goes through [`kernel`](crate::kernel): the worst quality of what it touches rises, or it is not made. The method is that of Moyle and
-//! Ventikos 2008, *Local remeshing for large amplitude grid deformations*, and goes on where it ends.
+//! Every change goes through [`kernel`](crate::kernel) and is made only if it raises the worst quality of the
+//! tets it touches. The method is that of Moyle and Ventikos 2008, *Local remeshing for large amplitude grid
+//! deformations*, and goes beyond it.
 
 pub mod classify;
 mod given;

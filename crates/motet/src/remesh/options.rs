@@ -1,4 +1,4 @@
-//! What a remesher is told beside the mesh.
+//! Options of the remesher.
 
 use serde::Serialize;
 
@@ -8,30 +8,33 @@ use crate::geometry::vector::LARGEST;
 use crate::remesh::held::Held;
 use crate::remesh::sizes::Sizes;
 
-/// What is to be repaired, and how.
+/// Options that say what is repaired, and how.
 #[derive(Clone, Debug, Serialize)]
 pub struct Options {
     /// A tet below this EAS is bad. Default: 0.2.
     pub min_eas: f64,
-    /// Only these tets can be bad, and what comes of them: cells of a mesh, tets where there are only tets; ids of anything else say nothing. Others stay as they are, however bad, where no
-    /// change takes them along. Default: `None`, all tets.
+    /// Only these tets, and the tets that replace them, can count as bad: ids of cells of the mesh, or of
+    /// tets where there are only tets; ids of other cells are ignored. All other tets stay, however bad,
+    /// unless a change takes them along. Default: `None`, all tets.
     pub only: Option<Vec<CellId>>,
-    /// A tet is bad, too, when one of its dihedral angles is smaller than this, in degrees. It raises the EAS that is asked to the one that makes sure of
-    /// the angle: see [`Self::limit`]. Default: 0.
+    /// Least dihedral angle in degrees; a tet with a smaller one is bad, too. It raises the required EAS to
+    /// the value that guarantees the angle: see [`Self::limit`]. Default: 0.
     pub min_dihedral_deg: f64,
     /// How far to go. Default: [`Goal::Repair`].
     pub goal: Goal,
     /// What may happen to the surface. Default: [`SurfaceRule::Keep`].
     pub surface: SurfaceRule,
-    /// Whether tets of boundary layers stay as they are: thin, but well shaped when stretched to the width of the wall's facets. Default: true.
+    /// Whether tets of boundary layers stay as they are: thin tets that are well shaped when stretched to the
+    /// width of the wall's facets. Default: true.
     pub keep_layers: bool,
-    /// Regions and patches that stay to the bit, however bad their tets are. Default: none.
+    /// Regions, patches and tets that stay to the bit, however bad they are. Default: none.
     pub held: Held,
-    /// How long edges are to be; `None`: as they are. Default: `None`.
+    /// Requested edge lengths; `None` leaves them as they are. Default: `None`.
     pub sizes: Option<Sizes>,
-    /// Which tets are improved beside the bad ones; `None`: those that goal [`Goal::Best`] improves, otherwise none. Default: `None`.
+    /// Which tets are improved besides the bad ones; `None`: those that [`Goal::Best`] improves under that
+    /// goal, otherwise none. Default: `None`.
     pub improve: Option<Improve>,
-    /// At most so many rounds over the bad tets. Default: 20.
+    /// The largest number of rounds over the bad tets. Default: 20.
     pub rounds: usize,
 }
 
@@ -53,10 +56,10 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Refuses numbers that mean nothing.
+    /// Checks that all numbers are in their ranges.
     ///
     /// # Errors
-    /// Names the first of them.
+    /// If a number is out of range; the error names the first.
     pub fn check(&self) -> Result<()> {
         let refused = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
         if !(0.0..=1.0).contains(&self.min_eas) {
@@ -92,40 +95,50 @@ impl Options {
         }
     }
 
-    /// The EAS below which a tet is bad. One of EAS q has no dihedral angle below q acos(1/3).
+    /// The EAS below which a tet is bad. A tet of EAS q has no dihedral angle below q acos(1/3).
     pub fn limit(&self) -> f64 {
         self.min_eas.max(self.min_dihedral_deg.to_radians() / REGULAR)
     }
 }
 
-/// Tets that are made better on the whole, none of them bad, beside those that are repaired: the mean gets better, and the next motion makes fewer bad.
+/// Which tets are improved besides those that are repaired: as a whole, with none left bad. The mean quality
+/// rises, and the next motion makes fewer bad tets.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Improve {
-    /// Tets below this EAS are improved where they share a vertex with what repair has changed, and among [`Self::cells`].
+    /// Tets below this EAS are improved if they are among [`Self::cells`] or share a vertex with a tet that
+    /// repair has changed.
     pub below: f64,
-    /// Further cells; ids of cells that are no tets say nothing. `None`: all tets.
+    /// Cells to improve; ids of cells that are not tets are ignored. `None`: all tets.
     pub cells: Option<Vec<CellId>>,
-    /// Whether all tets stay that are not among [`Self::cells`] and that repair has not changed.
+    /// Whether tets that are not among [`Self::cells`], and that repair has not changed, all stay as they
+    /// are.
     pub keeps_others: bool,
-    /// Whether the worst are raised, too: with every operation, walls kept, up to a limit that rises as long as it is in reach. Where more than a hundredth of the tets are bad they are not: surfaces force them.
+    /// Whether the worst tets are raised, too: with every operation, walls kept, up to a limit that rises as
+    /// long as it is reached. Not done if more than one tet in a hundred is bad: then surfaces force them.
     pub raises_worst: bool,
-    /// How many vertices are to be kept; `None`: as many as repair leaves.
+    /// How many vertices to keep; `None`: as many as repair leaves.
     pub density: Option<Density>,
-    /// Another pose: where each point of the mesh is when the walls are at rest, for walls that come back, or will be after the next step, for walls that go on. There tets are to be good as much as where they are.
+    /// A second pose in which tets are to be as good as in the current one: the position of each point of the
+    /// mesh when the walls are at rest (for walls that come back), or after the next step (for walls that go
+    /// on).
     pub pose: Option<Vec<Point>>,
-    /// By how much more a change has to lower the sum, over both poses, of the squares of what EAS lacks of 1, for each tet that nothing has changed yet: 0 where it does not matter how many tets change.
+    /// The price of changing a tet that nothing has changed yet: for each such tet, a change must lower the
+    /// sum over both poses of (1 - EAS)^2 by this much more. 0 if the number of changed tets does not matter.
     pub cost: f64,
 }
 
 impl Improve {
-    /// The [cost](Self::cost) where each tet that changes costs an interpolation. Of a paddle that turns in a box ten times or more 8.8 % of the tets change in a step with 0.02, 8.1 % with 0.025, 7.5 %
-    /// with 0.03; the mean EAS of all steps is 0.704, 0.701 and 0.698.
+    /// The [cost](Self::cost) for meshes where each tet that changes requires an interpolation. With a paddle
+    /// that turns ten times or more in a box, 8.8 % of the tets change per step at 0.02, 8.1 % at 0.025 and
+    /// 7.5 % at 0.03; the mean EAS of all steps is 0.704, 0.701 and 0.698.
     pub const FEW_CHANGES: f64 = 0.025;
 
-    /// The EAS [below](Self::below) which tets of a volume that was just filled, or brought to sizes, are improved.
+    /// The EAS [below](Self::below) which tets are improved in a volume that was just filled, or brought to
+    /// sizes.
     pub const NEW_TETS: f64 = 0.6;
 
-    /// All tets of a volume that was just filled, where it does not matter how many change.
+    /// The options for a volume that was just filled: all tets are improved, and the number of changes does
+    /// not matter.
     pub fn filled() -> Self {
         Self {
             below: Self::NEW_TETS,
@@ -138,7 +151,7 @@ impl Improve {
         }
     }
 
-    /// Refuses arrays that are not about the points of a mesh of so many.
+    /// Checks that the arrays have one entry for each of the `n_points` points of the mesh.
     pub(super) fn check(&self, n_points: usize) -> Result<()> {
         let sizes = self.density.as_ref().map(|density| ("sizes", density.sizes.len()));
         let pose = self.pose.as_ref().map(|pose| ("places of the other pose", pose.len()));
@@ -150,44 +163,48 @@ impl Improve {
     }
 }
 
-/// The number of vertices that is kept, and where they belong.
+/// How many vertices are kept, and how they are distributed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Density {
-    /// For each vertex of the mesh how long edges are to be there; between vertices linear in the tets. Long edges are divided where vertices lack, short ones collapsed where there are too
-    /// many.
+    /// The desired edge length at each vertex of the mesh, interpolated linearly in the tets. Long edges are
+    /// divided where vertices are lacking, short ones collapsed where there are too many.
     pub sizes: Vec<f64>,
-    /// How many vertices that nothing holds there are to be; `None`: as many as the mesh has.
+    /// How many free vertices the mesh is to have; `None`: as many as it has now.
     pub free_vertices: Option<usize>,
 }
 
 /// What may happen to walls: the boundary, interfaces between regions, labelled facets.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum SurfaceRule {
-    /// They stay as they are, to the bit.
+    /// Walls stay as they are, to the bit.
     Keep,
-    /// They may change within a distance of where they were, features and borders of patches kept.
+    /// Walls may change within a distance of where they were; features and borders of patches are kept.
     Adapt {
         /// How far a wall may stray, in the unit of the mesh; `None`: [`DEFAULT_DISTANCE`] of the mesh's largest extent.
         distance: Option<f64>,
     },
-    /// The same, but of features only borders of patches are kept where nothing else helps: creases and corners are held by the distance alone. For
-    /// surfaces whose features are noise.
+    /// Walls may change within a distance of where they were. Where nothing else helps, only borders of
+    /// patches are kept; creases and corners are then bound by the distance alone. For surfaces whose
+    /// features are noise.
     Loose {
-        /// As for [`Self::Adapt`].
+        /// How far a wall may stray, in the unit of the mesh; `None`: [`DEFAULT_DISTANCE`] of the mesh's
+        /// largest extent.
         distance: Option<f64>,
     },
-    /// They keep their place to rounding, but triangles in one plane may become others: a vertex within a flat part can go.
+    /// Walls keep their place to rounding, but triangles in one plane may be replaced by others: a vertex
+    /// within a flat part can be removed.
     Flat {
-        /// How far walls were off their planes before, in the unit of the mesh; `None`: rounding of `f64`.
+        /// How far the walls deviate from their planes to begin with, in the unit of the mesh; `None`:
+        /// rounding of `f64`.
         distance: Option<f64>,
     },
 }
 
 impl SurfaceRule {
-    /// The rule of a name: `keep`, `adapt` or `loose`, as the command line has them.
+    /// The rule called `keep`, `adapt` or `loose`, as on the command line.
     ///
     /// # Errors
-    /// When none is called that, or the surface is kept and a distance is given.
+    /// If no rule has this name, or the rule is `keep` and a distance is given.
     pub fn of_name(name: &str, distance: Option<f64>) -> Result<Self> {
         match (name, distance) {
             ("keep", None) => Ok(Self::Keep),
@@ -202,7 +219,7 @@ impl SurfaceRule {
         }
     }
 
-    /// How far a wall may stray, given the mesh's largest extent; `None` where it may not.
+    /// How far a wall may stray, given the mesh's largest extent; `None` if walls may not change.
     pub(super) fn distance(self, extent: impl FnOnce() -> f64) -> Option<f64> {
         match self {
             Self::Keep => None,
@@ -214,19 +231,20 @@ impl SurfaceRule {
     }
 }
 
-/// How far the surface may stray, as a part of the mesh's largest extent, where nobody said.
+/// How far the surface may stray by default, as a fraction of the mesh's largest extent.
 pub const DEFAULT_DISTANCE: f64 = 1e-3;
 
-/// The same for what is to keep its place: rounding.
+/// How far walls that keep their place may stray by rounding, as a fraction of the mesh's largest extent.
 const IN_PLANE: f64 = 1e-9;
 
-/// How far to go.
+/// How far the remesher goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Goal {
-    /// No bad tet left, as few tets touched as can be.
+    /// Leave no bad tet, touching as few tets as possible.
     Repair,
-    /// The worst tets as good as they get, everywhere.
+    /// Make the worst tets everywhere as good as possible.
     Best,
-    /// As [`Self::Repair`]; of [`Options::sizes`] the lower half alone: edges that are too short are collapsed where that brings none that is longer than its size, and none is split.
+    /// As [`Self::Repair`], but of [`Options::sizes`] only the lower half is applied: edges that are too
+    /// short are collapsed if no edge then exceeds its size, and none is split.
     Coarsen,
 }

@@ -1,4 +1,4 @@
-//! What a remeshing did: the certificate.
+//! The report of a remeshing: its certificate.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use crate::remesh::classify::classify;
 use crate::remesh::left::Left;
 use crate::remesh::lengths::Lengths;
 
-/// An operation that repaired something.
+/// An operation of the remesher.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Operation {
@@ -31,11 +31,11 @@ pub enum Operation {
     Smoothing,
     /// A vertex inserted.
     Insertion,
-    /// A tet removed that was folded over the mesh.
+    /// A tet removed that lay folded over the mesh.
     Peeling,
 }
 
-/// How often each operation was made.
+/// How often each operation was applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[allow(missing_docs, reason = "they are the variants of Operation")]
 pub struct Counts {
@@ -73,37 +73,38 @@ impl Counts {
 /// The worst tet of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Worst {
-    /// Which tet.
+    /// Id of the tet.
     pub tet: u32,
     /// Its EAS.
     pub eas: f64,
-    /// Its centre.
+    /// Its centroid.
     pub place: Point,
 }
 
-/// How a mesh is at one time.
+/// The size and quality of a mesh at one time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct State {
-    /// How many vertices tets have.
+    /// How many vertices the tets have.
     pub vertices: usize,
-    /// How many of these nothing holds: they lie inside, and on no line.
+    /// How many of these are free: inside the volume, and on no line.
     pub free_vertices: usize,
-    /// How many tets there are.
+    /// The number of tets.
     pub tets: usize,
-    /// How many are bad: as [`crate::mesh::OrientedTets`] judges them, by the limit that was given.
+    /// How many tets are bad, as judged by [`crate::mesh::OrientedTets`] with the given limit.
     pub bad: usize,
-    /// How many are below the limit and belong to a boundary layer: these are not bad.
+    /// How many tets are below the limit but belong to a boundary layer, and so are not bad.
     pub layers: usize,
-    /// How many of the bad are of each type: I to IV, other.
+    /// How many of the bad tets are of each type: I to IV, other.
     pub types: [usize; 5],
-    /// How many are flat or inverted, by exact signs.
+    /// How many tets are flat or inverted, by exact signs.
     pub inverted: usize,
-    /// The worst tet; `None` where there is none.
+    /// The worst tet; `None` if there are no tets.
     pub worst: Option<Worst>,
 }
 
 impl State {
-    /// `bad` are all that are bad, flat and inverted ones among them; `id` tells which tet each is to the reader.
+    /// The state of a complex. `bad` lists all bad tets, including flat and inverted ones; `id` gives the id
+    /// of a tet that is reported.
     pub(super) fn of(complex: &Complex, bad: &[TetId], layers: usize, id: impl Fn(TetId) -> TetId) -> Self {
         let mut types = [0; 5];
         bad.iter().for_each(|&t| types[classify(complex.corners(t)).number()] += 1);
@@ -121,62 +122,63 @@ impl State {
     }
 }
 
-/// Edges beside the sizes that are asked for.
+/// Edge lengths compared with the requested sizes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SizesReport {
-    /// Of the mesh as it came.
+    /// For the input mesh.
     pub before: Lengths,
-    /// Of the mesh as it is.
+    /// For the new mesh.
     pub after: Lengths,
 }
 
 /// Seconds by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Seconds {
-    /// Checking the arrays, joining the tets, a rough look at their quality.
+    /// Checking the arrays, joining the tets, a rough evaluation of their quality.
     pub join: f64,
-    /// Finding the bad and repairing them.
+    /// Finding and repairing the bad tets.
     pub repair: f64,
-    /// The new arrays.
+    /// Writing the new arrays.
     pub extract: f64,
-    /// The history.
+    /// Building the history.
     pub history: f64,
 }
 
-/// What was found, what was done, what is left.
+/// What was found, what was done, and what is left.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// A tet below this EAS counts as bad.
     pub min_eas: f64,
-    /// The mesh as it came.
+    /// State of the input mesh.
     pub before: State,
-    /// The mesh as it is.
+    /// State of the new mesh.
     pub after: State,
-    /// How often each operation was made.
+    /// How often each operation was applied.
     pub operations: Counts,
-    /// How many tets are as they came, to the bit.
+    /// How many tets are as in the input, to the bit.
     pub kept: usize,
-    /// The same as a part of the tets that came.
+    /// [`Self::kept`] as a fraction of the input tets.
     pub kept_share: f64,
-    /// Edges beside their sizes, where sizes are asked for.
+    /// Edge lengths compared with the requested sizes, if any.
     pub sizes: Option<SizesReport>,
     /// Bad tets that are left, worst first.
     pub left: Vec<Left>,
-    /// Tets of boundary layers below the limit, in the mesh as it is: not bad, and as they came.
+    /// Tets of boundary layers below the limit in the new mesh: not bad, and unchanged.
     pub layers: usize,
-    /// Tets that are held and would count as bad, and stay.
+    /// Held tets below the limit, which therefore stay.
     pub held: usize,
     /// Seconds by stage.
     pub seconds: Seconds,
 }
 
 impl Report {
-    /// Whether nothing bad is left, and no edge that is too long and may be split.
+    /// Whether no bad tet is left, and no edge that is too long and may be split.
     pub fn is_complete(&self) -> bool {
         self.not_reached().is_none()
     }
 
-    /// Why the requested result was not reached: bad tets are left, or edges that are too long and may be split. `None` where it was reached.
+    /// Why the requested result was not reached: bad tets are left, or edges that are too long and may be
+    /// split. `None` if it was reached.
     pub fn not_reached(&self) -> Option<String> {
         let n_long = self.sizes.map_or(0, |s| s.after.too_long - s.after.too_long_held);
         let State { bad, inverted, .. } = self.after;

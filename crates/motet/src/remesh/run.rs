@@ -1,4 +1,4 @@
-//! From a mesh to a better one: join, find, repair, extract.
+//! The remeshing of a mesh from start to end: join, find, repair, extract.
 
 use std::cell::LazyCell;
 use std::sync::Arc;
@@ -17,25 +17,27 @@ use crate::remesh::report::{Operation, Report, SizesReport, State};
 use crate::remesh::sizes::{LONG, SizeField};
 use crate::remesh::surface::{Crease, Surface};
 
-/// A mesh after remeshing, where each part of it was before, and what was done.
+/// A mesh after remeshing, with its history and a report.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The mesh, and what each of its rows was before.
+    /// The new mesh, and where each of its vertices, tets and triangles came from.
     pub extract: Extract,
     /// What was done.
     pub report: Report,
 }
 
-/// Repairs the bad tets of a mesh, and only those; where [`Options::sizes`] are asked for, edges are brought to them, too. One thread works.
+/// Repairs the bad tets of a mesh, and only those; if [`Options::sizes`] are given, brings edges to them,
+/// too. Runs on one thread.
 ///
 /// # Errors
-/// When the mesh is not one (see [`Complex::new`]), when a size is none, and when a mesh of the sizes would have far too many tets: more than ten million and
-/// more than 100 times as many as `mesh`, or more than 2^28.
+/// If the mesh is invalid (see [`Complex::new`]), if a size is not a positive length, and if a mesh of these
+/// sizes would have far too many tets: more than ten million and more than 100 times as many as `mesh`, or
+/// more than 2^28.
 pub fn remesh(mesh: &TetMesh, options: &Options, threads: &Threads) -> Result<Outcome> {
     remesh_but(mesh, &Required::default(), options, threads)
 }
 
-/// As [`remesh`] does, but what is required stays.
+/// Remeshes as [`remesh`] does, leaving everything that is `required`.
 pub(super) fn remesh_but(
     mesh: &TetMesh,
     required: &Required,
@@ -90,7 +92,7 @@ pub(super) fn remesh_but(
             left = repair.beside_forced(&left, |repair, left| repair.pass(*pass, left, options.rounds))?;
         }
     }
-    // With sizes it is they that say which vertices are close.
+    // With sizes, they decide which vertices are too close.
     if repair.sizing.is_none() && repair.thin()? {
         left = repair.below(min_eas);
     }
@@ -131,7 +133,7 @@ pub(super) fn remesh_but(
     Ok(Outcome { extract, report })
 }
 
-/// Keeps the number of vertices, and improves what is low near changes and among the cells that were asked for.
+/// Keeps the number of vertices, and improves tets of low quality near changes and among the requested cells.
 fn improve_near(
     repair: &mut Repair,
     improve: &Improve,
@@ -164,7 +166,7 @@ fn improve_near(
     }
 }
 
-/// Which tets are not among some.
+/// Marks the tets that are not in `only`.
 fn others(n_tets: usize, only: &[CellId]) -> Vec<bool> {
     let mut others = vec![true; n_tets];
     for cell in only.iter().filter(|cell| cell.index() < n_tets) {
@@ -173,13 +175,13 @@ fn others(n_tets: usize, only: &[CellId]) -> Vec<bool> {
     others
 }
 
-/// The tets of a complex that nothing has changed yet, of `mesh`.
+/// Orients the tets of a complex that nothing has changed since it was made of `mesh`.
 fn oriented(complex: &Complex, mesh: &TetMesh) -> OrientedTets {
     let tets = (0..mesh.tets.len()).map(|t| complex.vertices(TetId::new(t))).collect();
     OrientedTets::given(tets, complex.walls().map(|(_, wall)| complex.facet(wall.sides[0])).collect())
 }
 
-/// Takes those that belong to boundary layers out of the tets below the limit; the others are the bad ones.
+/// Removes tets that belong to boundary layers from `low`, which keeps the bad ones, and returns them.
 fn take_out_layers(tets: &OrientedTets, points: &[Point], low: &mut Vec<TetId>, min_eas: f64) -> Vec<TetId> {
     let judged = tets.judge(points, low.iter().map(|tet| tet.index()).collect(), min_eas);
     let [bad, layers] = [judged.bad, judged.layers].map(|tets| tets.into_iter().map(TetId::new).collect());
@@ -187,8 +189,9 @@ fn take_out_layers(tets: &OrientedTets, points: &[Point], low: &mut Vec<TetId>, 
     layers
 }
 
-/// Judges what is `left` and the tets of `layers` as those of a mesh that comes: puts the bad ones into `left`, worst first, and answers how many belong to
-/// layers. So whoever counts the bad tets of the mesh that was written finds as many.
+/// Judges the tets in `left` and `layers` anew, in the extracted mesh: keeps the bad ones in `left`, worst
+/// first, and returns how many belong to layers. A count of bad tets in the written mesh then gives the same
+/// number.
 fn judge_anew(
     complex: &Complex,
     extract: &Extract,
@@ -209,7 +212,7 @@ fn judge_anew(
     layers.len()
 }
 
-/// The surface, where it may change.
+/// The input surface, if it may change.
 fn adaptable(complex: &mut Complex, mesh: &TetMesh, options: &Options) -> Option<Surface> {
     let distance = options.surface.distance(|| bounds(&mesh.points).map_or(0.0, largest_extent))?;
     let mut surface = Surface::of(complex, distance);
@@ -218,7 +221,7 @@ fn adaptable(complex: &mut Complex, mesh: &TetMesh, options: &Options) -> Option
     Some(surface)
 }
 
-/// Tells the time since it was last asked.
+/// Measures the time between laps, in seconds.
 struct Clock(Instant);
 
 impl Clock {

@@ -1,4 +1,4 @@
-//! The lengths that edges are asked to have: given, checked, known anywhere.
+//! Requested edge lengths: given, checked, and evaluated anywhere.
 
 use std::sync::Arc;
 
@@ -11,29 +11,30 @@ use crate::kernel::{Change, Complex};
 use crate::mesh::TetMesh;
 use crate::remesh::given::Given;
 
-/// An edge shorter than this part of its size is too short.
+/// An edge shorter than this fraction of its size is too short.
 pub const SHORT: f64 = 0.5;
-/// One longer than this is too long. Its halves, 0.75 and more, are not too short.
+/// An edge longer than this multiple of its size is too long. Its halves, 0.75 and more, are not too short.
 pub const LONG: f64 = 1.5;
 
-/// A mesh of no more tets than this may be asked for of any mesh: about 2 GB.
+/// A mesh of no more than this many tets may be made from any mesh: about 2 GB.
 const ALWAYS: f64 = 1e7;
-/// Of a larger one so many times as many, ...
+/// A larger mesh may be made if it has at most so many times the input's tets, ...
 const MOST_GROWTH: f64 = 100.0;
-/// ... and never more: half of what the kernel's ids can tell apart.
+/// ... and never more than this: half of what the kernel's ids can distinguish.
 const MOST: f64 = (1u32 << 28) as f64;
 
-/// How long edges are to be. The size of an edge is the mean of the sizes at its two ends.
+/// Requested edge lengths. The size of an edge is the mean of the sizes at its two ends.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Sizes {
-    /// The same everywhere.
+    /// One size everywhere.
     Uniform(f64),
-    /// One for each vertex of the mesh; between them linear in its tets.
+    /// One size for each vertex of the mesh, interpolated linearly in its tets.
     Vertices(Vec<f64>),
 }
 
 impl Sizes {
-    /// How many tets a mesh of these sizes may have at most while it is made; an error where a size is none, or where it would have more.
+    /// The largest number of tets that the mesh may have while it is brought to these sizes. Fails if a size
+    /// is not a positive length, or if the resulting mesh would be too large.
     pub(super) fn check(&self, mesh: &TetMesh) -> Result<usize> {
         let is_size = |h: f64| h > 0.0 && h <= LARGEST;
         match self {
@@ -78,13 +79,14 @@ impl Sizes {
         )))
     }
 
-    /// The cube root of about how many tets a mesh of these sizes has: as many as regular ones of that edge length fill its volume.
+    /// The cube root of the estimated number of tets of a mesh of these sizes: the number of regular tets
+    /// with that edge length that fill its volume.
     fn root_of_n_tets(&self, mesh: &TetMesh) -> f64 {
         let size = |v: &VertexId| match self {
             Self::Uniform(h) => *h,
             Self::Vertices(sizes) => sizes[v.index()],
         };
-        // In units of the least, so that no cube overflows.
+        // In units of the smallest size, so that no cube overflows.
         let least = mesh.tets.as_flattened().iter().map(size).fold(f64::INFINITY, f64::min);
         let in_tet = |tet: &[VertexId; 4]| {
             let dense: f64 = tet.iter().map(|v| (least / size(v)).powi(3)).sum();
@@ -94,15 +96,17 @@ impl Sizes {
     }
 }
 
-/// Sizes at places: those of a mesh that has changed since.
+/// Sizes at places in the mesh as it was given, for a mesh that has changed since.
 #[derive(Debug)]
 pub(super) struct SizeField {
     source: Source,
-    /// The size of each vertex, and where it was then: what comes or moves is asked for anew.
+    /// Each known vertex's position when its size was evaluated, and the size: new and moved vertices are
+    /// evaluated anew.
     known: Vec<(Point, f64)>,
-    /// No collapse brings an edge longer than this part of its size.
+    /// A collapse may not make an edge longer than this multiple of its size.
     longest: f64,
-    /// Edges longer than this part of their size are too long now: [`LONG`] in the end, more while a coarse mesh is made finer.
+    /// Edges longer than this multiple of their size are too long now: [`LONG`] in the end, more while a
+    /// coarse mesh is made finer.
     pub(super) long: f64,
     /// Whether a change may leave an edge too short.
     pub(super) may_shorten: bool,
@@ -111,12 +115,13 @@ pub(super) struct SizeField {
 #[derive(Debug)]
 enum Source {
     Uniform(f64),
-    /// Of each vertex of the mesh as it was given.
+    /// One size for each vertex of the mesh as it was given.
     Vertices(Arc<Given>, Vec<f64>),
 }
 
 impl SizeField {
-    /// Of sizes that have been checked. Where nothing is split, `longest` keeps edges from becoming what others would split at once.
+    /// A field of sizes that have been checked. Where nothing is split, `longest` keeps collapses from making
+    /// edges that a later remeshing would split at once.
     pub(super) fn new(sizes: &Sizes, given: impl FnOnce() -> Arc<Given>, longest: f64) -> Self {
         let (source, known) = match sizes {
             Sizes::Uniform(h) => (Source::Uniform(*h), Vec::new()),
@@ -129,7 +134,7 @@ impl SizeField {
         Self { source, known, longest, long: LONG, may_shorten: false }
     }
 
-    /// The size at a vertex that is, or is to be, at a point: linear in the tet that holds it.
+    /// The size at a vertex that is, or will be, at `point`: linear in the tet that contains it.
     pub(super) fn at(&mut self, vertex: VertexId, point: Point) -> f64 {
         let (given, sizes) = match &self.source {
             Source::Uniform(h) => return *h,
@@ -148,13 +153,14 @@ impl SizeField {
         known.1
     }
 
-    /// The length of an edge as a part of its size.
+    /// The length of an edge divided by its size.
     pub(super) fn ratio(&mut self, ends: [(VertexId, Point); 2]) -> f64 {
         let [p, q] = ends.map(|(v, p)| self.at(v, p));
         distance(ends[0].1, ends[1].1) / (0.5 * (p + q))
     }
 
-    /// The lengths of the six edges of a tet as parts of their sizes: whole meshes are swept with it, and the sizes of its corners are looked up once.
+    /// The lengths of the six edges of a tet divided by their sizes. Used to sweep whole meshes, so the size
+    /// at each corner is looked up once.
     #[inline]
     pub(super) fn of_tet(&mut self, vertices: [VertexId; 4], corners: [Point; 4]) -> [f64; 6] {
         let (mut sizes, mut ratios) = ([0.0; 4], [0.0; 6]);
@@ -167,18 +173,18 @@ impl SizeField {
         ratios
     }
 
-    /// The length of an edge of a complex as a part of its size.
+    /// The length of an edge of a complex divided by its size.
     pub(super) fn of_edge(&mut self, complex: &Complex, ends: [VertexId; 2]) -> f64 {
         self.ratio(ends.map(|v| (v, complex.point(v))))
     }
 
-    /// Whether a change brings no edge that is too long or too short, and makes none that is so already more so.
+    /// Whether a change makes no new edge that is too long or too short, and none that already is more so.
     pub(super) fn accepts(&mut self, complex: &Complex, change: &Change) -> bool {
         let low = if self.may_shorten { 0.0 } else { SHORT };
         self.keeps_within([low, self.long], complex, change)
     }
 
-    /// Whether a collapse brings no edge that is too long.
+    /// Whether a collapse makes no edge too long.
     pub(super) fn lengthens_none(&mut self, complex: &Complex, change: &Change) -> bool {
         self.keeps_within([0.0, self.longest], complex, change)
     }

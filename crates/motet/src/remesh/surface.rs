@@ -1,8 +1,9 @@
 //! The input surface, and how far the mesh's surface may stray from it.
 //!
-//! Every patch has a tree over its triangles as they came. A change of walls is accepted when each wall that comes or moves lies within the distance allowed of its own
-//! patch, looked at in its corners, the middles of its edges and its centre, and faces the same way as what it lies on; and when what a vertex
-//! leaves behind lies as near to the walls that come.
+//! Every patch has a search tree over its input triangles. A change of walls is accepted if each new or moved
+//! wall lies within the allowed distance of its own patch, sampled at its corners, the midpoints of its edges
+//! and its centroid, and faces the same way as the triangle below it; and if the place that a vertex leaves
+//! lies as near to the new walls.
 
 use std::collections::BTreeMap;
 
@@ -18,22 +19,24 @@ use crate::ops::Track;
 use crate::remesh::lines::FirstLines;
 use crate::spatial::NearestTriangle;
 
-/// Walls that meet at a sharper angle make a feature: the cosine of the angle between their normals.
+/// Walls that meet at a sharper angle than this form a feature: the cosine of the angle between their
+/// normals.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(super) struct Crease(f64);
 
 impl Crease {
     /// 30 degrees.
     pub(super) const SHARP: Self = Self(0.866);
-    /// 60 degrees, where the first leaves bad tets: what is but a coarse image of something curved may change within the distance allowed.
+    /// 60 degrees, for where [`Self::SHARP`] leaves bad tets: creases that are only a coarse image of
+    /// something curved may change within the allowed distance.
     pub(super) const BLUNT: Self = Self(0.5);
-    /// Whatever the angle, no feature; borders of patches still are.
+    /// No angle is a feature; borders of patches still are.
     pub(super) const NONE: Self = Self(-2.0);
 }
 
-/// A feature goes straight on through a vertex if it bends by less: cosine of 45 degrees.
+/// A feature runs straight through a vertex if it bends by less than this: cosine of 45 degrees.
 const STRAIGHT: f64 = 0.707;
-/// A wall that comes may be turned so far from what it lies on: cosine of 45 degrees.
+/// How far a new wall may be rotated from the triangle it lies on: cosine of 45 degrees.
 const TURNED: f64 = 0.707;
 
 /// The walls of the first mesh, patch by patch.
@@ -42,20 +45,20 @@ pub(super) struct Surface {
     lines: FirstLines,
     distance: f64,
     crease: Crease,
-    /// Vertices of the first mesh that were fixed before any feature was looked for.
+    /// Which vertices of the first mesh were fixed before features were searched for.
     is_fixed: Vec<bool>,
 }
 
 struct Patch {
     tree: NearestTriangle,
-    /// Of a patch with tets on one side they point away from these.
+    /// Normals of the triangles; in a patch with tets on one side only, they point away from the tets.
     normals: Vec<Point>,
-    /// Whether all walls have tets on one side alone.
+    /// Whether every wall of the patch has tets on one side only.
     is_boundary: bool,
 }
 
 impl Surface {
-    /// The surface of a complex that nothing has changed yet; walls may stray from it by `distance`.
+    /// The surface of a complex that nothing has changed yet; its walls may stray by up to `distance`.
     pub(super) fn of(complex: &Complex, distance: f64) -> Self {
         let mut triangles: BTreeMap<i32, (Vec<[VertexId; 3]>, bool)> = BTreeMap::new();
         for (_, wall) in complex.walls() {
@@ -75,7 +78,8 @@ impl Surface {
         Self { patches, lines: FirstLines::of(complex), distance, crease: Crease::SHARP, is_fixed }
     }
 
-    /// Whether the walls and lines that a change brings or moves stay near the surface and the lines of the first mesh.
+    /// Whether the walls and lines that a change inserts or moves stay near the surface and the lines of the
+    /// first mesh.
     pub(super) fn accepts(&self, complex: &Complex, change: &Change) -> bool {
         let moved = match change.vertex {
             VertexChange::Move(v, _) if complex.hold(v) != Hold::Free => Some(v),
@@ -84,7 +88,7 @@ impl Surface {
         if change.walls.is_empty() && change.lines.is_empty() && moved.is_none() {
             return true;
         }
-        // Whatever was there.
+        // Refused even if the tets were as flat before.
         if change.worst() < FLATTEST {
             return false;
         }
@@ -102,13 +106,15 @@ impl Surface {
             && self.lines.accepts(complex, change, self.distance)
     }
 
-    /// Whether an edge may be divided in its middle: walls stay where they are, and only flat tets are refused. Halves of walls that lie as far off as they may would fail
-    /// [`Self::accepts`], since other places of them are looked at; then that edge would stay as long as it is.
+    /// Whether an edge may be split at its midpoint: walls stay where they are, and only flat tets are
+    /// refused. Halves of a wall that is already at the allowed distance would fail [`Self::accepts`], which
+    /// samples them at other points; the edge would then stay as long as it is.
     pub(super) fn accepts_in_place(&self, change: &Change) -> bool {
         change.walls.is_empty() || change.worst() >= FLATTEST
     }
 
-    /// Where a point is on a patch as it was first.
+    /// The point of a patch, as it was at first, that is closest to `point`; `None` if there is no such
+    /// patch.
     pub(super) fn on_patch(&self, patch: i32, point: Point) -> Option<Point> {
         self.patches.get(&patch)?.tree.closest(point).map(|found| found.point)
     }
@@ -123,13 +129,14 @@ impl Surface {
         let Some(below) = near(centre) else { return false };
         let facing = patch.normals[below.triangle];
         let cosine = dot(normal, facing) / (norm(normal) * norm(facing));
-        // Walls between tets have no side of their own: either way round will do. Of the boundary one that faces the other way is folded over others.
+        // Walls between tets have no side of their own: either orientation is fine. A wall of the boundary
+        // that faces the other way is folded over others.
         let cosine = if patch.is_boundary { cosine } else { cosine.abs() };
         (cosine > TURNED || self.crease == Crease::NONE)
             && [a, b, c, middle(a, b), middle(b, c), middle(c, a)].into_iter().all(|p| near(p).is_some())
     }
 
-    /// Whether what a vertex leaves behind lies near the walls that come.
+    /// Whether the place that a vertex leaves lies near the new walls.
     fn covers(&self, complex: &Complex, change: &Change, walls: &[(i32, [Point; 3])]) -> bool {
         let left = match change.vertex {
             VertexChange::Move(v, _) | VertexChange::Remove(v) => complex.point(v),
@@ -142,8 +149,9 @@ impl Surface {
     }
 }
 
-/// The vertices of a wall to come, so that it faces away from the tet that it gets: one of the fill, or the one behind the cavity that it lays bare. Of a wall that gets two it faces away
-/// from one of them.
+/// The vertices of a new wall, ordered so that it faces away from the tet that will be on it: a tet of the
+/// fill, or the tet behind the cavity that the change exposes. A wall with two tets faces away from one of
+/// them.
 fn facing_out(complex: &Complex, change: &Change, wall: [VertexId; 3]) -> [VertexId; 3] {
     let facet_of = |tet: [VertexId; 4]| {
         let apex = (0..4).find(|&i| !wall.contains(&tet[i]))?;
@@ -154,7 +162,7 @@ fn facing_out(complex: &Complex, change: &Change, wall: [VertexId; 3]) -> [Verte
     in_fill.or_else(|| laid_bare().map(|[a, b, c]| [a, c, b])).unwrap_or(wall)
 }
 
-/// The walls at some tets, each once, with their vertices.
+/// The walls of some tets, each once, with their vertices.
 fn walls_of<'a>(complex: &'a Complex, tets: &[TetId]) -> Vec<(&'a Wall, [VertexId; 3])> {
     let mut walls = Vec::new();
     for half in tets.iter().flat_map(|&t| (0..4).map(move |i| HalfFacet::new(t, i))) {
@@ -167,13 +175,14 @@ fn walls_of<'a>(complex: &'a Complex, tets: &[TetId]) -> Vec<(&'a Wall, [VertexI
     walls.into_iter().map(|(id, half)| (complex.wall(id), complex.facet(half))).collect()
 }
 
-/// Where a vertex may go that a surface may hold.
+/// Where a vertex that the surface may constrain can move.
 pub(super) enum SurfaceTrack<'a> {
-    /// Wherever it likes.
+    /// Anywhere.
     Anywhere,
-    /// Along a patch, whose normal there is given.
+    /// Along a patch; its normal at the vertex is given.
     Patch(&'a NearestTriangle, Point),
-    /// Along a feature, as far as the next vertices on it: where they are, and the vertex between.
+    /// Along a feature, as far as its next vertices; the points are the previous vertex, the vertex itself
+    /// and the next one.
     Feature([Point; 3]),
 }
 
@@ -201,14 +210,15 @@ impl Track for SurfaceTrack<'_> {
     }
 }
 
-/// The part of a direction that points the way of another.
+/// The component of a direction along another.
 fn onto(direction: Point, way: Point) -> Point {
     let length = dot(way, way);
     if length > 0.0 { scale(way, dot(direction, way) / length) } else { [0.0; 3] }
 }
 
 impl Surface {
-    /// Where a vertex may go that is held by the surface or by a feature, and whose tets are `star`; `None` where it is to stay.
+    /// Where a vertex on the surface or on a feature may move; `star` holds its tets. `None` if it has to
+    /// stay.
     pub(super) fn track(
         &self,
         complex: &Complex,
@@ -245,19 +255,19 @@ impl Surface {
     }
 }
 
-/// The mean normal of some walls, weighed by their areas; which of the two ways does not matter.
+/// The mean normal of some walls, weighted by area; its sign is arbitrary.
 fn mean_normal(complex: &Complex, walls: &[(&Wall, [VertexId; 3])]) -> Point {
     let mut sum = [0.0; 3];
     for (_, vertices) in walls {
         let normal = area_vector(vertices.map(|v| complex.point(v)));
-        // Walls have no side of their own: turned to agree with those before.
+        // Walls have no side of their own: each is flipped to agree with those before.
         sum = if dot(sum, normal) < 0.0 { sub(sum, normal) } else { add(sum, normal) };
     }
     sum
 }
 
 impl Surface {
-    /// Whether the walls at an edge are a smooth part of one patch, and it is no line.
+    /// Whether the walls at an edge are a smooth part of one patch, and the edge is not a line.
     pub(super) fn is_smooth(&self, complex: &Complex, [a, b]: [VertexId; 2], shell: &Shell) -> bool {
         let [i, j] = shell.walls[..] else { return false };
         if complex.line(a, b).is_some() {
@@ -266,12 +276,13 @@ impl Surface {
         let [first, second] = [i, j].map(|place| complex.wall(shell.wall_at(complex, place)));
         let [p, q] = [i, j].map(|place| complex.point(shell.ring[place]));
         let [a, b] = [a, b].map(|v| complex.point(v));
-        // Turned so that they agree where the surface is flat.
+        // Oriented so that they agree where the surface is flat.
         let (m, n) = (area_vector([a, b, p]), area_vector([b, a, q]));
         first.patch == second.patch && dot(m, n) > self.crease.0 * norm(m) * norm(n)
     }
 
-    /// Finds features and corners, where walls meet at a sharper angle than `crease` and where lines run, and holds the vertices on them.
+    /// Finds features and corners, where walls meet at a sharper angle than `crease` or where lines run, and
+    /// constrains the vertices on them.
     pub(super) fn hold_features(&mut self, complex: &mut Complex, crease: Crease) {
         self.crease = crease;
         for v in (0..complex.n_vertex_slots()).map(VertexId::new) {
@@ -305,7 +316,7 @@ impl Surface {
         }
         let lines = complex.lines().into_iter();
         features.extend(lines.map(|(edge, line)| (edge, Some(complex.line_label(line.source)))));
-        // The ways in which features leave each vertex.
+        // The directions in which features leave each vertex.
         let mut ways: Vec<(VertexId, Point, Option<u32>)> = Vec::new();
         for ([a, b], label) in features {
             let way = sub(complex.point(b), complex.point(a));
@@ -326,7 +337,7 @@ impl Surface {
     }
 }
 
-/// Vertices at which parts of the mesh touch without sharing a facet stay.
+/// Fixes vertices at which parts of the mesh touch without sharing a facet.
 fn hold_touching(complex: &mut Complex) {
     let mut star = Star::default();
     for v in (0..complex.n_vertex_slots()).map(VertexId::new) {
@@ -342,7 +353,8 @@ mod tests {
     use crate::mesh::shapes::box_grid;
     use crate::mesh::{TetMesh, TetPart};
 
-    /// The cubes from (0, 0, 0) to (1, 1, 1) and, if `both`, from there to (2, 2, 2): they share one vertex. All walls are of one patch.
+    /// The cube from (0, 0, 0) to (1, 1, 1) and, if `both`, the one from there to (2, 2, 2), which shares one
+    /// vertex with it. All walls are of one patch.
     fn cubes(both: bool) -> TetMesh {
         let mut mesh = TetPart::of(&box_grid([2; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
         mesh.patches.fill(1);
@@ -368,7 +380,7 @@ mod tests {
             let mut complex = Complex::new(&mesh).unwrap();
             complex.adapt_surface();
             Surface::of(&complex, 0.1).hold_features(&mut complex, Crease::NONE);
-            // Of the vertex that the second cube has in its place there is no tet.
+            // The vertex that the second cube has in place of the shared one has no tets.
             let used =
                 complex.tets().flat_map(|t| complex.vertices(t)).collect::<std::collections::BTreeSet<_>>();
             let held: Vec<Point> = used
