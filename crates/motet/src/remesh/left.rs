@@ -1,4 +1,4 @@
-//! Why a tet is still bad: what of the surface keeps it so, or that nothing was found to help.
+//! Why a tet is still bad: which part of the surface forces it, or that no operation was found to help.
 
 use std::fmt;
 
@@ -16,11 +16,11 @@ use crate::remesh::surface::Surface;
 /// A bad tet that is left.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Left {
-    /// Which tet of the new mesh.
+    /// Id of the tet in the new mesh.
     pub tet: u32,
     /// Its EAS.
     pub eas: f64,
-    /// Its centre.
+    /// Its centroid.
     pub place: Point,
     /// Its type: "I" to "IV", or "other".
     pub defect: &'static str,
@@ -46,21 +46,22 @@ pub enum Reason {
         /// The highest EAS that a tet in such an angle can have.
         best_eas: f64,
     },
-    /// A wall stands so near above one of its facets, which is a wall, that no better tet has room between.
+    /// A wall stands so close above one of its facets, itself a wall, that no better tet fits between them.
     WallNear {
-        /// The angle of the tent over the facet that the wall leaves, in degrees: no tet on it has three larger dihedral angles there.
+        /// The angle of the tent over the facet that the near wall leaves, in degrees: no tet on the facet
+        /// has all three dihedral angles there larger than this.
         degrees: f64,
         /// The highest EAS that a tet on that facet can have.
         best_eas: f64,
     },
     /// All its vertices are held, and no change of its edges and facets raises the worst quality.
     AllHeld,
-    /// No operation raises the worst quality round it.
+    /// No operation raises the worst quality around it.
     NothingHelps,
 }
 
 impl Reason {
-    /// Whether walls allow no good tet there.
+    /// Whether walls rule out a good tet there.
     pub fn is_forced(&self) -> bool {
         matches!(self, Self::WallAngle { .. } | Self::WallsMeet { .. } | Self::WallNear { .. })
     }
@@ -93,7 +94,7 @@ impl fmt::Display for Reason {
     }
 }
 
-/// What is left, and why; `new_id` tells which tet of the new mesh each is.
+/// Explains each bad tet in `left`; `new_id` gives the id of a tet in the new mesh.
 pub(super) fn explain(
     complex: &Complex,
     left: &[TetId],
@@ -133,8 +134,8 @@ fn reason(complex: &Complex, tet: TetId, min_eas: f64, shell: &mut Shell, star: 
     }
 }
 
-/// Those of some tets that are as good as the walls at them allow. Where the `surface` may change, the angle of a wall forces nothing but between two
-/// features.
+/// The tets of a list that are as good as the walls at them allow. Where the `surface` may change, the angle
+/// of a wall forces a tet only if it lies between two features.
 pub(super) fn forced(complex: &Complex, surface: Option<&Surface>, tets: &[TetId]) -> Vec<TetId> {
     let mut shell = Shell::default();
     tets.iter().copied().filter(|&tet| is_forced(complex, surface, tet, &mut shell)).collect()
@@ -157,15 +158,15 @@ pub(super) fn is_forced(complex: &Complex, surface: Option<&Surface>, tet: TetId
         || edge_bounds(complex, tet, shell).into_iter().any(|bound| is_reached(quality, bound.1))
 }
 
-/// What the angle of a wall leaves to a tet on it.
+/// How the angle of a wall limits a tet on it.
 struct WallBound {
-    /// The angle in degrees, and the highest EAS.
+    /// The angle in degrees, and the highest EAS that it allows.
     bound: (f64, f64),
-    /// Where in the tet the angle is, and the places of the other two vertices.
+    /// Local numbers in the tet of the vertex at the angle and of the other two vertices of the wall.
     corner: [usize; 3],
 }
 
-/// For each wall that a tet has the angle that decides: the one farthest from 60 degrees.
+/// For each wall of a tet, the angle that limits its EAS most: the one farthest from 60 degrees.
 fn wall_bounds(complex: &Complex, tet: TetId) -> impl Iterator<Item = WallBound> {
     let corners = complex.corners(tet);
     let of_wall = move |i: usize| {
@@ -181,7 +182,8 @@ fn wall_bounds(complex: &Complex, tet: TetId) -> impl Iterator<Item = WallBound>
     walls.into_iter().filter_map(of_wall)
 }
 
-/// The angle at which walls meet on both sides of a tet, in degrees, and the highest EAS of a tet between, for each of its edges where they do.
+/// For each edge of a tet at which walls meet on both sides of it: their angle in degrees, and the highest
+/// EAS of a tet between them.
 fn edge_bounds(complex: &Complex, tet: TetId, shell: &mut Shell) -> Vec<(f64, f64)> {
     let vertices = complex.vertices(tet);
     let mut bounds = Vec::new();
@@ -192,8 +194,8 @@ fn edge_bounds(complex: &Complex, tet: TetId, shell: &mut Shell) -> Vec<(f64, f6
     bounds
 }
 
-/// The angle between the walls on both sides of a tet at one of its edges, and what it leaves of the EAS: a tet there has no
-/// larger one.
+/// The angle in degrees between the walls on both sides of a tet at one of its edges, and the highest EAS
+/// that a tet there can have.
 fn best_between_walls(complex: &Complex, tet: TetId, shell: &Shell, edge: [usize; 2]) -> Option<(f64, f64)> {
     let (m, at) = (shell.tets.len(), shell.tets.iter().position(|&t| t == tet)?);
     let [first, .., last] = shell.walls[..] else { return None };
@@ -213,9 +215,10 @@ fn best_between_walls(complex: &Complex, tet: TetId, shell: &Shell, edge: [usize
     Some((degrees, degrees / dihedral::REGULAR.to_degrees()))
 }
 
-/// For each wall that a tet has the angle of the tent over it that other walls of the tets round this one leave, in degrees, and the highest EAS of a tet
-/// on it: one whose dihedral angles there are all larger would hold a part of a wall in it. Walls count that have to stay: all where walls do, else those
-/// between fixed vertices.
+/// For each wall of a tet: the angle, in degrees, of the tent over it that other walls of the neighbouring
+/// tets leave, and the highest EAS of a tet on it. A tet whose dihedral angles there are all larger would
+/// contain part of a wall. Only walls that have to stay count: all of them if the surface is kept, otherwise
+/// those between fixed vertices.
 fn tent_bounds(complex: &Complex, tet: TetId, star: &mut Star) -> Vec<(f64, f64)> {
     let stays = |tet: TetId, i: usize| {
         let vertices = complex.vertices(tet);
@@ -235,7 +238,7 @@ fn tent_bounds(complex: &Complex, tet: TetId, star: &mut Star) -> Vec<(f64, f64)
         }
     }
     let bound = |i: usize| {
-        // Facets are counter-clockwise seen from outside of the tet.
+        // Facets are counter-clockwise seen from outside the tet.
         let [a, b, c] = facet(tet, i);
         let tent = Tent::over([a, c, b])?;
         let angle = walls.iter().filter_map(|wall| tent.angle_below(*wall)).reduce(f64::min)?;

@@ -1,4 +1,4 @@
-//! Remeshing of everything that a file holds: cells of other kinds stay, arrays are carried.
+//! Remeshing of a whole mesh: cells of other kinds stay, and arrays are carried across.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -14,22 +14,27 @@ use crate::remesh::run::{Outcome, remesh_but};
 use crate::remesh::{Options, Report};
 use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, quadratic, trace};
 
-/// A whole mesh after remeshing, where each part of it was before, and what was done.
+/// A whole mesh after remeshing, with its history and a report.
 #[derive(Debug)]
 pub struct MeshOutcome {
-    /// The mesh: cells that stayed in the order that they had, then new triangles, new tets and new lines.
+    /// The new mesh: the cells that stayed in their old order, then new triangles, new tets and new lines.
     pub mesh: Mesh,
-    /// Where each vertex and cell came from; carries any array of the mesh before, of any time level.
+    /// Where each vertex and cell came from; transfers any array of the old mesh, at any time level.
     pub history: History,
-    /// What was done. Its `tet`s are ids of cells: `before` of the mesh before, all others of the new one.
+    /// What was done. Its `tet`s are cell ids: in `before` those of the old mesh, elsewhere those of the new
+    /// one.
     pub report: Report,
 }
 
-/// Repairs the bad tets of a mesh of any cells, and carries its arrays across by `rules`. What stayed stays to the bit: points, cells, rows of arrays.
-/// Lines are divided and merged with their edges where the surface may change; vertices of cells of other kinds neither move nor go. What is marked as required (see [`marks`](crate::mesh::marks)) stays. Where `GlobalNodeID` and `GlobalElementID` number points and tets, new ones get new numbers.
+/// Repairs the bad tets of a mesh of any cells, and carries its arrays across by `rules`. Whatever is
+/// unchanged stays to the bit: points, cells, rows of arrays.
+/// Where the surface may change, lines are divided and merged with their edges; vertices of cells of other
+/// kinds are neither moved nor removed. What is marked as required (see [`marks`](crate::mesh::marks)) stays.
+/// If `GlobalNodeID` and `GlobalElementID` number points and tets, new ones get new numbers.
 ///
 /// # Errors
-/// When there is no tet, when tets do not make a mesh (the place is the first such cell), and when a rule fits no array.
+/// If there is no tet, if the tets do not form a valid mesh (the error names the first offending cell), and
+/// if a rule fits no array.
 pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Threads) -> Result<MeshOutcome> {
     let (part, taken_out) = taken_out(mesh, options)?;
     let mut outcome = remesh_part(mesh, &part, options, rules, threads)?;
@@ -37,11 +42,11 @@ pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Thre
     Ok(outcome)
 }
 
-/// Repairs the bad tets of a mesh whose tets were extracted before as `part`, so that more of their vertices and edges can be fixed than those at other cells; otherwise
-/// as [`remesh_mesh`].
+/// Repairs the bad tets of a mesh as [`remesh_mesh`] does, given its tets as `part`. In `part`, more vertices
+/// and edges can be fixed than those at other cells.
 ///
 /// # Errors
-/// As [`remesh_mesh`].
+/// As for [`remesh_mesh`].
 pub fn remesh_part(
     mesh: &Mesh,
     part: &TetPart,
@@ -60,22 +65,22 @@ pub fn remesh_part(
     Ok(MeshOutcome { mesh: new, history, report })
 }
 
-/// Whether all arrays of a mesh are labels of its cells, so that [`remesh_labelled`] keeps everything that it has.
+/// Whether all arrays of a mesh are labels of its cells, so that [`remesh_labelled`] loses none.
 pub fn has_only_labels(mesh: &Mesh) -> bool {
     mesh.point_data.is_empty() && labels(mesh).count() == mesh.cell_data.len()
 }
 
-/// The arrays that hold the regions and the patches of a mesh.
+/// The arrays that hold the regions and patches of a mesh.
 fn labels(mesh: &Mesh) -> impl Iterator<Item = &Field> {
     let arrays = [mesh.regions(), mesh.patches()].map(|labels| labels.map(|labels| labels.array));
     mesh.cell_data.iter().filter(move |field| arrays.iter().flatten().any(|array| *array == field.name))
 }
 
-/// Repairs the bad tets of a mesh without arrays, but for the labels of its cells: as [`remesh_mesh`] does, but no history is made, which takes as long as the repair where most tets change. Other arrays
-/// are left out. The mesh, and what was done.
+/// Repairs the bad tets of a mesh as [`remesh_mesh`] does, but keeps only the labels of its cells and builds
+/// no history, which takes as long as the repair where most tets change. Returns the new mesh and the report.
 ///
 /// # Errors
-/// When there is no tet, and when tets do not make a mesh (the place is the first such cell).
+/// If there is no tet, and if the tets do not form a valid mesh (the error names the first offending cell).
 pub fn remesh_labelled(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<(Mesh, Report)> {
     let (part, taken_out) = taken_out(mesh, options)?;
     let Changed { mut report, extract, joined } = changed(mesh, &part, options, threads)?;
@@ -91,7 +96,7 @@ pub fn remesh_labelled(mesh: &Mesh, options: &Options, threads: &Threads) -> Res
     Ok((new, report))
 }
 
-/// The tets of a mesh, for options that have been checked, and the seconds that it took.
+/// Checks the options and extracts the tets of a mesh; returns them with the seconds that it took.
 fn taken_out(mesh: &Mesh, options: &Options) -> Result<(TetPart, f64)> {
     options.check()?;
     let begin = Instant::now();
@@ -99,7 +104,7 @@ fn taken_out(mesh: &Mesh, options: &Options) -> Result<(TetPart, f64)> {
     Ok((part, begin.elapsed().as_secs_f64()))
 }
 
-/// A mesh after remeshing, before its arrays are carried.
+/// A mesh after remeshing, before its arrays are carried across.
 struct Changed {
     report: Report,
     extract: Extract,
@@ -124,18 +129,18 @@ fn changed(mesh: &Mesh, part: &TetPart, options: &Options, threads: &Threads) ->
     Ok(Changed { report, extract, joined })
 }
 
-/// The cells of the new mesh, and which of the old ones each was.
+/// The cells of the new mesh, and the old cell of each.
 struct Joined {
     cells: Cells,
-    /// [`Id::NONE`] for new ones.
+    /// The old cell of each cell; [`Id::NONE`] for new ones.
     cell_to_old: Vec<CellId>,
-    /// The cell that each tet of the new tets is.
+    /// The cell of each tet of the new mesh.
     tet_to_cell: Vec<CellId>,
-    /// New triangles: the cell that each is, its place among the triangles.
+    /// New triangles: the cell of each, and its index among the triangles.
     new_triangles: Vec<(CellId, usize)>,
-    /// New lines: the cell that each is, its place among the lines.
+    /// New lines: the cell of each, and its index among the lines.
     new_lines: Vec<(CellId, usize)>,
-    /// Old triangles that were removed, by their place.
+    /// Old triangles that were removed, by index.
     removed_triangles: Vec<usize>,
 }
 
@@ -181,7 +186,8 @@ impl Joined {
         joined
     }
 
-    /// For each cell the old one that its labels are taken from: itself, or for a new tet one of its region that was removed, for a new triangle or line the one that it is a part of.
+    /// For each cell, the old cell that its labels come from: itself; for a new tet a removed one of its
+    /// region; for a new triangle or line the old one that it is a part of.
     fn label_sources(&self, part: &TetPart, extract: &Extract) -> Vec<CellId> {
         let mut sources = self.cell_to_old.clone();
         let removed = extract.gone_tets.iter().map(|t| t.index());
@@ -207,7 +213,7 @@ impl Joined {
     }
 }
 
-/// What stayed of the old mesh, and under which number.
+/// What is left of the old mesh, and how it is renumbered.
 struct Stay {
     is_removed: Vec<bool>,
     old_to_vertex: Vec<u32>,
@@ -238,8 +244,8 @@ impl Stay {
         stay
     }
 
-    /// The old cells of a kind that were removed, and the new ones that were inserted, by their places. Cells that have the vertices that they had stayed; they come first
-    /// among the new ones, in their order.
+    /// The old cells of a kind that were removed, and the new ones that were inserted, by index. Cells with
+    /// unchanged vertices stay; they come first among the new ones, in their old order.
     fn compared<const N: usize>(
         &self,
         [before, after]: [&[[VertexId; N]]; 2],
@@ -268,7 +274,7 @@ impl Stay {
     }
 }
 
-/// The vertices of a new triangle, so that it faces as the one does that it is a part of.
+/// The vertices of a new triangle, ordered so that it faces the same way as the old one that it is a part of.
 fn turned_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 3] {
     let [a, b, c] = extract.mesh.triangles[i];
     let before = part.mesh.triangles[extract.triangle_to_old[i] as usize];
@@ -277,7 +283,7 @@ fn turned_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 3
     if dot(is, was) < 0.0 { [a, c, b] } else { [a, b, c] }
 }
 
-/// The vertices of a new line, so that it runs as the one does that it is a part of.
+/// The vertices of a new line, ordered so that it runs the same way as the old one that it is a part of.
 fn line_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 2] {
     let [a, b] = extract.mesh.lines[i];
     let [was_a, was_b] = part.mesh.lines[extract.line_to_old[i] as usize];
@@ -286,7 +292,7 @@ fn line_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 2] 
     if dot(is, was) < 0.0 { [b, a] } else { [a, b] }
 }
 
-/// Where everything came from.
+/// The history: where every vertex and cell came from.
 fn history(
     old: &Mesh,
     part: &TetPart,
@@ -336,7 +342,7 @@ fn labelled<const N: usize>(cells: impl Iterator<Item = (CellId, [VertexId; N], 
     cells.map(|(cell, vertices, label)| Labelled { cell, vertices, label }).collect()
 }
 
-/// Puts ids of cells in place of those of tets.
+/// Replaces tet ids in a report by cell ids.
 fn report_cells(report: &mut Report, old: &[CellId], new: &[CellId]) {
     let cell = |to_cell: &[CellId], tet: u32| to_cell[tet as usize].0;
     report.before.worst.iter_mut().for_each(|w| w.tet = cell(old, w.tet));

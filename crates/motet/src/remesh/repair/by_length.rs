@@ -1,13 +1,17 @@
-//! The paper's rule for tets of type IV: edges that are short beside those round them collapsed, long ones split.
+//! The paper's rule for tets of type IV: edges that are short compared with those around them are collapsed,
+//! long ones split.
 //!
-//! Moyle and Ventikos 2008 give the limits, 0.5 and 1.5, as parts of the *local average length*, and not what that is. Here it is the mean length of all edges that
-//! have one of the edge's two vertices, each once, in the mesh as it is: of 25 or so edges, so that it follows a graded mesh. As the paper has it, the rule
-//! asks for no type: every bad tet that the repair by type leaves bad is tried.
+//! Moyle and Ventikos 2008 give the limits, 0.5 and 1.5, relative to the *local average length* without
+//! defining it. Here it is the mean length of all edges in the current mesh that have one of the edge's two
+//! vertices, each counted once: some 25 edges, so that it follows a graded mesh. As in the paper, the rule
+//! does not depend on the type: every bad tet that the repair by type leaves bad is tried.
 //!
-//! It pays a little where the surface is kept. Without and with it: where a sphere moves along a channel all bad tets are repaired, and 96.63 and 96.77 % of the tets stay as they
-//! were; of 1903 bad in a badly made mesh 1249 and 1247 are left, 59.0 and 59.5 % stay; of a sphere moved in a box all 629 are repaired, 98.981 and 98.975 % stay.
-//! Where the surface adapts it does not: in a cube sheared to 80 degrees and back 117 and 137 bad tets are left, summed over 40 steps, of two badly made meshes 18 and
-//! 20, 21 and 34. So there it is not tried.
+//! It pays a little where the surface is kept. Without and with it: for a sphere that moves along a channel,
+//! all bad tets are repaired, and 96.63 and 96.77 % of the tets stay as they were; of 1903 bad tets in a
+//! badly made mesh, 1249 and 1247 are left, and 59.0 and 59.5 % of the tets stay; for a sphere moved in a
+//! box, all 629 are repaired, and 98.981 and 98.975 % stay. It does not pay where the surface adapts: for a
+//! cube sheared to 80 degrees and back, 117 and 137 bad tets are left, summed over 40 steps; for two badly
+//! made meshes, 18 and 20, 21 and 34. So it is not tried there.
 
 use crate::base::{TetId, VertexId};
 use crate::geometry::tet::EDGES;
@@ -19,7 +23,8 @@ use crate::remesh::report::Operation;
 use crate::remesh::sizes::{LONG, SHORT};
 
 impl Repair {
-    /// Where the surface is kept: collapses edges of a tet that are shorter than [`SHORT`] of the local average length, and splits those longer than [`LONG`] of it.
+    /// If the surface is kept: collapses edges of a tet that are shorter than [`SHORT`] times the local
+    /// average length, and splits those longer than [`LONG`] times it.
     pub(super) fn by_length(&mut self, tet: TetId) {
         if self.surface.is_some() {
             return;
@@ -30,7 +35,7 @@ impl Repair {
             let [a, b] = [vertices[i], vertices[j]];
             let length = distance(self.complex.point(a), self.complex.point(b));
             let [(n, sum), (m, other_sum)] = [edges_at[i], edges_at[j]];
-            // The edge itself is one of both.
+            // The edge itself is counted at both ends.
             let average = (sum + other_sum - length) / (n + m - 1) as f64;
             if length < SHORT * average {
                 self.collapse(tet, a, b);
@@ -41,7 +46,7 @@ impl Repair {
         }
     }
 
-    /// How many edges a vertex has, and their length in all.
+    /// The number of edges of a vertex, and their total length.
     fn edges_at(&mut self, vertex: VertexId) -> (usize, f64) {
         self.star.gather(&self.complex, vertex);
         let mut others: Vec<VertexId> =
@@ -52,7 +57,7 @@ impl Repair {
         (others.len(), others.iter().map(length).sum())
     }
 
-    /// Offers to split an edge of a tet in its middle, if it lies inside.
+    /// Offers to split an edge of a tet at its midpoint if it lies inside.
     fn split_at_middle(&mut self, tet: TetId, edge: [VertexId; 2]) {
         let [a, b] = edge;
         self.shells[0].walk(&self.complex, tet, a, b);

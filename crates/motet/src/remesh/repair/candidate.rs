@@ -1,24 +1,25 @@
-//! The best of the changes that were proposed for one bad tet.
+//! The best of the changes proposed for one bad tet.
 
 use crate::base::TetId;
 use crate::kernel::{Change, Complex};
 use crate::remesh::report::Operation;
 use crate::remesh::surface::Surface;
 
-/// Changes are offered one by one; the best that the kernel accepts stays.
+/// Keeps the best of the changes that are offered and that the kernel accepts.
 #[derive(Debug, Default)]
 pub(super) struct Candidate {
-    /// Where the next proposal is written.
+    /// Buffer for the next proposal.
     pub(super) proposal: Change,
     best: Change,
     score: Option<Score>,
     operation: Operation,
     came: Vec<TetId>,
-    /// A worst quality from which a change may leave more bad tets than it found.
+    /// The worst quality from which a change may leave more bad tets than it found.
     worth_more_bad: f64,
 }
 
-/// A worst quality this many times as high is worth more bad tets: one that is nearly flat ruins a solution, some that are only bad do not.
+/// A worst quality that rises by this factor justifies more bad tets: one that is nearly flat ruins a
+/// solution, several that are merely bad do not.
 const MUCH_BETTER: f64 = 10.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -28,19 +29,20 @@ struct Score {
 }
 
 impl Candidate {
-    /// `last_chance` is the quality of the bad tet when all stages are tried: then a worst quality that rises much may cost more bad tets.
+    /// Starts a search. `last_chance` is the quality of the bad tet if all stages are tried: then a much
+    /// better worst quality may cost more bad tets.
     pub(super) fn begin(&mut self, last_chance: Option<f64>) {
         self.score = None;
         self.worth_more_bad =
             last_chance.map_or(f64::INFINITY, |quality| (MUCH_BETTER * quality).max(f64::MIN_POSITIVE));
     }
 
-    /// Whether one has been found whose tets are all at least `target`.
+    /// Whether a change was found whose tets all have at least the quality `target`.
     pub(super) fn reaches(&self, target: f64) -> bool {
         self.score.is_some_and(|s| s.worst >= target)
     }
 
-    /// What the next proposal has to beat, given what the bad tet has.
+    /// The quality that the next proposal has to exceed, given that of the bad tet.
     pub(super) fn bar(&self, quality: f64, target: f64) -> f64 {
         match self.score {
             Some(score) if score.worst >= target => below(target).max(quality),
@@ -49,8 +51,9 @@ impl Candidate {
         }
     }
 
-    /// Takes the proposal if it is better than the best so far. Of those that reach the target, the one that touches the fewest tets of the first
-    /// mesh is best; of the others the one with the highest worst quality.
+    /// Takes the proposal if it is better than the best so far. Among those that reach the target, the one
+    /// that touches the fewest tets of the first mesh is best; among the others, the one with the highest
+    /// worst quality.
     pub(super) fn offer(
         &mut self,
         complex: &Complex,
@@ -82,7 +85,7 @@ impl Candidate {
         }
     }
 
-    /// Makes the best change; which operation it was and the tets that came.
+    /// Commits the best change; returns its operation and the inserted tets.
     pub(super) fn commit(&mut self, complex: &mut Complex) -> Option<(Operation, &[TetId])> {
         self.score?;
         let checked = complex.check(&self.best).ok()?;
@@ -91,7 +94,7 @@ impl Candidate {
     }
 }
 
-/// Just below: a proposal has to be above its bar, and at the target is good enough.
+/// The next value below the target: a proposal has to exceed its bar, and one at the target is good enough.
 fn below(target: f64) -> f64 {
     target.next_down()
 }

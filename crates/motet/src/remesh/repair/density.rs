@@ -1,7 +1,9 @@
-//! The number of vertices kept: long edges divided where vertices lack, short ones collapsed where there are too many.
+//! Keeps the number of vertices: long edges are divided where vertices are lacking, short ones collapsed
+//! where there are too many.
 //!
-//! Repair inserts vertices, and takes others out, where that mends a tet. Without a memory of how many there were, a mesh that is repaired in each step grows or thins without end.
-//! How long an edge is is judged by the sizes that were remembered: those of the mesh as it was at first.
+//! Repair inserts and removes vertices where that repairs a tet. Without a record of how many there were, a
+//! mesh that is repaired in each step would grow or thin out without end. Edge lengths are judged by
+//! remembered sizes: those of the mesh as it was at first.
 
 use std::sync::Arc;
 
@@ -15,39 +17,42 @@ use crate::remesh::repair::Repair;
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{SHORT, SizeField, Sizes};
 
-/// So many vertices too many, or too few, are no reason to act.
+/// A surplus or lack of up to this many vertices is tolerated.
 const TOLERANCE: isize = 2;
-/// Where vertices lack, edges longer than this part of their size are divided, the longest first; ...
+/// Where vertices are lacking, edges longer than this multiple of their size are divided, longest first; ...
 const LONG_IF_LACKING: f64 = 1.2;
-/// ... longer than this also where none lacks, so no collapse makes an edge longer. While collapses made none longer than 1.5, a cylinder whose rims have edges a tenth as long as its
-/// sizes gained 4.5 % of vertices in a turn; ...
+/// ... edges longer than this even where none is lacking, so that no collapse makes an edge longer. When
+/// collapses made none longer than 1.5, a cylinder whose rims have edges a tenth as long as its sizes gained
+/// 4.5 % of vertices per turn; ...
 const LONG: f64 = 2.0;
-/// ... and only longer than this where there are too many.
+/// ... and only edges longer than this where there are too many.
 const LONG_IF_CROWDED: f64 = 3.0;
-/// Where there are too many vertices, edges shorter than this part of their size are collapsed, the shortest first; shorter than [`SHORT`] anywhere.
+/// Where there are too many vertices, edges shorter than this fraction of their size are collapsed, shortest
+/// first; those shorter than [`SHORT`] are collapsed anywhere.
 const SHORT_IF_CROWDED: f64 = 0.95;
-/// With more than this part of the vertices too many, or too few, edges are looked for in all of the mesh and not near changes alone.
+/// If the surplus or lack exceeds this fraction of the vertices, edges are searched for in the whole mesh and
+/// not only near changes.
 const FAR_OFF: f64 = 0.005;
-/// An insertion looks for a place at which no tet is below this EAS.
+/// An insertion looks for a place where no tet is below this EAS.
 const GOOD: f64 = 0.5;
 
-/// What is to be kept.
+/// The number of vertices to keep, and their distribution.
 pub(in crate::remesh) struct Density {
-    /// How long edges are to be.
+    /// Requested edge lengths.
     field: SizeField,
-    /// How many vertices that nothing holds there are to be.
+    /// How many free vertices the mesh is to have.
     n_free: usize,
 }
 
 impl Density {
-    /// `sizes`: of each vertex of the mesh that was given.
+    /// The density with these sizes at the vertices of the given mesh.
     pub(in crate::remesh) fn new(sizes: &[f64], given: &Arc<Given>, n_free: usize) -> Self {
         let sizes = Sizes::Vertices(sizes.to_vec());
         Self { field: SizeField::new(&sizes, || given.clone(), LONG), n_free }
     }
 }
 
-/// An edge, its length as a part of its size, and a tet that has it or had it.
+/// An edge, its length divided by its size, and a tet that has it or had it.
 struct Edge {
     ratio: f64,
     ends: [VertexId; 2],
@@ -55,8 +60,8 @@ struct Edge {
 }
 
 impl Repair {
-    /// Collapses and divides edges, near the tets of a zone where that is enough, until there are as many vertices as there are to be; adds the tets that came to the zone. No tet goes below
-    /// the EAS `floor`.
+    /// Collapses and divides edges, near the tets of a zone if that is enough, until the number of vertices
+    /// is as requested; adds the inserted tets to the zone. No tet falls below the EAS `floor`.
     pub(in crate::remesh) fn keep_density(
         &mut self,
         density: &mut Density,
@@ -93,7 +98,7 @@ impl Repair {
         Ok(())
     }
 
-    /// The edges of tets that may be changed, each once, the shortest for its size first.
+    /// The edges of tets that may be changed, each once, by rising ratio of length to size.
     fn sorted_edges(&self, tets: impl Iterator<Item = TetId>, field: &mut SizeField) -> Vec<Edge> {
         let mut edges = Vec::new();
         for tet in tets.filter(|&t| !self.complex.is_locked(t)) {
@@ -113,7 +118,8 @@ impl Repair {
         self.complex.is_alive(tet) && ends.iter().all(|v| self.complex.vertices(tet).contains(v))
     }
 
-    /// Draws the end of an edge that nothing holds into the other one, the better of both ways, if no edge becomes too long.
+    /// Collapses an edge towards either end, whichever is better, if the removed vertex is free and no edge
+    /// becomes too long.
     fn collapse_crowded(
         &mut self,
         edge: &Edge,
@@ -151,7 +157,7 @@ impl Repair {
         is_made
     }
 
-    /// Puts a vertex near the middle of an edge that lies inside.
+    /// Inserts a vertex near the midpoint of an edge inside the volume.
     fn insert_on(&mut self, edge: &Edge, floor: f64, zone: &mut Vec<TetId>) -> bool {
         let [a, b] = edge.ends;
         if !self.has(edge) || !self.complex.may_divide(a, b) {

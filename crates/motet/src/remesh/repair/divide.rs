@@ -1,4 +1,4 @@
-//! Tets that nothing else helps are divided, as long as that leaves fewer of them.
+//! Tets that no other operation repairs are divided, as long as that leaves fewer of them.
 
 use crate::base::{Result, TetId, VertexId};
 use crate::geometry::tet::EDGES;
@@ -7,18 +7,19 @@ use crate::ops::split_edge;
 use crate::remesh::repair::Repair;
 use crate::remesh::report::Operation;
 
-/// How often in a row edges are split without fewer bad tets in the end.
+/// How many rounds of splits in a row may end without progress.
 const MOST_IN_VAIN: usize = 5;
 
-/// What is left must shrink to this part of itself, or the round was in vain.
+/// A round makes progress if the number of bad tets falls to this fraction or below.
 const PROGRESS: f64 = 0.95;
-/// No more edges are split once there are so many times as many tets.
+/// No more edges are split once the number of tets has grown by this factor.
 const MOST_GROWTH: usize = 3;
 
 impl Repair {
-    /// Divides what nothing else helps: the longest edge in the neighbourhood of each of `left` is split, again and again, with repairs between, as long as
-    /// that leaves fewer. What did not lead to fewer is undone. For flat tets between two sheets of the surface, and those on needles
-    /// of the surface, which are too long for where they are.
+    /// Divides tets that nothing else repairs: splits the longest edge in the neighbourhood of each tet in
+    /// `left`, again and again, with repairs in between, as long as that leaves fewer bad tets. Splits that
+    /// do not lead to fewer are undone. Meant for flat tets between two sheets of the surface, and for tets
+    /// on needles of the surface, which are too long for where they are.
     pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
         let n_bad = |repair: &Self, left: &[TetId]| left.len() + repair.complex.n_spared();
         let mut n_least = n_bad(self, &left);
@@ -50,8 +51,9 @@ impl Repair {
         Ok(best.0)
     }
 
-    /// Splits the edge that the path of longest edges from a tet leads to: one that is the longest of every tet round it (Rivara 1984 and
-    /// 1997, *New longest-edge algorithms for the refinement and/or improvement of unstructured triangulations*).
+    /// Splits the edge at the end of the longest-edge path from a tet: one that is the longest edge of every
+    /// tet around it (Rivara 1984 and 1997, *New longest-edge algorithms for the refinement and/or
+    /// improvement of unstructured triangulations*).
     fn split_longest(&mut self, mut tet: TetId) {
         loop {
             let (edge, length) = self.longest_edge(tet);
@@ -76,7 +78,8 @@ impl Repair {
         longest
     }
 
-    /// Splits the edge whose shell was walked last, if every tet stays positive and the surface where it may be.
+    /// Splits the edge whose shell was walked last, whatever the quality, if every tet stays positive and the
+    /// surface allows it.
     fn split_unjudged(&mut self, edge: [VertexId; 2]) {
         let [a, b] = edge;
         let shell = &self.shells[0];

@@ -1,13 +1,15 @@
-//! Tets made better on the whole, none of them bad: swaps, and vertices moved.
+//! Tets improved as a whole, with none left bad, by swaps and by moving vertices.
 //!
-//! [`Repair::run`] asks whether the worst of what a change touches gets better. Alone it leaves a mesh in which most tets are hardly better than bad, and every step of a motion makes
-//! hundreds of them bad again. Here a change counts by the sum over its tets of their [defects](defect), each less the mesh's mean, so that neither many nor few tets are preferred. Of a
-//! paddle that turns once in its box in 72 steps (16,342 tets at first, mean EAS 0.715):
+//! [`Repair::run`] requires that the worst quality of what a change touches rises. By itself it leaves a mesh
+//! in which most tets are hardly better than bad, and every step of a motion makes hundreds of them bad
+//! again. Here a change is judged by the sum over its tets of their [defects](defect), each less the mean
+//! over the mesh, so that neither many nor few tets are preferred. For a paddle that turns once in its box in
+//! 72 steps (16,342 tets at first, mean EAS 0.715):
 //!
-//! | | tets | mean EAS | changed a step |
+//! | | tets | mean EAS | changed per step |
 //! |---|---|---|---|
 //! | repair alone | 37,023 | 0.370 | 10.3 % |
-//! | and improved, the strain in a band beside the paddle | 16,101 | 0.694 | 8.2 % |
+//! | with improvement, the strain in a band beside the paddle | 16,101 | 0.694 | 8.2 % |
 
 use crate::base::{Point, Result, TetId, VertexId};
 use crate::geometry::quality::eas;
@@ -19,35 +21,37 @@ use crate::remesh::repair::tried::Settled;
 use crate::remesh::repair::{Repair, Sizing};
 use crate::remesh::report::Operation;
 
-/// A change has to lower the sum of the defects of what it touches by this part of it. Of the paddle above the mean EAS is, over all steps, never below 0.673 with 0.05 (7.0 % changed a step),
-/// 0.678 with 0.02 (7.7 %), 0.684 with 0.01 (8.1 %), 0.686 with 0.005 (8.2 %), 0.680 with 0.002 (8.4 %).
+/// A change has to lower the sum of the defects of the tets it touches by this fraction. For the paddle
+/// above, the mean EAS over all steps is never below 0.673 with 0.05 (7.0 % changed per step), 0.678 with
+/// 0.02 (7.7 %), 0.684 with 0.01 (8.1 %), 0.686 with 0.005 (8.2 %), 0.680 with 0.002 (8.4 %).
 const LEAST_GAIN: f64 = 0.005;
 
-/// So often the tets that were changed are looked at again.
+/// How often the tets that were changed are examined again.
 const ROUNDS: usize = 6;
 
-/// What is improved, and how far that may go.
+/// What improvement aims at, and its limits.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::remesh) struct Aim {
-    /// Tets from this EAS on are good enough.
+    /// Tets with at least this EAS are good enough.
     pub(in crate::remesh) below: f64,
-    /// No tet goes below this EAS, nor one that is below it any lower.
+    /// No tet may fall below this EAS; a tet already below it may not get worse.
     pub(in crate::remesh) floor: f64,
-    /// Tets below this EAS are bad: no change adds one, also where the floor is higher.
+    /// Tets below this EAS are bad: no change adds one, even if the floor is higher.
     pub(in crate::remesh) limit: f64,
-    /// By how much more a change has to lower the sum for each tet of the first mesh that it touches: each of these costs an interpolation, others no more than they did.
+    /// How much more a change has to lower the sum of defects for each tet of the first mesh that it touches:
+    /// each of these costs an interpolation, tets that have changed before cost nothing more.
     pub(in crate::remesh) cost: f64,
 }
 
-/// What tets cost, and what changes are worth.
+/// The cost of tets, and the gain of changes.
 #[derive(Clone, Copy, Debug)]
 struct Worth<'a> {
     aim: Aim,
-    /// The mean cost of the mesh.
+    /// The mean cost over the mesh.
     mean: f64,
-    /// The mesh in the other pose, where there is one.
+    /// The mesh in the other pose, if there is one.
     pose: Option<&'a Pose>,
-    /// No tet may be as bad as this, where it is and in the other pose.
+    /// Every new tet must be better than these, in the current pose and in the other one.
     bars: [f64; 2],
 }
 
@@ -56,17 +60,20 @@ impl<'a> Worth<'a> {
         Self { aim, mean, pose, bars: [f64::NEG_INFINITY; 2] }
     }
 
-    /// Of a tet as it is.
+    /// The cost of an existing tet.
     fn of_tet(&self, complex: &Complex, tet: TetId) -> f64 {
         self.of(complex.quality(tet), self.pose.map(|pose| pose.quality(complex, tet)))
     }
 
-    /// Of a tet of these qualities where it is and in the other pose: the sum of its defects. Where walls slid past each other tets need not be valid in the other pose, and one is as bad as another.
+    /// The cost of a tet with these qualities in the current and the other pose: the sum of its defects.
+    /// Where walls slid past each other, tets need not be valid in the other pose; all invalid ones there
+    /// cost the same.
     fn of(&self, here: f64, in_pose: Option<f64>) -> f64 {
         defect(here) + in_pose.map_or(0.0, |quality| defect(quality.max(0.0)))
     }
 
-    /// What a change has to lower the cost of a cavity by, each tet's less the mean, and that cost.
+    /// The amount by which a change has to lower the cost of a cavity, and that cost: the sum over its tets,
+    /// each less the mean.
     fn of_cavity(&self, complex: &Complex, cavity: &[TetId]) -> (f64, f64) {
         let sum: f64 = cavity.iter().map(|&t| self.of_tet(complex, t)).sum();
         let n_touched = cavity.iter().filter(|&&t| complex.is_original(t)).count();
@@ -74,13 +81,14 @@ impl<'a> Worth<'a> {
         (least, sum - self.mean * cavity.len() as f64)
     }
 
-    /// The cost of the fill of a change, each tet's less the mean; infinite where a tet may not come. `moved`: a vertex that moves, and where it will be in the other pose.
+    /// The cost of the fill of a change, each tet's less the mean; infinite if a tet is not acceptable.
+    /// `moved`: a vertex that moves, and its position in the other pose.
     fn of_fill(&self, change: &Change, moved: Option<(VertexId, Point)>) -> f64 {
         let of = |tet: &Fill| self.of_new(tet.vertices, tet.quality, moved) - self.mean;
         change.fill.iter().map(of).sum()
     }
 
-    /// The cost of a tet to come.
+    /// The cost of a new tet; infinite if it is not above the bars.
     fn of_new(&self, vertices: [VertexId; 4], quality: f64, moved: Option<(VertexId, Point)>) -> f64 {
         if quality <= self.bars[0] {
             return f64::INFINITY;
@@ -97,7 +105,7 @@ impl<'a> Worth<'a> {
         }
     }
 
-    /// Sets the limits for what comes in place of a cavity.
+    /// Sets the limits for the tets that replace a cavity.
     fn set_bars(&mut self, complex: &Complex, cavity: &[TetId]) {
         let bar = |worst: f64| worst.min(self.aim.floor).next_down();
         let worst_in_pose =
@@ -106,7 +114,7 @@ impl<'a> Worth<'a> {
     }
 }
 
-/// The sum of the costs is to be low.
+/// Minimizes the sum of the costs.
 impl Objective for Worth<'_> {
     const NOTHING: f64 = 0.0;
 
@@ -135,18 +143,18 @@ struct Best {
     change: Change,
 }
 
-/// The best change found for a tet, and what it has to keep to.
+/// The best change found for a tet, and the constraints on it.
 #[derive(Debug)]
 struct Found {
     best: Best,
-    /// Where sizes are asked for: no change brings an edge that is too long or too short.
+    /// The requested sizes, if any: no change may make an edge too long or too short.
     sizing: Option<Sizing>,
 }
 
-/// What one call of [`Repair::improve`] has in hand.
+/// The working state of one call of [`Repair::improve`].
 #[derive(Debug)]
 struct Course {
-    /// What is aimed at, and the mean cost of the mesh.
+    /// The aim, and the mean cost over the mesh.
     scale: (Aim, f64),
     found: Found,
     settled: Settled,
@@ -154,7 +162,8 @@ struct Course {
 }
 
 impl Repair {
-    /// Swaps and moves the tets of a zone, the worst first, then those that were inserted, as long as they get better on the whole.
+    /// Swaps and moves the tets of a zone, worst first, then the tets that were inserted, as long as they
+    /// improve as a whole.
     pub(in crate::remesh) fn improve(&mut self, aim: Aim, mut zone: Vec<TetId>) -> Result<()> {
         if let Some(pose) = &mut self.pose {
             pose.update(&self.complex);
@@ -174,7 +183,7 @@ impl Repair {
         Ok(())
     }
 
-    /// The tets that share a vertex with one that was inserted.
+    /// The tets that share a vertex with an inserted tet.
     pub(in crate::remesh) fn near_changes(&self) -> Vec<TetId> {
         let mut is_near = vec![false; self.complex.n_vertex_slots()];
         for tet in self.complex.tets().filter(|&t| !self.complex.is_original(t)) {
@@ -194,7 +203,7 @@ impl Repair {
         self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < below
     }
 
-    /// Makes the best swap at each low tet of a zone, the worst first.
+    /// Makes the best swap at each low-quality tet of a zone, worst first.
     fn swap_low(&mut self, zone: &mut Vec<TetId>, course: &mut Course) -> Result<()> {
         let below = course.scale.0.below;
         zone.retain(|&t| self.is_low(t, below));
@@ -209,7 +218,8 @@ impl Repair {
         Ok(())
     }
 
-    /// Moves each vertex of the low tets of a zone, and of those that were inserted, once where that is better: that of the worst tet first.
+    /// Moves each vertex of the low-quality tets of a zone, and of inserted ones, once if that improves them,
+    /// starting with the worst tet.
     fn move_low(&mut self, zone: &mut Vec<TetId>, course: &mut Course) -> Result<()> {
         zone.extend_from_slice(&course.inserted);
         zone.retain(|&t| self.is_low(t, course.scale.0.below));
@@ -230,7 +240,7 @@ impl Repair {
         Ok(())
     }
 
-    /// Makes the best change that was found, if there is one and it may be made; forgets it.
+    /// Commits the best change found, if there is one and the kernel allows it, and forgets it.
     fn make_best(&mut self, course: &mut Course) {
         let Course { scale: (aim, _), found: Found { best, .. }, inserted, .. } = course;
         let n_before = inserted.len();
@@ -310,7 +320,8 @@ impl Repair {
         is_better
     }
 
-    /// Takes a change as the best if it gains enough, and more than the best so far; the one that was the best is left in its place. Whether it gains enough.
+    /// Takes a change as the best if it gains enough, and more than the best so far; the previous best is
+    /// left in `change`. Returns whether the change gains enough.
     fn weigh(&self, change: &mut Change, operation: Operation, mut worth: Worth, found: &mut Found) -> bool {
         let Found { best, sizing } = found;
         worth.set_bars(&self.complex, &change.cavity);
@@ -327,7 +338,7 @@ impl Repair {
         if best.gain.is_some_and(|known| gain <= known) {
             return true;
         }
-        // Whether the mesh allows it is asked of the best alone.
+        // Sizes are checked only for a change that would be the best.
         let is_allowed = sizing.as_mut().is_none_or(|sizing| sizing.field.accepts(&self.complex, change));
         if is_allowed {
             std::mem::swap(change, &mut best.change);
@@ -336,8 +347,10 @@ impl Repair {
         is_allowed
     }
 
-    /// Whether a change leaves more tets below the floor or the limit than it found, and the worst no better: beside a tet that walls force others could become bad, too. Where the worst gets better,
-    /// as in a place that walls make narrow for a while, two that are hardly bad are worth more than one that is nearly flat.
+    /// Whether a change leaves more tets below the floor or the limit than it found without raising the worst
+    /// quality: next to a tet that walls force, others could become bad, too. If the worst quality rises, as
+    /// where walls leave little space for a while, two tets that are hardly bad are better than one that is
+    /// nearly flat.
     fn adds_low(&self, change: &Change, aim: Aim) -> bool {
         let adds = |bar: f64| {
             let n_after = change.fill.iter().filter(|tet| tet.quality < bar).count();
@@ -347,7 +360,8 @@ impl Repair {
         (adds(aim.floor) || aim.limit < aim.floor && adds(aim.limit)) && !raises_worst()
     }
 
-    /// Makes a change that leaves no tet below a floor, nor the worst of what it touches any worse; adds the tets that were inserted. Whether it was made.
+    /// Commits a change that leaves no tet below a floor, nor the worst quality it touches any lower, and
+    /// adds the inserted tets to `inserted`. Returns whether it was made.
     pub(super) fn commit_above(&mut self, change: &Change, floor: f64, inserted: &mut Vec<TetId>) -> bool {
         let bar = self.complex.worst_of(&change.cavity).min(floor).next_down();
         let Ok(checked) = self.complex.check_against(change, bar) else { return false };

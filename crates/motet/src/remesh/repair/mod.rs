@@ -1,4 +1,4 @@
-//! The repair of one bad tet after another, worst first.
+//! The repair of bad tets one by one, worst first.
 
 mod by_length;
 mod candidate;
@@ -26,34 +26,36 @@ use crate::remesh::repair::tried::{Changes, Tried};
 use crate::remesh::report::{Counts, Operation};
 use crate::remesh::surface::{Crease, Surface};
 
-/// How much more than of bad tets is asked of those round the ones that nothing helps, time after time.
+/// How much higher the target is for tets around those that no operation repairs, one attempt after another.
 const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
 
 /// The targets for the worst tets of [`Repair::best`].
 const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
-/// A tet from this EAS on is good enough for [`Repair::best`].
+/// A tet with at least this EAS is good enough for [`Repair::best`].
 const GOOD: f64 = 0.7;
 
-/// Where more than this part of the tets is left below a target it rises no more.
+/// If more than this fraction of the tets is left below a target, the target rises no further.
 const MANY: f64 = 0.01;
 
-/// A mesh is hopelessly tangled where a round of all stages leaves more inverted tets than this number, and than this part of all tets, and more than this part of
-/// those that it found. In a cube of 8,000 tets whose vertices were moved at random by up to an edge, the first eight rounds brought 3,736 bad tets down to 789; eighteen more
-/// left 500, 200 of them inverted. Moved by up to two edges, 4,711 were 4,833 after eight rounds, and 4,844 in the end.
+/// A mesh counts as hopelessly tangled if a round of all stages leaves more inverted tets than this number,
+/// than this fraction of all tets, and than this fraction of those that it found. In a cube of 8,000 tets
+/// whose vertices were moved at random by up to an edge, the first eight rounds reduced 3,736 bad tets to
+/// 789; eighteen more left 500, 200 of them inverted. With moves of up to two edges, 4,711 bad tets were
+/// 4,833 after eight rounds, and 4,844 in the end.
 const HOPELESS: (usize, f64, f64) = (100, 0.01, 0.95);
 
-/// What is made of the bad tets that the first rounds leave.
+/// What is done with the bad tets that the first rounds leave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pass {
-    /// The rounds once more.
+    /// Repeats the rounds.
     Again,
-    /// What nothing helps is divided.
+    /// Divides the tets that nothing else repairs.
     Divide,
-    /// Both, with no feature where walls meet at less than this angle.
+    /// Does both, where walls that meet at less than this angle no longer form a feature.
     Soften(Crease),
 }
 
-/// The passes in which the surface may change as a rule says: one after the other as long as bad tets are left.
+/// The passes that a surface rule allows: made one after the other as long as bad tets are left.
 pub(super) fn passes(surface: SurfaceRule) -> &'static [Pass] {
     const ALL: [Pass; 5] =
         [Pass::Again, Pass::Divide, Pass::Soften(Crease::BLUNT), Pass::Divide, Pass::Soften(Crease::NONE)];
@@ -64,28 +66,28 @@ pub(super) fn passes(surface: SurfaceRule) -> &'static [Pass] {
     }
 }
 
-/// Whether a tet is one of those that are marked; where the list is empty none is.
+/// Whether a tet is marked; an empty list marks none.
 pub(super) fn is_among(marks: &[bool], tet: TetId) -> bool {
     marks.get(tet.index()).is_some_and(|is_marked| *is_marked)
 }
 
-/// What is marked in either of two lists; an empty one marks nothing.
+/// The union of two lists of marks; an empty list marks none.
 fn union(a: &[bool], b: &[bool]) -> Vec<bool> {
     (0..a.len().max(b.len())).map(TetId::new).map(|tet| is_among(a, tet) || is_among(b, tet)).collect()
 }
 
-/// What is repaired, and the room that it takes.
+/// The state of a repair, and its work arrays.
 pub(super) struct Repair {
     pub(super) complex: Complex,
     pub(super) operations: Counts,
     surface: Option<Surface>,
-    /// Where sizes are asked for.
+    /// The sizes, if any are requested.
     pub(super) sizing: Option<Sizing>,
-    /// Where walls come back.
+    /// The other pose in which tets are to be good, if there is one.
     pub(super) pose: Option<Pose>,
-    /// The tets of the first mesh that are not to be called bad, by id; empty: there are none.
+    /// Marks tets of the first mesh that never count as bad, by id; empty if there are none.
     others: Vec<bool>,
-    /// The tets of the first mesh that stay as they are, by id; empty: there are none.
+    /// Marks tets of the first mesh that stay as they are, by id; empty if there are none.
     pub(super) kept: Vec<bool>,
     target: f64,
     n_stages: usize,
@@ -97,12 +99,12 @@ pub(super) struct Repair {
     relaxation: Relaxation,
     star: Star,
     shells: [Shell; 2],
-    /// Tets that came and are bad.
+    /// Bad tets among those inserted.
     came_bad: Vec<TetId>,
     changes: Changes,
     /// The repairs that failed in this run.
     tried: Tried,
-    /// Whether rounds have ended since the mesh is hopelessly tangled.
+    /// Whether rounds ended because the mesh is hopelessly tangled.
     is_hopeless: bool,
     watch: Watch,
 }
@@ -141,10 +143,10 @@ impl Repair {
         }
     }
 
-    /// Repairs the bad tets, round after round, as long as that gets on; those that are left.
+    /// Repairs the bad tets in rounds as long as there is progress; returns those that are left.
     ///
-    /// Where it does not get on, what lies round those that are left is made better first: a change that would repair one
-    /// is often held up by a neighbour that is hardly better.
+    /// Without progress, the tets around those that are left are improved first: the change that would repair
+    /// a tet is often blocked by a neighbour that is hardly better.
     pub(super) fn run(&mut self, mut bad: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
         self.tried = Tried::of(self.target);
         self.is_hopeless = false;
@@ -167,11 +169,11 @@ impl Repair {
             if is_on {
                 continue;
             }
-            // With thousands left it is the surface that makes them, and what lies round them is made better in vain.
+            // If thousands are left, the surface causes them, and improving their surroundings does not help.
             let is_worth =
                 before.is_none_or(|before: usize| before.saturating_sub(bad.len()) >= bad.len() / 100);
             let Some(more) = asked.next().filter(|_| is_worth) else { break };
-            // What walls that stay force gets no better, whatever lies round it.
+            // Tets forced by walls that stay cannot get better, whatever lies around them.
             let (complex, stays, shell) = (&self.complex, self.surface.is_none(), &mut self.shells[0]);
             let is_unforced = |tet: &TetId| !(stays && is_forced(complex, None, *tet, shell));
             let unforced: Vec<TetId> = bad.iter().copied().filter(is_unforced).collect();
@@ -188,7 +190,8 @@ impl Repair {
         Ok(bad)
     }
 
-    /// Whether rounds have ended since the mesh is hopelessly tangled: none of what else is tried for bad tets makes it valid.
+    /// Whether rounds ended because the mesh is hopelessly tangled: no other treatment of bad tets makes it
+    /// valid.
     pub(super) fn is_hopeless(&self) -> bool {
         self.is_hopeless
     }
@@ -197,14 +200,15 @@ impl Repair {
         bad.iter().filter(|&&tet| self.complex.quality(tet) <= 0.0).count()
     }
 
-    /// Whether that is so when a round of all stages found so many inverted tets, and left so many.
+    /// Whether a mesh is hopelessly tangled if a round of all stages found `before` inverted tets and left
+    /// `after`.
     fn is_hopeless_with(&self, [before, after]: [usize; 2]) -> bool {
         let (many, of_all, of_before) = HOPELESS;
         let (n_tets, n_left) = (self.complex.n_tets() as f64, after as f64);
         after > many && n_left > of_all * n_tets && n_left > of_before * before as f64
     }
 
-    /// Makes one pass over the bad tets that are left; those that are left then.
+    /// Makes one pass over the bad tets that are left; returns those that remain.
     pub(super) fn pass(&mut self, pass: Pass, left: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
         if let (Some(surface), Pass::Soften(crease)) = (&mut self.surface, pass) {
             surface.hold_features(&mut self.complex, crease);
@@ -213,8 +217,10 @@ impl Repair {
         if pass == Pass::Again { Ok(left) } else { self.divide(left, rounds) }
     }
 
-    /// Makes a pass over what is left while tets that are as good as the walls at them allow count as good: these can get no better, and
-    /// would hold up what lies beside them. What is left then, these included. Taken back where more bad tets are left than before: walls can force two tets in place of one.
+    /// Makes a pass over the bad tets that are left, with an exemption: tets as good as the walls at them
+    /// allow count as good, since they cannot get better and would block their neighbours. Returns what is
+    /// left below the target, forced tets included. The pass is undone if it leaves more bad tets than
+    /// before: walls can force two tets in place of one.
     pub(super) fn beside_forced(
         &mut self,
         left: &[TetId],
@@ -232,13 +238,14 @@ impl Repair {
         Ok(self.below(self.target))
     }
 
-    /// Makes all tets as good as they get.
+    /// Makes all tets as good as possible.
     pub(super) fn best(&mut self, rounds: usize) -> Result<()> {
         let aim = Aim { below: GOOD, floor: self.target, limit: self.target, cost: 0.0 };
         self.improve_and_raise(aim, self.below(GOOD), 1.0, rounds)
     }
 
-    /// Makes the tets of a zone as good as they get where that takes no long search. Walls stay, and what is kept is not called bad.
+    /// Improves the tets of a zone as far as is possible without a long search. Walls stay, and kept tets do
+    /// not count as bad.
     pub(super) fn best_within(&mut self, aim: Aim, zone: Vec<TetId>, rounds: usize) -> Result<()> {
         let others = union(&self.others, &self.kept);
         let (others, surface) = (std::mem::replace(&mut self.others, others), self.surface.take());
@@ -253,8 +260,8 @@ impl Repair {
         done
     }
 
-    /// Makes the tets of a zone better on the whole, then the worst of all, then on the whole again what that has changed, without a loss for the worst. Worst first would leave a mesh whose mean falls
-    /// short.
+    /// Improves the tets of a zone as a whole, then raises the worst of all, then improves what that has
+    /// changed without lowering the worst. Raising the worst first would leave a lower mean.
     fn improve_and_raise(&mut self, aim: Aim, zone: Vec<TetId>, most_left: f64, rounds: usize) -> Result<()> {
         self.improve(aim, zone)?;
         let begin = self.changes.now();
@@ -264,17 +271,19 @@ impl Repair {
         self.improve(Aim { floor: self.target, ..aim }, changed)
     }
 
-    /// Whether so many tets are left that it is surfaces that force them: trying all operations for each takes long and helps little.
+    /// Whether so many tets are left that surfaces must force them: trying all operations for each would take
+    /// long and help little.
     pub(super) fn are_many(&self, n_left: usize) -> bool {
         self.is_more(n_left, MANY)
     }
 
-    /// Whether so many tets are more than a part of all.
+    /// Whether `n` is more than this fraction of all tets.
     fn is_more(&self, n: usize, part: f64) -> bool {
         n as f64 > part * self.complex.n_tets() as f64
     }
 
-    /// Repairs up to a target that rises as long as no more than a part of the tets is left below it. Where more than before are below the one that it began with, the last rise is taken back.
+    /// Repairs up to a target that rises as long as no more than a fraction `most_left` of the tets is left
+    /// below it. The last rise is undone if it leaves more tets below the first target than before.
     fn raise_worst(&mut self, most_left: f64, rounds: usize) -> Result<()> {
         let usual = self.target;
         for target in BEST {
@@ -295,13 +304,14 @@ impl Repair {
         Ok(())
     }
 
-    /// Tries once more what is below a target after improving: what held it up may be better now. What is left.
+    /// Repairs the tets below a target once more, after improving: what blocked them may be better now.
+    /// Returns those that are left.
     pub(super) fn try_again(&mut self, target: f64, rounds: usize) -> Result<Vec<TetId>> {
         self.target = target;
         self.run(self.below(target), rounds)
     }
 
-    /// The vertices of some tets, which may change before they are [tried again](Self::try_again_at).
+    /// The vertices of some tets, sorted, for [`Self::try_again_at`]; the tets may change in between.
     pub(super) fn vertices_of(&self, tets: &[TetId]) -> Vec<VertexId> {
         let mut vertices: Vec<_> = tets.iter().flat_map(|&tet| self.complex.vertices(tet)).collect();
         vertices.sort_unstable();
@@ -309,7 +319,8 @@ impl Repair {
         vertices
     }
 
-    /// Tries once more what is below a target and has an edge of such vertices after improving: what held it up may be better now. What is left below the target anywhere.
+    /// Repairs, after improving, the tets below a target that have at least two of the vertices: what blocked
+    /// them may be better now. Returns the tets left below the target anywhere.
     pub(super) fn try_again_at(
         &mut self,
         vertices: &[VertexId],
@@ -324,7 +335,8 @@ impl Repair {
         Ok(self.below(target))
     }
 
-    /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.
+    /// Tries to repair each bad tet once, and leaves the list of those that are bad then. Returns whether
+    /// anything was changed.
     fn round(&mut self, bad: &mut Vec<TetId>) -> Result<bool> {
         bad.retain(|&t| self.is_bad(t));
         self.sort(bad);
@@ -350,7 +362,7 @@ impl Repair {
             }
         }
         let usual = std::mem::replace(&mut self.target, target);
-        // Here all that is near is asked.
+        // Here all tets nearby are to reach the target.
         let others = std::mem::take(&mut self.others);
         around.retain(|&t| self.is_bad(t));
         self.round(&mut around)?;
@@ -360,9 +372,9 @@ impl Repair {
         Ok(())
     }
 
-    /// Sorts tets, the worst first, and leaves each once.
+    /// Sorts tets, worst first, and removes duplicates.
     fn sort(&self, tets: &mut Vec<TetId>) {
-        // Tets of one quality by id.
+        // Ties are ordered by id.
         let mut keys: Vec<_> = tets.iter().map(|&t| (rising(self.complex.quality(t)), t)).collect();
         keys.sort_unstable();
         keys.dedup();
@@ -391,12 +403,12 @@ impl Repair {
         self.complex.is_original(tet) && is_among(&self.others, tet)
     }
 
-    /// Makes the best change for one bad tet; whether there was one.
+    /// Makes the best change for one bad tet; returns whether there was one.
     fn repair(&mut self, tet: TetId) -> bool {
         if self.tried.knows(&self.changes, &self.complex, tet, self.target) {
             return false;
         }
-        // Where the surface may change, so may the walls that force it.
+        // Where the surface may change, walls do not force a tet.
         if self.surface.is_none() && is_forced(&self.complex, None, tet, &mut self.shells[0]) {
             self.tried.note_failure(&self.changes, tet, self.target);
             return false;
@@ -439,7 +451,7 @@ impl Repair {
     }
 }
 
-/// A number that rises with `x`, as `f64::total_cmp` compares.
+/// An integer that orders as `f64::total_cmp` does.
 fn rising(x: f64) -> i64 {
     let bits = x.to_bits() as i64;
     bits ^ (((bits >> 63) as u64) >> 1) as i64

@@ -1,4 +1,5 @@
-//! Edges brought to the sizes that are asked for: long ones split, short ones collapsed, bad tets repaired, until nothing changes.
+//! Edges brought to the requested sizes: long ones split, short ones collapsed, bad tets repaired, until
+//! nothing changes.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -16,29 +17,32 @@ use crate::remesh::report::Operation;
 use crate::remesh::sizes::{LONG, SHORT, SizeField};
 use crate::remesh::surface::Surface;
 
-/// Short edges are looked for once more when this part of them has been collapsed.
+/// Short edges are searched for once more if this fraction of them has been collapsed.
 const ENOUGH: f64 = 0.02;
 
-/// Where the mesh is being changed, edges are collapsed that are shorter than this part of their size: down to [`SHORT`] alone a mesh that was finer keeps twice the tets that its sizes ask for. What
-/// nothing has changed stays while its edges are neither too long nor too short, so a mesh that has its sizes stays as it is.
+/// Where the mesh is being changed, edges shorter than this fraction of their size are collapsed: if only
+/// those below [`SHORT`] were, a mesh that was finer would keep twice the tets that its sizes imply. Tets
+/// that nothing has changed stay if their edges are neither too long nor too short, so a mesh that already
+/// has its sizes stays as it is.
 const DENSE: f64 = 0.7;
 
-/// Edges whose lengths, as parts of their sizes, differ by no more than this factor count as equally long.
+/// Edges whose ratios of length to size differ by no more than this factor count as equally long.
 const ALIKE: f64 = 1.0 + 1e-9;
-/// Tets of a lower quality are next to flat: a tenth of what is bad by default. Beside a longer edge that stays no split brings one, whatever was there.
+/// Tets below this quality are nearly flat: a tenth of the default limit for bad tets. Next to a longer edge
+/// that stays, no split may make one, whatever was there.
 const FLATTEST: f64 = 0.02;
 
-/// What sizes are asked for, and how far that may go.
+/// The requested sizes, and the limits of the work.
 #[derive(Debug)]
 pub(in crate::remesh) struct Sizing {
     pub(in crate::remesh) field: SizeField,
-    /// Whether long edges are split; if not, short ones are collapsed once.
+    /// Whether long edges are split; if not, only short ones are collapsed, once.
     pub(in crate::remesh) splits: bool,
-    /// No edge is split once there are so many tets.
+    /// No edge is split once the mesh has more than this many tets.
     pub(in crate::remesh) most_tets: usize,
 }
 
-/// An edge, its length as a part of its size, and a tet that has it or had it.
+/// An edge, its length divided by its size, and a tet that has it or had it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Edge {
     ratio: f64,
@@ -55,20 +59,21 @@ impl PartialOrd for Edge {
 }
 
 impl Ord for Edge {
-    /// The longest is the greatest; of equally long ones that of the lowest vertices.
+    /// The longest edge is the greatest; among equally long ones, the one with the lowest vertices.
     fn cmp(&self, other: &Self) -> Ordering {
         self.ratio.total_cmp(&other.ratio).then(other.ends.cmp(&self.ends)).then(other.tet.cmp(&self.tet))
     }
 }
 
 impl Repair {
-    /// Brings edges to their sizes and repairs the bad tets, by turns, until nothing changes; the bad that are left.
+    /// Brings edges to their sizes and repairs the bad tets, alternately, until nothing changes; returns the
+    /// bad tets that are left.
     ///
-    /// A short edge is often kept by a neighbour that is hardly better than bad: where no more can be collapsed, what lies round the short ones is made
-    /// better.
+    /// A short edge is often kept by a neighbouring tet that is hardly better than bad: when no more edges
+    /// can be collapsed, the surroundings of the short ones are improved.
     pub(in crate::remesh) fn bring_to_sizes(&mut self, sizing: Sizing, rounds: usize) -> Result<Vec<TetId>> {
         let splits = sizing.splits;
-        // Splits beside a flat tet bring more of them, and no size is reached where they are.
+        // Splits next to a flat tet make more flat ones, and sizes are not reached near them.
         if splits && !self.complex.below(FLATTEST).is_empty() {
             self.run(self.below(self.target), rounds)?;
         }
@@ -96,7 +101,7 @@ impl Repair {
             self.improve_around(&tets, self.target + more)?;
         }
         let mut left = self.run(self.below(self.target), rounds)?;
-        // To be bad is worse than to be short.
+        // A bad tet is worse than a short edge.
         if !left.is_empty() {
             self.sizing.iter_mut().for_each(|sizing| sizing.field.may_shorten = true);
             left = self.run(left, rounds)?;
@@ -104,8 +109,9 @@ impl Repair {
         Ok(left)
     }
 
-    /// Where edges are several times too long: splits the longest alone, repairs, and halves the length above which edges are split, again and again, down to twice the one in the end. Halves of
-    /// flat tets are flat: a coarse mesh that is split to the end at once has bad tets nearly everywhere.
+    /// If edges are several times too long: splits only the longest, repairs, and halves the length above
+    /// which edges are split, again and again, down to twice the final one. Halves of flat tets are flat: a
+    /// coarse mesh that is split to the end at once has bad tets nearly everywhere.
     fn split_by_levels(&mut self) -> Result<()> {
         let longest = self.with_sizing(|repair, sizing| {
             let long = repair.edges(&mut sizing.field, |ratio, _| ratio > LONG);
@@ -121,7 +127,7 @@ impl Repair {
         Ok(())
     }
 
-    /// Repairs each bad tet once with the first stages, and what is left once with all.
+    /// Repairs each bad tet once with the first stages, and the remaining ones once with all.
     fn repair_once(&mut self) -> Result<()> {
         let mut bad = self.below(self.target);
         for n_stages in [FIRST_STAGES, STAGES.len()] {
@@ -141,7 +147,8 @@ impl Repair {
         done
     }
 
-    /// Splits edges that are too long in their middles, the longest first, until none is left that may be; how many there were.
+    /// Splits edges that are too long at their midpoints, longest first, until none is left that may be
+    /// split; returns how many were split.
     fn split_long(&mut self, sizing: &mut Sizing) -> Result<usize> {
         let too_long = sizing.field.long;
         let mut long = BinaryHeap::from(self.edges(&mut sizing.field, |ratio, _| ratio > too_long));
@@ -151,7 +158,7 @@ impl Repair {
                 break;
             }
             self.watch.go_on("splitting long edges", n_split, n_split + long.len())?;
-            // Nothing but its own split takes an edge away.
+            // An edge is removed only by its own split.
             let Some(tet) = self.tet_at(edge) else { continue };
             let Some(middle) = self.split(tet, edge.ends, &mut sizing.field, &mut change, &mut came) else {
                 continue;
@@ -170,7 +177,9 @@ impl Repair {
         Ok(n_split)
     }
 
-    /// Splits an edge in its middle if the new tets are good enough; the new vertex. On a smooth patch the vertex goes to the place of the first surface nearest to the middle, if the walls may lie there.
+    /// Splits an edge at its midpoint if the new tets are good enough; returns the new vertex. On a smooth
+    /// patch, the vertex is placed on the first surface, at the point closest to the midpoint, if the walls
+    /// may lie there.
     fn split(
         &mut self,
         tet: TetId,
@@ -206,7 +215,8 @@ impl Repair {
         None
     }
 
-    /// The place of the first surface nearest to the middle of an edge of a smooth patch, where that is elsewhere; the edge is the one whose shell was walked last.
+    /// The point of the first surface closest to the midpoint of an edge of a smooth patch, if it differs
+    /// from the midpoint; the edge is the one whose shell was walked last.
     fn on_surface(&self, middle: Point, hold: Hold) -> Option<Point> {
         let (surface, shell) = (self.surface.as_ref()?, &self.shells[0]);
         let place = shell.walls.first().filter(|_| hold == Hold::Surface)?;
@@ -214,10 +224,11 @@ impl Repair {
         surface.on_patch(patch, middle).filter(|point| *point != middle)
     }
 
-    /// What the tets have to beat that come of a split of the edge whose shell was walked last.
+    /// The quality that the tets of a split must exceed, for the edge whose shell was walked last.
     ///
-    /// The longest of all edges may always be split. Where a longer one stays, since it is held or nothing but flat tets would come of its halves, splits of the others would make flatter
-    /// and flatter tets: then no tet comes that is worse than the worst that was there, or bad, and none that is next to flat whatever was there.
+    /// The longest edge of all may always be split. If a longer one stays, because it is held or its halves
+    /// would give only flat tets, splits of the others would make flatter and flatter tets: then no new tet
+    /// may be bad and worse than the worst that was there, and none nearly flat whatever was there.
     fn bar_of_split(&self, ends: [VertexId; 2], field: &mut SizeField) -> f64 {
         let tets = &self.shells[0].tets;
         let ratio = field.of_edge(&self.complex, ends);
@@ -233,11 +244,12 @@ impl Repair {
         self.complex.worst_of(tets).min(self.target).next_down().max(floor)
     }
 
-    /// Collapses edges that are too short, the shortest first, where that brings no edge that is too long and no tet that is bad and worse than
-    /// the worst that was there; how many there were.
+    /// Collapses edges that are too short, shortest first, if that makes no edge too long and no tet that is
+    /// bad and worse than the worst that was there; returns how many were collapsed.
     fn collapse_short(&mut self, sizing: &mut Sizing) -> Result<usize> {
         let (mut n_collapsed, mut came) = (0, Vec::new());
-        // Whether a tet at a vertex has come since the last time that all were tried: elsewhere what was refused would be refused again.
+        // Whether a tet at a vertex was inserted since all edges were last tried: elsewhere a refused
+        // collapse would be refused again.
         let mut has_news = vec![true; self.complex.n_vertex_slots()];
         loop {
             let dense = if sizing.splits { DENSE } else { SHORT };
@@ -249,7 +261,7 @@ impl Repair {
                     continue;
                 }
                 self.watch.go_on("collapsing short edges", i, short.len())?;
-                // One that was collapsed has taken others with it.
+                // An earlier collapse may have removed this edge.
                 let Some(tet) = self.tet_at(edge) else { continue };
                 if self.collapse_to_size(tet, edge.ends, &mut sizing.field, &mut came) {
                     n_now += 1;
@@ -264,7 +276,8 @@ impl Repair {
         }
     }
 
-    /// Edges that are too short, or of tets that are no longer as they came and shorter than a part of their size, and may be collapsed; the shortest first.
+    /// Edges that may be collapsed and are too short, or shorter than `dense` times their size in a tet that
+    /// has changed; shortest first.
     fn short_edges(&self, field: &mut SizeField, dense: f64) -> Vec<Edge> {
         let is_short =
             |ratio: f64, tet: TetId| ratio < SHORT || ratio < dense && !self.complex.is_original(tet);
@@ -279,7 +292,7 @@ impl Repair {
         short
     }
 
-    /// Collapses an edge the better of the two ways, if one is allowed.
+    /// Collapses an edge in the better of the two directions, if one is allowed.
     fn collapse_to_size(
         &mut self,
         tet: TetId,
@@ -312,7 +325,8 @@ impl Repair {
         true
     }
 
-    /// The edges that are such by their length as a part of their size and one of their tets, but for those of locked tets; each once, in the order of their vertices.
+    /// The edges for which `is_such` holds, given their ratio of length to size and one of their tets,
+    /// without those of locked tets; each once, ordered by vertices.
     fn edges(&self, field: &mut SizeField, is_such: impl Fn(f64, TetId) -> bool) -> Vec<Edge> {
         let mut edges = Vec::new();
         for tet in self.complex.tets() {
@@ -331,7 +345,7 @@ impl Repair {
         edges
     }
 
-    /// A tet that has an edge; `None` where none has it any more.
+    /// A tet that has this edge; `None` if none does any more.
     fn tet_at(&mut self, Edge { ends, tet, .. }: Edge) -> Option<TetId> {
         let has =
             |t: TetId| self.complex.is_alive(t) && ends.iter().all(|v| self.complex.vertices(t).contains(v));

@@ -1,4 +1,4 @@
-//! What is tried for one bad tet, stage by stage.
+//! The operations tried for one bad tet, stage by stage.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
@@ -11,7 +11,7 @@ use crate::remesh::repair::Repair;
 use crate::remesh::report::Operation;
 use crate::remesh::surface::{Surface, SurfaceTrack};
 
-/// What is tried for a tet, one after the other until it is no longer bad.
+/// The stages, tried one after the other until the tet is no longer bad.
 pub(super) const STAGES: [fn(&mut Repair, TetId); 6] = [
     Repair::reconnect,
     Repair::by_type,
@@ -20,15 +20,16 @@ pub(super) const STAGES: [fn(&mut Repair, TetId); 6] = [
     Repair::collapse_any,
     Repair::insert,
 ];
-/// How many of them the first round tries. Each round that leaves bad tets tries one more: many of those that seem to need a vertex
-/// inserted no longer do once their neighbours are repaired.
+/// How many stages the first round tries. Each round that leaves bad tets adds one: many tets that seem to
+/// need an inserted vertex no longer do once their neighbours are repaired.
 pub(super) const FIRST_STAGES: usize = 3;
 
-/// Heights over walls, as parts of the root of their area: the first is that of a regular tet on one wall.
+/// Heights above walls, relative to the square root of their area: the first is that of a regular tet on one
+/// wall.
 const HEIGHTS: [f64; 3] = [1.24, 0.62, 0.31];
 
 impl Repair {
-    /// Stage one of the paper: its edges removed, and its facets.
+    /// Stage one of the paper: removes an edge or a facet of the tet.
     fn reconnect(&mut self, tet: TetId) {
         let vertices = self.complex.vertices(tet);
         for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
@@ -51,7 +52,7 @@ impl Repair {
         }
     }
 
-    /// What holds a vertex on the edge whose shell was walked last.
+    /// The constraint on a vertex that lies on the edge whose shell was walked last.
     pub(super) fn hold_on(&self, edge: [VertexId; 2]) -> Hold {
         let shell = &self.shells[0];
         match &self.surface {
@@ -62,7 +63,7 @@ impl Repair {
         }
     }
 
-    /// Stage two of the paper: as its type asks.
+    /// Stage two of the paper: the repair for the type of the tet.
     fn by_type(&mut self, tet: TetId) {
         let vertices = self.complex.vertices(tet);
         match classify(self.complex.corners(tet)) {
@@ -127,7 +128,8 @@ impl Repair {
         }
     }
 
-    /// Whether what holds a vertex lets it be drawn into another: along the surface, along a feature.
+    /// Whether the constraint on vertex `gone` lets it be collapsed into `kept`: along the surface, or along
+    /// a feature.
     pub(super) fn may_go(&mut self, tet: TetId, gone: VertexId, kept: VertexId) -> bool {
         let hold = self.complex.hold(gone);
         let Some(surface) = self.surface.as_ref().filter(|_| hold != Hold::Free && hold != Hold::Fixed)
@@ -141,7 +143,7 @@ impl Repair {
         is_line || !shell.walls.is_empty() && (hold == Hold::Surface || is_feature(surface))
     }
 
-    /// Its vertices moved: anywhere, or where the surface may change along the surface and along features.
+    /// Moves the vertices of a tet: anywhere if free; along the surface and its features if these may change.
     fn smooth(&mut self, tet: TetId) {
         for vertex in self.complex.vertices(tet) {
             let hold = self.complex.hold(vertex);
@@ -164,7 +166,7 @@ impl Repair {
         }
     }
 
-    /// The edges of a tet that lie on the surface, and its lines, split.
+    /// Splits the edges of a tet that lie on the surface or are lines.
     fn split_surface(&mut self, tet: TetId) {
         if self.surface.is_none() {
             return;
@@ -188,7 +190,7 @@ impl Repair {
         }
     }
 
-    /// Its edges collapsed, either way.
+    /// Collapses any edge of a tet, in either direction.
     fn collapse_any(&mut self, tet: TetId) {
         let vertices = self.complex.vertices(tet);
         for gone in vertices {
@@ -198,7 +200,7 @@ impl Repair {
         }
     }
 
-    /// A vertex put into its middle, into the middle of its edges, of its facets.
+    /// Inserts a vertex at the centroid of a tet, at the midpoint of an edge, or at the centroid of a facet.
     fn insert(&mut self, tet: TetId) {
         self.split_surface(tet);
         let corners = self.complex.corners(tet);
@@ -219,7 +221,8 @@ impl Repair {
         self.insert_off_walls(tet);
     }
 
-    /// A vertex put over its walls, from as high as a regular tet is: a tet that lies flat on them has all its own middles too near.
+    /// Inserts a vertex above the walls of a tet, starting at the height of a regular tet: in a tet that lies
+    /// flat on its walls, all the tet's own midpoints are too close to them.
     fn insert_off_walls(&mut self, tet: TetId) {
         let corners = self.complex.corners(tet);
         let (mut inwards, mut middle, mut area) = ([0.0; 3], [0.0; 3], 0.0);

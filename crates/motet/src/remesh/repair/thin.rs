@@ -1,7 +1,7 @@
-//! Vertices that came and lie close to others go again where they are not needed.
+//! Inserted vertices that lie close to others are removed again where they are not needed.
 //!
-//! A repair may split an edge that a later one could have done without. Were such vertices left, a mesh that is moved and repaired again and again
-//! would grow faster than need be.
+//! A repair may split an edge that a later one could have done without. If such vertices were left, a mesh
+//! that is moved and repaired again and again would grow faster than necessary.
 
 use crate::base::{Result, TetId, VertexId};
 use crate::geometry::tet::EDGES;
@@ -11,12 +11,14 @@ use crate::ops::collapse;
 use crate::remesh::repair::Repair;
 use crate::remesh::report::Operation;
 
-/// A vertex is close to others when its edges have less than this part of the length of those round it. With 0.85 a mesh that is sheared again and again
-/// shrinks by a quarter each time, with 0.7 it grows by a twentieth.
+/// A vertex is close to others if its edges are shorter, on average, than this fraction of the edges around
+/// it. With 0.85, a mesh that is sheared repeatedly shrinks by a quarter each time; with 0.7 it grows by a
+/// twentieth.
 const CLOSE: f64 = 0.7;
 
 impl Repair {
-    /// Collapses each vertex that came and is close to others, latest first, where that leaves no bad tet; whether there were any.
+    /// Collapses each inserted vertex that is close to others, latest first, where that leaves no bad tet.
+    /// Returns whether there were any.
     pub(in crate::remesh) fn thin(&mut self) -> Result<bool> {
         let mut came = Vec::new();
         let n_slots = self.complex.n_vertex_slots();
@@ -30,7 +32,7 @@ impl Repair {
         Ok(!came.is_empty())
     }
 
-    /// The mean length of the edges at a vertex, as a part of that of the edges round it.
+    /// The mean length of the edges at a vertex, divided by that of the edges around it.
     fn closeness(&mut self, vertex: VertexId) -> f64 {
         self.star.gather(&self.complex, vertex);
         let (mut at, mut round) = ((0.0, 0), (0.0, 0));
@@ -43,7 +45,7 @@ impl Repair {
         (at.0 / f64::from(at.1)) / (round.0 / f64::from(round.1))
     }
 
-    /// Draws a vertex into the neighbour that leaves the best tets.
+    /// Collapses a vertex into the neighbour that gives the best tets.
     fn take_out(&mut self, vertex: VertexId, came: &mut Vec<TetId>) {
         self.star.gather(&self.complex, vertex);
         let mut ends: Vec<_> =

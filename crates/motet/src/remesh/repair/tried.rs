@@ -1,34 +1,34 @@
-//! What has failed since anything changed at its vertices: it would fail again.
+//! Operations that failed and whose surroundings have not changed since: they would fail again.
 
 use crate::base::{TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
 use crate::kernel::Complex;
 
-/// When the tets of each vertex were last changed, by a clock that each change moves on.
+/// When the tets of each vertex were last changed, by a clock that advances with each change.
 #[derive(Debug)]
 pub(super) struct Changes {
     now: u32,
-    /// 0: never.
+    /// Time of the last change at each vertex; 0: never.
     of_vertex: Vec<u32>,
 }
 
 impl Changes {
-    /// A clock that begins now. It has to be told of all changes from now on.
+    /// A clock that starts now. Every later change must be reported to it.
     pub(super) fn new() -> Self {
         Self { now: 1, of_vertex: Vec::new() }
     }
 
-    /// The time.
+    /// The current time.
     pub(super) fn now(&self) -> u32 {
         self.now
     }
 
-    /// Whether no tet of a vertex has changed since a time, which is not 0.
+    /// Whether no tet of a vertex has changed since `time`; false if `time` is 0.
     pub(super) fn none_since(&self, vertex: VertexId, time: u32) -> bool {
         time > 0 && self.of_vertex.get(vertex.index()).is_none_or(|&changed| changed < time)
     }
 
-    /// Notes tets that were inserted.
+    /// Records that tets were inserted.
     pub(super) fn inserted(&mut self, complex: &Complex, tets: &[TetId]) {
         for v in tets.iter().flat_map(|&t| complex.vertices(t)) {
             *at(&mut self.of_vertex, v.index()) = self.now;
@@ -39,23 +39,23 @@ impl Changes {
 
 /// The bad tets whose repair failed.
 ///
-/// On a surface whose triangles make thousands of tets bad for good, rounds that change a few others cost next to nothing by it. What it overlooks: a
-/// cavity may reach beyond the tets at the vertices.
+/// If the triangles of a surface make thousands of tets bad for good, rounds that change a few others cost
+/// next to nothing with this record. It ignores that a cavity may reach beyond the tets at the vertices.
 #[derive(Debug)]
 pub(super) struct Tried {
-    /// What was asked for when it began: of what else is asked it knows nothing.
+    /// The target when the record began; failures for any other target are not recorded.
     target: f64,
     /// When the repair of each tet failed; 0: never.
     failed: Vec<u32>,
 }
 
 impl Tried {
-    /// A memory that begins now, of tets for which `target` is asked.
+    /// An empty record of failed repairs for one target.
     pub(super) fn of(target: f64) -> Self {
         Self { target, failed: Vec::new() }
     }
 
-    /// A memory that keeps nothing.
+    /// A record that stores nothing.
     pub(super) fn nothing() -> Self {
         Self::of(f64::NAN)
     }
@@ -66,7 +66,7 @@ impl Tried {
         target == self.target && complex.vertices(tet).into_iter().all(|v| changes.none_since(v, time))
     }
 
-    /// The repair of a tet has failed.
+    /// Records that the repair of a tet failed.
     pub(super) fn note_failure(&mut self, changes: &Changes, tet: TetId, target: f64) {
         if target == self.target {
             *at(&mut self.failed, tet.index()) = changes.now;
@@ -74,23 +74,25 @@ impl Tried {
     }
 }
 
-/// The edges, facets and vertices at which no change improved the tets: each edge has some five tets that ask for it, each vertex twenty.
+/// The edges, facets and vertices at which no change improved the tets: about five tets share an edge, twenty
+/// a vertex, and each would try it again.
 #[derive(Debug, Default)]
 pub(super) struct Settled {
-    /// When the edges of each tet, and then its facets, failed; 0: never.
+    /// When the edges, then the facets, of each tet failed; 0: never.
     of_tet: Vec<[u32; 10]>,
     of_vertex: Vec<u32>,
 }
 
 impl Settled {
-    /// Whether an edge of a tet, by its place in [`EDGES`], failed, and no tet that has it has changed since.
+    /// Whether an edge of a tet, given by its index in [`EDGES`], failed, and no tet that has it has changed
+    /// since.
     pub(super) fn has_edge(&self, changes: &Changes, complex: &Complex, tet: TetId, edge: usize) -> bool {
         let time = self.time(tet, edge);
         let vertices = complex.vertices(tet);
         EDGES[edge].into_iter().any(|i| changes.none_since(vertices[i], time))
     }
 
-    /// Whether a facet of a tet failed, and none of the tets at its vertices has changed since.
+    /// Whether a facet of a tet failed, and no tet at the vertices has changed since.
     pub(super) fn has_facet(&self, changes: &Changes, complex: &Complex, tet: TetId, facet: usize) -> bool {
         let time = self.time(tet, EDGES.len() + facet);
         complex.vertices(tet).into_iter().all(|v| changes.none_since(v, time))
@@ -102,7 +104,7 @@ impl Settled {
         changes.none_since(vertex, time)
     }
 
-    /// The removal of an edge, which `tets` have, failed.
+    /// Records that the removal of an edge of these tets failed.
     pub(super) fn settle_edge(
         &mut self,
         changes: &Changes,
@@ -118,12 +120,12 @@ impl Settled {
         }
     }
 
-    /// The removal of a facet failed.
+    /// Records that the removal of a facet failed.
     pub(super) fn settle_facet(&mut self, changes: &Changes, tet: TetId, facet: usize) {
         at(&mut self.of_tet, tet.index())[EDGES.len() + facet] = changes.now;
     }
 
-    /// A vertex could not be moved.
+    /// Records that a vertex could not be moved.
     pub(super) fn settle_vertex(&mut self, changes: &Changes, vertex: VertexId) {
         *at(&mut self.of_vertex, vertex.index()) = changes.now;
     }
@@ -133,7 +135,7 @@ impl Settled {
     }
 }
 
-/// The entry at a place, which is made where there is none.
+/// The entry at an index; the list grows if it is shorter.
 fn at<T: Clone + Default>(times: &mut Vec<T>, i: usize) -> &mut T {
     if times.len() <= i {
         times.resize(i + 1, T::default());
