@@ -1,4 +1,4 @@
-//! A complex from plain tets, and what the tets became of it.
+//! The construction of a complex from plain arrays.
 
 use std::cell::Cell;
 
@@ -17,11 +17,11 @@ use crate::mesh::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
 
 impl Complex {
-    /// The complex of a mesh. Tets are turned the way most are; see [`crate::mesh::OrientedTets`].
+    /// The complex of a mesh. All tets are oriented as most are; see [`crate::mesh::OrientedTets`].
     ///
     /// # Errors
-    /// When an array does not fit ([`TetMesh::validate`]), when more than two tets share a facet, a triangle is no facet of a
-    /// tet, or the mesh is one-sided; the place is the first such tet or triangle.
+    /// If an array does not fit ([`TetMesh::validate`]), if there are too many tets, if more than two tets
+    /// share a facet, and if the mesh is one-sided; the error names the first such tet.
     pub fn new(mesh: &TetMesh) -> Result<Self> {
         mesh.validate()?;
         if mesh.tets.len() >= MAX_TETS as usize {
@@ -91,7 +91,8 @@ impl Complex {
         Ok(complex)
     }
 
-    /// Vertices of walls are held by the surface, fixed ones and those without a tet altogether.
+    /// Constrains vertices of walls to the surface, and fixes vertices that are marked as fixed or have no
+    /// tet.
     fn hold_walls(&mut self, fixed_vertices: &[VertexId]) {
         for i in 0..self.walls.len() {
             let side = self.walls[i].sides[0];
@@ -114,8 +115,9 @@ impl Complex {
         near_flat.map(|t| self.tets[t].map(|v| self.point(v))).any(|[a, b, c, d]| orient3d(a, b, c, d) <= 0)
     }
 
-    /// Whether the tets of a vertex at a wall hang together by it, or by an edge, alone. So they do where parts of a mesh touch, and where a tet has a wrong vertex: it may be
-    /// positive then, and overlap others.
+    /// Whether the tets of a vertex at a wall are connected only by the vertex, or by an edge. This is so
+    /// where parts of a mesh touch, and where a tet has a wrong vertex: it may then be positive and overlap
+    /// others.
     fn has_parted_star(&self) -> bool {
         let mut star = Star::default();
         let mut vertices = (0..self.points.len()).map(VertexId::new);
@@ -124,7 +126,7 @@ impl Complex {
         })
     }
 
-    /// Makes the hold of a vertex stronger or weaker than it was found to be.
+    /// Overrides the constraint on a vertex.
     pub fn set_hold(&mut self, vertex: VertexId, hold: Hold) {
         self.holds[vertex.index()] = hold;
     }
@@ -134,7 +136,8 @@ impl Complex {
 struct Joined {
     links: Vec<[Link; 4]>,
     walls: Vec<Wall>,
-    /// Whether two tets see their facet from the same side: one is numbered the other way round, or lies on the other.
+    /// Whether two tets see their common facet from the same side: one is numbered the other way round, or
+    /// lies on the other.
     is_one_sided: bool,
 }
 
@@ -148,7 +151,7 @@ impl Joined {
         let links = vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()];
         let mut joined = Self { links, walls: Vec::new(), is_one_sided: false };
         let mut fault = None;
-        // Most meshes have but one, and then two reads from anywhere in memory are spared a facet.
+        // Most meshes have only one, which saves two random memory reads per facet.
         let one_region = regions.windows(2).all(|pair| pair[0] == pair[1]);
         for_each_tet_facet(tets, triangles, |Sharing { tets: uses, triangles }| {
             if let [(t, i), (u, j)] = *uses {
@@ -168,7 +171,8 @@ impl Joined {
                     let patch = patches.get(triangle as usize).copied().unwrap_or(0);
                     joined.add_wall(Wall { sides, patch, triangle, is_new: false });
                 }
-                // A triangle that is no facet, or not the first on its facet, stays as it is; its vertices and edges are held by whoever hands it over.
+                // A triangle that is not a facet, or not the first on its facet, is left as it is; the caller
+                // has to fix its vertices and edges.
                 [] => {}
                 _ => {
                     fault.get_or_insert((uses[0], uses.len()));
@@ -204,7 +208,7 @@ impl Joined {
     }
 }
 
-/// What lies behind facets, as places.
+/// What lies behind facets, as indices of tet and facet.
 fn behind(across: &[[HalfFacet; 4]]) -> impl Fn(usize, usize) -> Option<(usize, usize)> {
     move |t, i| {
         Some(across[t][i]).filter(|half| !half.is_none()).map(|half| (half.tet().index(), half.facet()))

@@ -1,22 +1,22 @@
-//! What an operation proposes: these tets go, those come, and one vertex comes, moves or goes.
+//! What an operation proposes: tets to remove, tets to insert, and one vertex to insert, move or remove.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::FACETS;
 use crate::kernel::complex::{Complex, Hold};
 use crate::kernel::spare::{Side, sorted};
 
-/// A tet to come.
+/// A tet to be inserted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fill {
     /// Its vertices; it must be positive.
     pub vertices: [VertexId; 4],
     /// The region of the tet.
     pub region: i32,
-    /// The quality of the tet, as [`Change::judge`] gives it.
+    /// The quality of the tet, as returned by [`Change::judge`].
     pub quality: f64,
 }
 
-/// A facet of the fill that is to be a wall, where the walls of the surface change.
+/// A facet that is to become a wall, where the surface may change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewWall {
     /// The three vertices of the facet, in any order.
@@ -27,12 +27,12 @@ pub struct NewWall {
     pub triangle: u32,
 }
 
-/// An edge of the fill that is to be a line, where lines change.
+/// An edge of the fill that is to become a line, where lines may change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewLine {
     /// The two vertices of the edge, in any order.
     pub vertices: [VertexId; 2],
-    /// What it is: the source of the line that it inherits from.
+    /// The source of the line that it inherits from.
     pub source: u32,
 }
 
@@ -42,32 +42,32 @@ pub enum VertexChange {
     /// Nothing.
     #[default]
     None,
-    /// A new one comes, with the id of [`Complex::next_vertex`], and what holds it.
+    /// A new vertex with the id [`Complex::next_vertex`] is inserted, with this constraint.
     Insert(Point, Hold),
-    /// One goes to another place.
+    /// A vertex moves to this point.
     Move(VertexId, Point),
-    /// One goes for good.
+    /// A vertex is removed.
     Remove(VertexId),
 }
 
-/// A proposal. Its lists are used again for the next one: [`Self::clear`].
+/// A proposed change. Its lists can be reused for the next one: [`Self::clear`].
 #[derive(Clone, Debug, Default)]
 pub struct Change {
-    /// The tets to go.
+    /// The tets to remove.
     pub cavity: Vec<TetId>,
-    /// The tets to come.
+    /// The tets to insert.
     pub fill: Vec<Fill>,
     /// What happens to a vertex.
     pub vertex: VertexChange,
-    /// Walls to come; those that go are the walls of the cavity which the fill has no facet for. Empty where the
+    /// Walls to insert; the walls of the cavity for which the fill has no facet are removed. Empty if the
     /// surface stays.
     pub walls: Vec<NewWall>,
-    /// Lines to come; those that go are the lines of the cavity whose edge the fill does not have.
+    /// Lines to insert; the lines of the cavity whose edge the fill does not have are removed.
     pub lines: Vec<NewLine>,
 }
 
 impl Change {
-    /// Nothing goes, nothing comes.
+    /// Empties the change.
     pub fn clear(&mut self) {
         self.cavity.clear();
         self.fill.clear();
@@ -81,7 +81,7 @@ impl Change {
         self.fill.iter().map(|tet| tet.quality).fold(f64::INFINITY, f64::min)
     }
 
-    /// Adds a tet to the fill, measured at where its vertices are to be.
+    /// Adds a tet to the fill, with the quality that it has with its vertices where the change puts them.
     pub fn push(&mut self, complex: &Complex, vertices: [VertexId; 4], region: i32) {
         let quality = self.judge(complex, vertices, self.corners(complex, vertices));
         self.fill.push(Fill { vertices, region, quality });
@@ -99,13 +99,13 @@ impl Change {
         })
     }
 
-    /// The same; whether the tet is better than `bar`.
+    /// Adds a tet to the fill; returns whether it is better than `bar`.
     pub fn push_above(&mut self, complex: &Complex, vertices: [VertexId; 4], region: i32, bar: f64) -> bool {
         self.push(complex, vertices, region);
         self.fill.last().is_some_and(|tet| tet.quality > bar)
     }
 
-    /// Where vertices are to be.
+    /// The positions of vertices after the change.
     #[inline]
     pub fn corners<const N: usize>(&self, complex: &Complex, vertices: [VertexId; N]) -> [Point; N] {
         let mut corners = [[0.0; 3]; N];
@@ -115,7 +115,7 @@ impl Change {
         corners
     }
 
-    /// Where a vertex is to be.
+    /// The position of a vertex after the change.
     #[inline]
     pub fn point(&self, complex: &Complex, vertex: VertexId) -> Point {
         match self.vertex {

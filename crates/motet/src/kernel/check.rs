@@ -1,4 +1,4 @@
-//! Whether a change may be made: everything that must never happen, tried on it.
+//! The check of a change against everything that must never happen.
 
 use std::fmt;
 
@@ -9,35 +9,36 @@ use crate::kernel::change::{Change, NewWall, VertexChange};
 use crate::kernel::complex::{Complex, Hold};
 use crate::kernel::link::{Behind, HalfFacet, WallId};
 
-/// Why a change may not be made.
+/// Why a change is refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reject {
-    /// The worst quality of the fill is not above what it has to beat.
+    /// The worst quality of the fill is not above the bar.
     Quality {
-        /// What it has to beat.
+        /// The bar.
         before: f64,
-        /// The worst of the fill.
+        /// The worst quality of the fill.
         after: f64,
     },
     /// A tet of the fill is flat or inverted.
     NotPositive([VertexId; 4]),
-    /// A facet of the cavity's boundary has no tet of the fill behind it, or one of the fill nothing behind it.
+    /// A facet of the cavity's boundary has no tet of the fill behind it, or a facet of the fill has nothing
+    /// behind it.
     Open([VertexId; 3]),
     /// More than two tets would share this facet, or two would lie on one side of it.
     Crowded([VertexId; 3]),
-    /// An edge or a facet would come that is there already, outside the cavity: possible only where tets overlap.
+    /// An edge or a facet to be inserted exists already outside the cavity: possible only where tets overlap.
     Exists([VertexId; 2]),
-    /// A wall would go although the surface is to be kept.
+    /// A wall that has to stay would be removed.
     Wall([VertexId; 3]),
     /// A tet would change its region.
     Region([VertexId; 3]),
-    /// A vertex would be without a tet, unsaid.
+    /// A vertex would be left without a tet, and is not declared removed.
     Vertex(VertexId),
-    /// A vertex that is held would move or go.
+    /// A constrained vertex would be moved or removed.
     Held(VertexId),
-    /// A tet that is locked would go.
+    /// A locked tet would be removed.
     Locked(TetId),
-    /// An edge that must stay would go.
+    /// An edge that must stay would be removed.
     Edge([VertexId; 2]),
 }
 
@@ -61,13 +62,13 @@ impl fmt::Display for Reject {
     }
 }
 
-/// A change that may be made, and how its tets are joined: what [`Complex::commit`] takes.
+/// A change that passed the check, and how its tets are joined: the input of [`Complex::commit`].
 #[derive(Debug)]
 pub struct Checked<'a> {
     pub(super) change: &'a Change,
     pub(super) joints: Vec<Joint>,
     pub(super) lost_walls: Vec<WallId>,
-    /// Lower vertex first.
+    /// The edges of lost lines, lower vertex first.
     pub(super) lost_lines: Vec<[VertexId; 2]>,
 }
 
@@ -78,27 +79,27 @@ pub(super) enum Joint {
     Inner([FillFacet; 2]),
     /// A tet of the fill and one outside.
     Outer(FillFacet, HalfFacet),
-    /// A tet of the fill at a wall, in place of this facet of a tet of the cavity.
+    /// A tet of the fill at a wall, in place of this facet of a cavity tet.
     AtWall(FillFacet, WallId, HalfFacet),
     /// A wall within the cavity, with a tet of the fill in place of each of its sides.
     InnerWall([FillFacet; 2], WallId),
-    /// A wall that comes, with one or two tets of the fill.
+    /// A new wall, with one or two tets of the fill.
     NewWall(FillFacet, Option<FillFacet>, NewWall),
-    /// A wall that comes on a tet outside, with a tet of the fill on its other side or nothing.
+    /// A new wall on a tet outside, with a tet of the fill on its other side or nothing.
     Bared(HalfFacet, Option<FillFacet>, NewWall),
 }
 
-/// A tet of the fill, by its place, and one of its facets.
+/// A tet of the fill, by index, and one of its facets.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FillFacet {
     pub(super) tet: u32,
     pub(super) facet: u8,
 }
 
-/// One use of a facet, in the sorted list in which they meet.
+/// One use of a facet, in the sorted list where all uses of a facet are adjacent.
 #[derive(Clone, Copy, Debug)]
 struct Use {
-    /// Vertices in rising order.
+    /// The vertices of the facet, sorted.
     key: [VertexId; 3],
     /// Whether `key` is an even permutation of the facet as seen from outside its tet.
     is_even: bool,
@@ -109,29 +110,29 @@ struct Use {
 enum Role {
     /// A facet between the cavity and a tet outside.
     Outer(HalfFacet, HalfFacet),
-    /// A wall of the cavity with no cavity on its other side.
+    /// A wall of the cavity whose other side is not in the cavity.
     AtWall(HalfFacet, WallId),
     /// A wall with the cavity on both sides.
     InnerWall(HalfFacet, WallId),
-    /// A wall to come, by its place.
+    /// A new wall, by index.
     NewWall(u32),
     /// A facet of the fill.
     Fill(u32, u8),
 }
 
 impl Complex {
-    /// Checks a change; the worst quality has to rise.
+    /// Checks a change that has to raise the worst quality.
     ///
     /// # Errors
-    /// The first reason not to make it.
+    /// The first reason to refuse it.
     pub fn check<'a>(&self, change: &'a Change) -> Result<Checked<'a>, Reject> {
         self.check_against(change, self.worst_of(&change.cavity))
     }
 
-    /// Checks a change; the worst quality has to be above `bar`.
+    /// Checks a change whose worst quality has to be above `bar`.
     ///
     /// # Errors
-    /// The first reason not to make it.
+    /// The first reason to refuse it.
     pub fn check_against<'a>(&self, change: &'a Change, bar: f64) -> Result<Checked<'a>, Reject> {
         let after = change.worst();
         if after <= bar {
@@ -175,7 +176,8 @@ impl Complex {
         if let Some(v) = moved.filter(|&v| is_held(v)) {
             return Err(Reject::Held(v));
         }
-        // Where tets overlap, tets of a vertex may hang together by it alone: no walk by facets finds them all.
+        // Where tets overlap, the tets of a vertex may be connected by the vertex only: no walk through
+        // facets finds all of them.
         if let Some(v) = moved.filter(|_| self.is_tangled) {
             let n = change.cavity.iter().filter(|&&t| self.vertices(t).contains(&v)).count();
             if n != self.vertex_to_n_tets[v.index()] as usize {

@@ -11,7 +11,7 @@ use crate::kernel::lines::{Line, rising};
 use crate::kernel::link::{HalfFacet, Link, NO_TRIANGLE, Wall, WallId};
 
 impl Complex {
-    /// Makes a change. `came` gets the ids of the tets of the fill, in their order.
+    /// Makes a checked change. `came` gets the ids of the tets of the fill, in their order.
     pub fn commit(&mut self, checked: Checked, came: &mut Vec<TetId>) {
         let Checked { change, joints, lost_walls, lost_lines } = checked;
         self.commit_vertex(change.vertex);
@@ -97,7 +97,7 @@ impl Complex {
         self.note(|_| Entry::FreedTet);
     }
 
-    /// Writes the vertices of a slot, and counts them.
+    /// Sets the vertices of a slot, and updates the number of tets of each vertex.
     pub(super) fn set_vertices(&mut self, tet: TetId, vertices: [VertexId; 4]) {
         let before = std::mem::replace(&mut self.tets[tet.index()], vertices);
         if before != FREE {
@@ -158,7 +158,7 @@ impl Complex {
         self.set_wall(id, Wall { sides, patch: new.patch, triangle: new.triangle, is_new: true });
     }
 
-    /// Writes a wall, and the links of the tets at it.
+    /// Sets a wall, and the links of the tets at it.
     fn set_wall(&mut self, id: WallId, wall: Wall) {
         self.note(|c| Entry::Wall(id, c.walls[id.index()]));
         self.walls[id.index()] = wall;

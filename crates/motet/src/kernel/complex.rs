@@ -1,4 +1,5 @@
-//! Tets that can be changed: with what lies behind each facet, and a free list.
+//! A tet mesh that can be changed: it knows what lies behind each facet, and keeps free lists of unused
+//! slots.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -9,39 +10,39 @@ use crate::kernel::journal::Journal;
 use crate::kernel::lines::{Lines, rising};
 use crate::kernel::link::{Behind, HalfFacet, Link, Wall, WallId};
 
-/// What holds a vertex.
+/// The constraint on a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Hold {
-    /// Nothing: it lies inside and may move or go.
+    /// None: the vertex lies inside, and may be moved or removed.
     Free,
-    /// A smooth part of a wall.
+    /// The vertex lies on a smooth part of a wall.
     Surface,
-    /// A feature edge: between two patches, or where a wall has a crease.
+    /// The vertex lies on a feature edge: between two patches, or where a wall has a crease.
     Edge,
-    /// Everything: it stays.
+    /// The vertex stays.
     Fixed,
 }
 
-/// Tets with neighbours, walls and labels, and a memory of which of them are as they came.
+/// Tets with neighbours, walls and labels, and a record of which of them are unchanged.
 ///
-/// Ids stay while a tet or vertex lives; those of the gone are given to later ones.
+/// Ids are valid while a tet or vertex exists; those of removed ones are reused.
 #[derive(Clone, Debug)]
 pub struct Complex {
     pub(super) points: Vec<Point>,
     pub(super) holds: Vec<Hold>,
-    /// A tet of each vertex; [`NO_TET`] for those without.
+    /// One tet of each vertex; [`NO_TET`] for vertices without tets.
     pub(super) vertex_to_tet: Vec<TetId>,
-    /// How many tets each vertex has: where tets overlap, more than hang together by facets at it.
+    /// How many tets each vertex has: where tets overlap, more than are connected through facets at it.
     pub(super) vertex_to_n_tets: Vec<u32>,
     pub(super) tets: Vec<[VertexId; 4]>,
     pub(super) links: Vec<[Link; 4]>,
     pub(super) regions: Vec<i32>,
-    /// [`UNMEASURED`] until somebody has asked.
+    /// The quality of each tet; [`UNMEASURED`] until it is first requested.
     pub(super) qualities: Vec<Cell<f64>>,
-    /// The first mesh's qualities, nearly.
+    /// Approximate qualities of the tets of the first mesh.
     pub(super) rough: Vec<f32>,
-    /// Whether a tet is not one of the first mesh; one whose vertex has moved is not.
+    /// Whether a tet is not one of the first mesh, or has a vertex that moved.
     pub(super) is_new: Vec<bool>,
     /// Whether a vertex is not one of the first mesh, or has moved.
     pub(super) vertex_is_new: Vec<bool>,
@@ -51,30 +52,31 @@ pub struct Complex {
     pub(super) free_vertices: Vec<VertexId>,
     pub(super) free_tets: Vec<TetId>,
     pub(super) free_walls: Vec<WallId>,
-    /// Tets that no change may touch; empty where there is none.
+    /// Marks tets that no change may touch; empty if there are none.
     pub(super) is_locked: Vec<bool>,
-    /// Edges that stay although no wall holds them, lower vertex first, in rising order.
+    /// Edges that stay although they are not on a wall, lower vertex first, sorted.
     pub(super) fixed_edges: Vec<[VertexId; 2]>,
     /// Labelled edges.
     pub(super) lines: Lines,
-    /// Walls that no change may remove; empty where there is none.
+    /// Marks walls that no change may remove; empty if there are none.
     pub(super) is_fixed_wall: Vec<bool>,
-    /// New tets of these qualities count as good where walls force them; see [`Complex::spare`].
+    /// New tets of these qualities are exempt if walls force them; see [`Complex::spare`].
     pub(super) spared: Range<f64>,
     /// Tets of the first mesh that are folded over others, in rising order.
     pub(super) folded: Vec<TetId>,
     /// Whether walls stay as they are, and the vertices on them.
     pub(super) keeps_surface: bool,
-    /// Whether a tet of the first mesh was flat or inverted, or the tets of a vertex did not all hang together by facets: then tets may overlap.
+    /// Whether a tet of the first mesh was flat or inverted, or the tets of a vertex were not all connected
+    /// through facets: then tets may overlap.
     pub(super) is_tangled: bool,
-    /// Whether most tets of the first mesh are numbered the other way round.
+    /// Whether most tets of the first mesh are numbered with the opposite orientation.
     pub(super) mostly_turned: bool,
-    /// Triangles of the first mesh that are no walls any more.
+    /// Triangles of the first mesh that are no longer walls.
     pub(super) gone_triangles: Vec<u32>,
     pub(super) journal: Journal,
 }
 
-/// The quality of a tet of the first mesh that nobody has measured.
+/// The quality of a tet that has not been measured.
 pub(super) const UNMEASURED: f64 = f64::NAN;
 
 /// No tet.
@@ -83,38 +85,38 @@ pub(crate) const NO_TET: TetId = TetId(u32::MAX);
 pub(super) const FREE: [VertexId; 4] = [VertexId(u32::MAX); 4];
 
 impl Complex {
-    /// How many slots for tets there are, free ones included: ids are below.
+    /// The number of tet slots, including free ones; tet ids are below it.
     pub fn n_slots(&self) -> usize {
         self.tets.len()
     }
 
-    /// How many tets there are.
+    /// The number of tets.
     pub fn n_tets(&self) -> usize {
         self.tets.len() - self.free_tets.len()
     }
 
-    /// How many vertex ids there are, free ones included.
+    /// The number of vertex slots, including free ones; vertex ids are below it.
     pub fn n_vertex_slots(&self) -> usize {
         self.points.len()
     }
 
-    /// How many vertices belong to a tet.
+    /// The number of vertices that belong to a tet.
     pub fn n_used_vertices(&self) -> usize {
         self.vertex_to_tet.iter().filter(|&&t| t != NO_TET).count()
     }
 
-    /// How many vertices of tets nothing holds.
+    /// The number of free vertices that belong to a tet.
     pub fn n_free_vertices(&self) -> usize {
         let is_free = |(&tet, &hold): (&TetId, &Hold)| tet != NO_TET && hold == Hold::Free;
         self.vertex_to_tet.iter().zip(&self.holds).filter(|pair| is_free(*pair)).count()
     }
 
-    /// The tets that there are, in rising order.
+    /// The ids of all tets, in rising order.
     pub fn tets(&self) -> impl Iterator<Item = TetId> + Clone + '_ {
         (0..self.tets.len()).map(TetId::new).filter(|&t| self.is_alive(t))
     }
 
-    /// Whether there is a tet of this id.
+    /// Whether a tet with this id exists.
     #[inline]
     pub fn is_alive(&self, tet: TetId) -> bool {
         self.tets[tet.index()] != FREE
@@ -132,26 +134,26 @@ impl Complex {
         self.vertex_came[vertex.index()]
     }
 
-    /// The vertices of a tet: positive, unless it came inverted.
+    /// The vertices of a tet, in positive orientation unless the tet was given inverted.
     #[inline(always)]
     pub fn vertices(&self, tet: TetId) -> [VertexId; 4] {
         self.tets[tet.index()]
     }
 
-    /// The points of a tet.
+    /// The positions of the vertices of a tet.
     #[inline]
     pub fn corners(&self, tet: TetId) -> [Point; 4] {
         let [a, b, c, d] = self.tets[tet.index()];
         [self.points[a.index()], self.points[b.index()], self.points[c.index()], self.points[d.index()]]
     }
 
-    /// Where a vertex is.
+    /// The position of a vertex.
     #[inline(always)]
     pub fn point(&self, vertex: VertexId) -> Point {
         self.points[vertex.index()]
     }
 
-    /// What holds a vertex.
+    /// The constraint on a vertex.
     #[inline(always)]
     pub fn hold(&self, vertex: VertexId) -> Hold {
         self.holds[vertex.index()]
@@ -163,7 +165,7 @@ impl Complex {
         self.regions[tet.index()]
     }
 
-    /// The quality of a tet: see [`Self::measure`], and [`Self::spare`] for those that count as good.
+    /// The quality of a tet: see [`Self::measure`], and [`Self::spare`] for exempt tets.
     #[inline]
     pub fn quality(&self, tet: TetId) -> f64 {
         let known = &self.qualities[tet.index()];
@@ -173,7 +175,8 @@ impl Complex {
         known.get()
     }
 
-    /// The tets whose quality is below `bar`, in rising order. The first mesh's are looked at closely only where a rough look leaves a doubt.
+    /// The tets with quality below `bar`, in rising order of id. For tets of the first mesh, the exact
+    /// quality is computed only if the approximate one leaves a doubt.
     pub fn below(&self, bar: f64) -> Vec<TetId> {
         let limit = bar + ROUGH_EAS_ERROR;
         let is_doubtful = |t: &TetId| self.is_new[t.index()] || f64::from(self.rough[t.index()]) <= limit;
@@ -181,7 +184,7 @@ impl Complex {
         all.filter(|&t| self.is_alive(t) && self.quality(t) < bar).collect()
     }
 
-    /// The tet of the lowest quality, the first of equal ones; `None` where there is no tet.
+    /// The tet with the lowest quality, the first among equals; `None` if there are no tets.
     pub fn worst(&self) -> Option<(TetId, f64)> {
         let rough = |t: TetId| match self.is_new[t.index()] {
             true => self.quality(t),
@@ -192,7 +195,7 @@ impl Complex {
         nearly.map(|t| (t, self.quality(t))).min_by(|x, y| x.1.total_cmp(&y.1))
     }
 
-    /// The measure that everything here is judged by: EAS.
+    /// The quality measure: EAS.
     #[inline]
     pub fn measure(&self, tet: [Point; 4]) -> f64 {
         eas(tet)
@@ -230,19 +233,19 @@ impl Complex {
         &self.walls[wall.index()]
     }
 
-    /// The walls that there are, in rising order.
+    /// All walls, in rising order.
     pub fn walls(&self) -> impl Iterator<Item = (WallId, &Wall)> + '_ {
         let all = (0..).map(WallId).zip(&self.walls);
         all.filter(|(_, wall)| !wall.sides[0].is_none())
     }
 
-    /// Some tet of a vertex that belongs to one.
+    /// A tet of a vertex; [`NO_TET`] if it has none.
     #[inline]
     pub fn tet_of(&self, vertex: VertexId) -> TetId {
         self.vertex_to_tet[vertex.index()]
     }
 
-    /// The id that the next vertex to be inserted gets.
+    /// The id that the next inserted vertex gets.
     #[inline]
     pub fn next_vertex(&self) -> VertexId {
         match self.free_vertices.last() {
@@ -251,12 +254,12 @@ impl Complex {
         }
     }
 
-    /// Whether walls, and the vertices on them, must stay as they are: so it is at first.
+    /// Whether walls, and the vertices on them, must stay as they are. Initially true.
     pub fn keeps_surface(&self) -> bool {
         self.keeps_surface
     }
 
-    /// Lets no change touch a tet any more.
+    /// Forbids changes to touch a tet.
     pub fn lock(&mut self, tet: TetId) {
         if self.is_locked.is_empty() {
             self.is_locked = vec![false; self.tets.len()];
@@ -270,7 +273,7 @@ impl Complex {
         self.is_locked.get(tet.index()).is_some_and(|&locked| locked)
     }
 
-    /// Lets no change remove a wall any more. What lies beside it may change, but its vertices stay where they are.
+    /// Forbids changes to remove a wall. The tets beside it may change, but its vertices stay where they are.
     pub fn fix_wall(&mut self, wall: WallId) {
         if self.is_fixed_wall.is_empty() {
             self.is_fixed_wall = vec![false; self.walls.len()];
@@ -287,7 +290,7 @@ impl Complex {
         self.is_fixed_wall.get(wall.index()).is_some_and(|&fixed| fixed)
     }
 
-    /// Lets no change remove these edges any more; their vertices stay where they are.
+    /// Forbids changes to remove these edges; their vertices stay where they are.
     pub fn fix_edges(&mut self, edges: impl IntoIterator<Item = [VertexId; 2]>) {
         for edge in edges {
             self.fixed_edges.push(rising(edge));
@@ -296,28 +299,28 @@ impl Complex {
         self.fixed_edges.sort_unstable();
     }
 
-    /// Lets changes change walls and lines, and move and remove the vertices on them that are not fixed.
+    /// Allows changes to modify walls and lines, and to move and remove vertices on them that are not fixed.
     pub fn adapt_surface(&mut self) {
         self.keeps_surface = false;
     }
 
-    /// Lets no wall change from now on.
+    /// Forbids changes to modify walls from now on.
     pub fn keep_surface(&mut self) {
         self.keeps_surface = true;
     }
 
-    /// Whether an edge must stay although no wall holds it.
+    /// Whether an edge must stay although it is not on a wall.
     #[inline]
     pub fn is_fixed_edge(&self, a: VertexId, b: VertexId) -> bool {
         !self.fixed_edges.is_empty() && self.fixed_edges.binary_search(&[a.min(b), a.max(b)]).is_ok()
     }
 
-    /// Which place a vertex has in a tet that has it.
+    /// The local number of a vertex in a tet that has it.
     #[inline]
     pub fn place(&self, tet: TetId, vertex: VertexId) -> usize {
         let vertices = self.tets[tet.index()];
         debug_assert!(vertices.contains(&vertex));
-        // No search: three comparisons, no branch.
+        // Not a search: three comparisons, no branch.
         usize::from(vertices[1] == vertex)
             + 2 * usize::from(vertices[2] == vertex)
             + 3 * usize::from(vertices[3] == vertex)

@@ -1,46 +1,46 @@
-//! Plain arrays again, and what each of their rows was before.
+//! The extraction of plain arrays, and where each of their rows came from.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::kernel::complex::Complex;
 use crate::kernel::link::NO_TRIANGLE;
 use crate::mesh::TetMesh;
 
-/// Says that there was nothing before.
+/// Marks a row without a counterpart in the old mesh.
 pub const NEW: u32 = u32::MAX;
 
-/// A mesh after changes, beside the one before.
+/// A mesh after changes, compared with the one before.
 ///
-/// What stayed keeps its order, and its bits: tets that nothing touched come first, as they were, then those that came. Vertices that came
-/// stand in the places of those that went, then at the end.
+/// What stayed keeps its order and its bits: untouched tets come first, then new ones. New vertices take the
+/// places of removed ones, the rest follow at the end.
 #[derive(Clone, Debug, Default)]
 pub struct Extract {
-    /// The mesh.
+    /// The new mesh.
     pub mesh: TetMesh,
-    /// For each tet the one it was before, or [`NEW`].
+    /// For each tet its id in the old mesh, or [`NEW`].
     pub tet_to_old: Vec<u32>,
-    /// For each vertex the one it was before, or [`NEW`].
+    /// For each vertex its id in the old mesh, or [`NEW`].
     pub vertex_to_old: Vec<u32>,
-    /// For each triangle the one it was before, or a part of.
+    /// For each triangle the old one that it was, or is part of.
     pub triangle_to_old: Vec<u32>,
-    /// For each line the one it was before, or a part of.
+    /// For each line the old one that it was, or is part of.
     pub line_to_old: Vec<u32>,
-    /// The tets of the complex that came, in the order in which they stand at the end of the mesh.
+    /// Ids in the complex of the new tets, in their order at the end of the mesh.
     pub came: Vec<TetId>,
-    /// Tets of the mesh before that are no more, in rising order.
+    /// Tets of the old mesh that were removed, in rising order.
     pub gone_tets: Vec<TetId>,
-    /// Vertices of the mesh after that came or moved, in rising order.
+    /// Vertices of the new mesh that were inserted or moved, in rising order.
     pub changed_vertices: Vec<VertexId>,
 }
 
 impl Extract {
-    /// Which tet of the mesh a tet of the complex is.
+    /// The id in the mesh of a tet of the complex.
     pub fn tet(&self, tet: TetId) -> TetId {
         let n_kept = self.tet_to_old.len() - self.came.len();
         let place = self.came.binary_search(&tet).map(|i| n_kept + i);
         TetId::new(place.or_else(|_| self.tet_to_old[..n_kept].binary_search(&tet.0)).unwrap_or_default())
     }
 
-    /// Where each vertex of the mesh before is now; [`NEW`] for those that are no more.
+    /// The new id of each vertex of the old mesh; [`NEW`] for removed ones.
     pub fn old_to_vertex(&self, n_old: usize) -> Vec<u32> {
         let mut old_to_vertex = vec![NEW; n_old];
         for (new, &old) in (0..).zip(&self.vertex_to_old).filter(|(_, old)| **old != NEW) {
@@ -51,7 +51,7 @@ impl Extract {
 }
 
 impl Complex {
-    /// The mesh that `first` has become, of which this was made.
+    /// The mesh as it is now; `first` is the mesh that the complex was made of.
     pub fn extract(&self, first: &TetMesh) -> Extract {
         let mut extract = Extract::default();
         let old_to_new = self.extract_vertices(first.points.len(), &mut extract);
@@ -83,7 +83,8 @@ impl Complex {
         extract
     }
 
-    /// The points without those that went; where each is now, unless none went.
+    /// Extracts the points without removed ones; returns the new id of each vertex, or an empty list if none
+    /// was removed.
     fn extract_vertices(&self, n_first: usize, extract: &mut Extract) -> Vec<VertexId> {
         let mut is_gone = vec![false; if self.free_vertices.is_empty() { 0 } else { self.points.len() }];
         self.free_vertices.iter().for_each(|v| is_gone[v.index()] = true);
@@ -98,7 +99,7 @@ impl Complex {
                 }
             }
             points.push(self.points[v]);
-            // One that moved is still the vertex that it was, one that took the place of another is not.
+            // A vertex that moved is still the same vertex; one in the slot of a removed vertex is not.
             extract.vertex_to_old.push(if v < n_first && !self.vertex_came[v] { v as u32 } else { NEW });
             if self.vertex_is_new[v] {
                 extract.changed_vertices.push(new_id);
@@ -108,7 +109,7 @@ impl Complex {
         old_to_new
     }
 
-    /// Lines that are as they were, in their order, then those that came.
+    /// Extracts unchanged lines in their order, then the new ones.
     fn extract_lines(&self, first: &TetMesh, new_id: impl Fn(VertexId) -> VertexId, extract: &mut Extract) {
         let mut push = |vertices: [VertexId; 2], old: u32| {
             extract.mesh.lines.push(vertices.map(&new_id));
@@ -128,7 +129,7 @@ impl Complex {
         }
     }
 
-    /// Triangles whose walls are as they were, in their order, then those that came.
+    /// Extracts triangles whose walls are unchanged in their order, then the new ones.
     fn extract_triangles(
         &self,
         first: &TetMesh,

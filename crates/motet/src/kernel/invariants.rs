@@ -1,4 +1,4 @@
-//! Everything that must hold of a complex at any time, each by name: for tests.
+//! All invariants of a complex, checked by name: for tests.
 
 use std::collections::{HashMap, HashSet};
 
@@ -9,10 +9,10 @@ use crate::kernel::lines::rising;
 use crate::kernel::link::{Behind, HalfFacet};
 
 impl Complex {
-    /// Looks everything over, in time proportional to the whole mesh.
+    /// Checks all invariants, in time proportional to the size of the mesh.
     ///
     /// # Errors
-    /// The first fault, in words.
+    /// The first violation, described in words.
     pub fn verify(&self) -> Result<(), String> {
         self.verify_slots()?;
         self.verify_links()?;
@@ -147,7 +147,7 @@ mod tests {
         complex
     }
 
-    /// A facet of a tet with a plain one behind it, or with a wall.
+    /// The first facet of a tet that is a wall, or that is not.
     fn facet(c: &Complex, is_wall: bool) -> (TetId, usize) {
         let all = c.tets().flat_map(|t| (0..4).map(move |i| (t, i)));
         all.into_iter().find(|&(t, i)| c.is_wall(t, i) == is_wall).unwrap()

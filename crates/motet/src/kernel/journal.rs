@@ -1,11 +1,11 @@
-//! What was overwritten, in order, so that it can be taken back to the bit.
+//! A record of overwritten values, in order, so that changes can be undone to the bit.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::kernel::complex::{Complex, Hold};
 use crate::kernel::lines::Line;
 use crate::kernel::link::{Link, Wall, WallId};
 
-/// One thing that was there before.
+/// One recorded value.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Entry {
     Tet(TetId, TetRecord),
@@ -44,25 +44,25 @@ pub(super) struct VertexRecord {
     pub(super) came: bool,
 }
 
-/// The entries, while it is open.
+/// The entries; they are recorded while the journal is open.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Journal {
     pub(super) is_open: bool,
     pub(super) entries: Vec<Entry>,
 }
 
-/// A moment to go back to.
+/// A moment that [`Complex::undo`] can return to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Mark(usize);
 
 impl Complex {
-    /// Begins to write down what is overwritten, if that has not begun, and marks this moment.
+    /// Starts to record what is overwritten, if that has not begun, and marks this moment.
     pub fn mark(&mut self) -> Mark {
         self.journal.is_open = true;
         Mark(self.journal.entries.len())
     }
 
-    /// Forgets all marks: nothing that has happened can be taken back any more.
+    /// Discards the journal and all marks: nothing that has happened can be undone any more.
     pub fn forget(&mut self) {
         self.journal = Journal::default();
     }
@@ -75,9 +75,9 @@ impl Complex {
         }
     }
 
-    /// Takes everything back that was committed since `mark`: every array is as it was then, to the bit.
+    /// Undoes everything that was committed since `mark`: every array is as it was then, to the bit.
     ///
-    /// Panics when `mark` is no moment of this journal.
+    /// Panics if `mark` does not belong to this journal.
     pub fn undo(&mut self, Mark(mark): Mark) {
         assert!(mark <= self.journal.entries.len(), "a mark of another journal");
         for entry in self.journal.entries.drain(mark..).rev().collect::<Vec<_>>() {

@@ -1,8 +1,10 @@
-//! Lines: labelled edges, as walls are labelled facets. A line is divided with its edge and merged with its neighbour, and it is never lost.
+//! Lines: labelled edges, as walls are labelled facets. A line is divided with its edge and merged with its
+//! neighbour, and never lost.
 //!
-//! Lines change only where the surface may. Which lines a change removes follows from its cavity and its fill; an operation proposes those that it inserts.
-//! Both together, label by label, must meet every vertex an even number of times: then each label runs from where it began to where it ended, through the
-//! same junctions.
+//! Lines change only where the surface may. The lines that a change removes follow from its cavity and its
+//! fill; an operation proposes those to insert. Removed and inserted lines together, label by label, must
+//! meet every vertex an even number of times: then each label runs from where it began to where it ended,
+//! through the same junctions.
 
 use std::collections::BTreeMap;
 
@@ -18,9 +20,10 @@ use crate::mesh::TetMesh;
 /// An edge that is a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// What it is: the lines of the first mesh on one edge, by the number of that edge; see [`Complex::lines_of_first`].
+    /// Identifies the lines of the first mesh on one edge, by the number of that edge; see
+    /// [`Complex::lines_of_first`].
     pub source: u32,
-    /// Whether it is not one of the first mesh.
+    /// Whether the line is not one of the first mesh.
     pub is_new: bool,
 }
 
@@ -29,11 +32,11 @@ pub struct Line {
 pub(super) struct Lines {
     /// The lines by their edges, lower vertex first.
     of_edges: HashMap<[VertexId; 2], Line>,
-    /// For each edge of the first mesh that was a line, the lines on it, rising.
+    /// For each edge of the first mesh that was a line, the lines on it, in rising order.
     pub(super) sources: Vec<Vec<u32>>,
-    /// For each of these a number that it shares with those of the same labels.
+    /// For each of [`Self::sources`], a number shared by all sources with the same labels.
     labels: Vec<u32>,
-    /// Sources that are no lines as they were any more.
+    /// Sources whose line was removed or replaced.
     pub(super) removed: Vec<u32>,
 }
 
@@ -42,7 +45,7 @@ pub(super) fn rising([a, b]: [VertexId; 2]) -> [VertexId; 2] {
 }
 
 impl Lines {
-    /// The lines of a mesh, and the vertices of those that are no edges of a tet.
+    /// The lines of a mesh, and the vertices of lines that are not edges of a tet.
     pub(super) fn of(mesh: &TetMesh) -> (Self, Vec<VertexId>) {
         let mut lines = Self::default();
         if mesh.lines.is_empty() {
@@ -81,7 +84,7 @@ impl Lines {
         self.sources.is_empty()
     }
 
-    /// Writes what an edge is, and returns what it was.
+    /// Sets or removes the line on an edge; returns the previous one.
     pub(super) fn set(&mut self, edge: [VertexId; 2], line: Option<Line>) -> Option<Line> {
         match line {
             Some(line) => self.of_edges.insert(edge, line),
@@ -91,13 +94,13 @@ impl Lines {
 }
 
 impl Complex {
-    /// Whether there is any line.
+    /// Whether there are any lines.
     #[inline]
     pub fn has_lines(&self) -> bool {
         !self.lines.is_empty()
     }
 
-    /// The line that an edge is.
+    /// The line on an edge, if it is one.
     #[inline]
     pub fn line(&self, a: VertexId, b: VertexId) -> Option<Line> {
         if self.lines.is_empty() {
@@ -106,12 +109,12 @@ impl Complex {
         self.lines.of_edges.get(&rising([a, b])).copied()
     }
 
-    /// A number that lines of the same labels share, by the source of one.
+    /// A number shared by all lines with the same labels, given the source of a line.
     pub fn line_label(&self, source: u32) -> u32 {
         self.lines.labels[source as usize]
     }
 
-    /// The vertices that lines join to a vertex, whose tets are `star`; rising.
+    /// The vertices that lines join to a vertex with the tets `star`, in rising order.
     pub fn line_neighbors(&self, star: &[TetId], vertex: VertexId) -> Vec<VertexId> {
         if self.lines.is_empty() {
             return Vec::new();
@@ -123,31 +126,32 @@ impl Complex {
         others
     }
 
-    /// All lines with their edges, by rising vertices.
+    /// All lines with their edges, sorted by vertices.
     pub fn lines(&self) -> Vec<([VertexId; 2], Line)> {
         let mut lines: Vec<_> = self.lines.of_edges.iter().map(|(&edge, &line)| (edge, line)).collect();
         lines.sort_unstable_by_key(|(edge, _)| *edge);
         lines
     }
 
-    /// The lines of the first mesh that a line is, or is a part of.
+    /// The lines of the first mesh that a line is, or is part of.
     pub fn lines_of_first(&self, line: Line) -> &[u32] {
         &self.lines.sources[line.source as usize]
     }
 
-    /// Whether no change may remove an edge, other than by dividing or merging a line where the surface may change.
+    /// Whether no change may remove an edge, except by dividing or merging a line where the surface may
+    /// change.
     #[inline]
     pub fn is_kept_edge(&self, a: VertexId, b: VertexId) -> bool {
         self.is_fixed_edge(a, b) || self.line(a, b).is_some()
     }
 
-    /// Whether an edge may be divided: it is not fixed, and no line where the surface is kept.
+    /// Whether an edge may be divided: it is not fixed, and not a line if the surface is kept.
     #[inline]
     pub fn may_divide(&self, a: VertexId, b: VertexId) -> bool {
         !(self.is_fixed_edge(a, b) || self.keeps_surface && self.line(a, b).is_some())
     }
 
-    /// Lines hold their vertices as features do; those that are no edges of a tet fix theirs.
+    /// Constrains the vertices of lines as features do; fixes those of lines that are not edges of a tet.
     pub(super) fn hold_lines(&mut self, loose: &[VertexId]) {
         for v in self.lines().into_iter().flat_map(|(edge, _)| edge) {
             self.holds[v.index()] = self.holds[v.index()].max(Hold::Edge);
@@ -155,7 +159,8 @@ impl Complex {
         loose.iter().for_each(|v| self.holds[v.index()] = Hold::Fixed);
     }
 
-    /// Checks edges that must stay; the lines that a change removes, each edge once.
+    /// Checks that a change removes no edge that must stay; returns the edges of the lines that it removes,
+    /// each once.
     pub(super) fn check_edges(&self, change: &Change) -> Result<Vec<[VertexId; 2]>, Reject> {
         let mut removed = Vec::new();
         if self.fixed_edges.is_empty() && self.lines.is_empty() {
@@ -184,7 +189,8 @@ impl Complex {
         Ok(removed)
     }
 
-    /// Whether every label goes on where it ended and where it began: removed and new lines of it meet each vertex an even number of times.
+    /// Checks that every label still runs from where it began to where it ended: its removed and new lines
+    /// meet each vertex an even number of times.
     fn check_runs(&self, removed: &[[VertexId; 2]], new: &[NewLine]) -> Result<(), Reject> {
         let mut ends: Vec<(u32, VertexId)> = Vec::new();
         for &edge in removed {

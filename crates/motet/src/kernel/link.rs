@@ -6,7 +6,7 @@
 //!                        all ones but bit 31: see below
 //!     bit 31 set     ->  a wall, which knows the tets on its two sides
 //! ```
-//! Nearly all facets of a mesh are plain, and cost nothing more; the walls are a list of their own.
+//! Nearly all facets of a mesh are plain and need no more than this; walls are stored in a list of their own.
 
 use crate::base::TetId;
 
@@ -15,7 +15,7 @@ use crate::base::TetId;
 pub struct HalfFacet(pub(super) u32);
 
 impl HalfFacet {
-    /// Beyond the boundary.
+    /// No facet: what lies beyond the boundary.
     pub const NONE: Self = Self(u32::MAX >> 1);
 
     /// Facet `i` of a tet.
@@ -31,20 +31,20 @@ impl HalfFacet {
         TetId(self.0 >> 2)
     }
 
-    /// Which of its facets.
+    /// The number of the facet in its tet.
     #[inline(always)]
     pub fn facet(self) -> usize {
         (self.0 & 3) as usize
     }
 
-    /// Whether there is no tet.
+    /// Whether this is [`Self::NONE`].
     #[inline(always)]
     pub fn is_none(self) -> bool {
         self == Self::NONE
     }
 }
 
-/// A wall, by its place in the list.
+/// A wall, by its index in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct WallId(pub u32);
 
@@ -60,22 +60,22 @@ impl WallId {
 pub struct Wall {
     /// The facets of the tets on its sides; on the boundary the second is [`HalfFacet::NONE`].
     pub sides: [HalfFacet; 2],
-    /// Its patch; 0 without a label.
+    /// The patch of the wall; 0 without a label.
     pub patch: i32,
-    /// The triangle of the first mesh that it is, or is a part of; `u32::MAX` where there was none.
+    /// The triangle of the first mesh that the wall is, or is part of; `u32::MAX` if there was none.
     pub triangle: u32,
-    /// Whether it is not one of the first mesh.
+    /// Whether the wall is not one of the first mesh.
     pub is_new: bool,
 }
 
-/// A wall that is no triangle of the mesh.
+/// Marks a wall without a triangle in the mesh.
 pub(crate) const NO_TRIANGLE: u32 = u32::MAX;
 
 impl Wall {
     pub(super) const FREE: Self =
         Self { sides: [HalfFacet::NONE; 2], patch: 0, triangle: NO_TRIANGLE, is_new: false };
 
-    /// The side that is not `side`.
+    /// The side opposite `side`.
     #[inline(always)]
     pub fn other(&self, side: HalfFacet) -> HalfFacet {
         if self.sides[0] == side { self.sides[1] } else { self.sides[0] }
@@ -91,13 +91,13 @@ pub enum Behind {
     Wall(WallId),
 }
 
-/// [`Behind`] in four bytes.
+/// [`Behind`], packed into four bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Link(pub(super) u32);
 
 const WALL: u32 = 1 << 31;
 
-/// Ids of tets are below this.
+/// Tet ids are below this.
 pub(super) const MAX_TETS: u32 = (1 << 29) - 1;
 
 impl Link {

@@ -1,13 +1,15 @@
 //! Floor 4: the only code that changes the connectivity of tets.
 //!
-//! A [`Complex`] holds tets with what lies behind each of their facets. Whoever wants to change it *proposes* a
-//! [`Change`]: the tets to go (the cavity), the tets to come (the fill), and what happens to a vertex. [`Complex::check`]
-//! holds it against everything that must never happen, and answers with a [`Checked`] change or with a [`Reject`].
-//! [`Complex::commit`] takes nothing but a checked one. What a journal has written down, [`Complex::undo`] takes back, to the bit.
+//! A [`Complex`] holds tets, and for each of their facets what lies behind it. Code that wants to change it
+//! *proposes* a [`Change`]: the tets to remove (the cavity), the tets to insert (the fill), and what happens
+//! to one vertex. [`Complex::check`] tests it against everything that must never happen, and returns a
+//! [`Checked`] change or a [`Reject`]. [`Complex::commit`] accepts only a checked change. [`Complex::undo`]
+//! restores what a journal has recorded, to the bit.
 //!
-//! What must never happen: a tet of the fill that is not positive; a facet of the cavity's boundary that the fill
-//! does not have, or the reverse; a wall (boundary, interface or labelled facet) or a line (labelled edge) that gets lost or appears; a tet that changes
-//! sides; a vertex that gets lost unsaid; a worst quality that does not rise.
+//! What must never happen: a tet of the fill that is not positive; a facet of the cavity's boundary that the
+//! fill lacks, or the reverse; a wall (boundary, interface or labelled facet) or a line (labelled edge) that
+//! is lost or appears; a tet that changes its region; a vertex that is lost without being declared removed; a
+//! worst quality that does not rise.
 
 mod build;
 mod change;

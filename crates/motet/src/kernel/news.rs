@@ -1,4 +1,5 @@
-//! Whether edges and facets that a change brings are there already, outside its cavity: possible only where tets overlap.
+//! Whether edges and facets that a change inserts exist already, outside its cavity: possible only where tets
+//! overlap.
 
 use std::collections::HashSet;
 
@@ -9,7 +10,8 @@ use crate::kernel::check::Reject;
 use crate::kernel::complex::Complex;
 
 impl Complex {
-    /// Edges and facets that come must not be there already. Where all tets are positive none can be: it would lie within the cavity, with other tets.
+    /// Checks that new edges and facets do not exist already. If all tets are positive none can: it would lie
+    /// within the cavity, inside other tets.
     pub(super) fn check_news(&self, change: &Change) -> Result<(), Reject> {
         let mut stars = Stars { complex: self, known: Vec::new() };
         let is_in_cavity = |vertices: &[VertexId]| {
@@ -32,17 +34,18 @@ impl Complex {
     }
 }
 
-/// The tets of some vertices, each list walked once: a vertex of the fill is asked for by many edges and facets.
+/// The stars of some vertices, each walked once: many edges and facets query the same vertex of the fill.
 struct Stars<'a> {
     complex: &'a Complex,
     known: Vec<(VertexId, Vec<TetId>)>,
 }
 
 impl Stars<'_> {
-    /// Whether a tet that is not in the cavity has all of some vertices, or may have: where the tets of the first do not all hang together by facets.
+    /// Whether a tet outside the cavity has all the vertices, or may have them because the tets of the first
+    /// one are not all connected through facets.
     fn has_outside(&mut self, vertices: &[VertexId], change: &Change) -> bool {
         let complex = self.complex;
-        // A vertex to come is not in the lists yet, or has no tet.
+        // A new vertex is not in the lists yet, or has no tet.
         let is_there = |v: &VertexId| v.index() < complex.points.len() && complex.is_used(*v);
         if !vertices.iter().all(is_there) {
             return false;
@@ -62,7 +65,7 @@ impl Stars<'_> {
     }
 }
 
-/// The tets of a vertex that hang together by facets at it.
+/// The tets of a vertex that are connected through facets at it.
 fn walked(complex: &Complex, vertex: VertexId) -> Vec<TetId> {
     let mut star = vec![complex.tet_of(vertex)];
     let mut is_found: HashSet<TetId> = star.iter().copied().collect();

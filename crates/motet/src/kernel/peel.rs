@@ -1,4 +1,5 @@
-//! Tets removed that are folded over a mesh and hang on it by one facet: they fill no room that it does not fill already.
+//! Removal of tets that are folded over a mesh and attached to it by one facet only: they fill no space that
+//! it does not fill already.
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::change::NewWall;
@@ -6,11 +7,12 @@ use crate::kernel::complex::{Complex, FREE, Hold, NO_TET};
 use crate::kernel::link::{Behind, HalfFacet, NO_TRIANGLE, Wall};
 
 impl Complex {
-    /// Removes the tets of the first mesh that are folded over others and have no tet behind three of their facets, one after the other; returns how many.
-    /// The facet behind which there is a tet bounds the mesh then.
+    /// Removes, one after the other, the tets of the first mesh that are folded over others and have no tet
+    /// behind three of their facets; returns how many. The facet towards the remaining tet then becomes
+    /// boundary.
     ///
-    /// A tet that a motion has inverted stays, and so does one with a labelled triangle at an outer facet or a fixed vertex of its own: the boundary there was
-    /// given.
+    /// A tet that a motion has inverted stays, and so does one with a labelled triangle on an outer facet or
+    /// with a fixed vertex that the remaining tet does not share: the boundary there was given.
     pub fn peel(&mut self) -> usize {
         let mut folded = std::mem::take(&mut self.folded);
         let n_folded = folded.len();
@@ -29,7 +31,7 @@ impl Complex {
         }
     }
 
-    /// The one facet behind a tet that may be peeled.
+    /// The facet of the only neighbour of a tet, if the tet may be peeled.
     fn peelable(&self, tet: TetId) -> Option<HalfFacet> {
         let mut behind = (0..4).map(|i| self.across(tet, i)).filter(|half| !half.is_none());
         let (Some(only), None) = (behind.next(), behind.next()) else { return None };

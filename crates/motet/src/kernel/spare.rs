@@ -1,9 +1,11 @@
-//! Tets that walls force count as good.
+//! Exemption of tets that walls force: they count as good.
 //!
-//! Where two walls meet at an angle, the tet between them has that dihedral angle, whatever is done; and a tet on a narrow wall has its narrow angle.
-//! Nothing raises the quality of such a tet, and as the worst of every cavity around it, it would forbid each change that helps a neighbour. So such
-//! tets are marked, each by its id: the mark is the quality stored for it. A tet that a change puts in place of marked ones is judged again, by the
-//! walls it will have. The value of a quality marks nothing: elsewhere another tet can have the same one, and need repair.
+//! Where two walls meet at an angle, the tet between them has that dihedral angle, whatever is done; a tet on
+//! a narrow wall has its narrow angle. Nothing can raise the quality of such a tet, and as the worst of every
+//! cavity around it, it would block each change that helps a neighbour. So such tets are exempted, each by
+//! its id: the quality stored for it marks it. A tet that replaces exempt ones is judged anew, by the walls
+//! it will have. The quality alone exempts nothing: another tet elsewhere can have the same value and need
+//! repair.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -15,44 +17,46 @@ use crate::geometry::triangle;
 use crate::kernel::complex::{Complex, UNMEASURED};
 use crate::kernel::link::HalfFacet;
 
-/// The quality of a tet that is marked: above that of any tet.
+/// The quality stored for an exempt tet: above that of any tet.
 const SPARED: f64 = f64::INFINITY;
 
-/// A tet below this EAS is next to flat, and never counts as good: two walls of it may come to lie on each other.
+/// A tet below this EAS is nearly flat, and never counts as good: two of its walls may come to lie on each
+/// other.
 pub const FLATTEST: f64 = 1e-6;
 
-/// The qualities of tets to come that may count as good, where none may.
+/// The range of qualities of new tets that may be exempt when none may: empty.
 pub(super) const NONE_SPARED: Range<f64> = f64::INFINITY..f64::INFINITY;
 
-/// A quality within this of the highest that walls allow is as high as they allow.
+/// A quality within this of the highest that walls allow counts as reaching it.
 const NEARLY: f64 = 1e-6;
 
-/// Whether a tet of some `quality` is as good as walls allow that leave at most `best` to a tet between them.
+/// Whether `quality` reaches the highest quality `best` that walls allow.
 pub fn is_reached(quality: f64, best: f64) -> bool {
     quality > 0.0 && best - quality < NEARLY
 }
 
-/// The highest EAS of a tet of which a facet has an angle of so many degrees.
+/// The highest EAS of a tet with a facet that has an angle of this many degrees.
 pub fn best_at(degrees: f64) -> f64 {
     if degrees < 60.0 { degrees / 60.0 } else { (180.0 - degrees) / 120.0 }
 }
 
-/// What a facet of a tet is to the quality of the tet.
+/// The role of a facet in judging the quality of its tet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
     /// No wall.
     Inside,
     /// A wall whose angles may change.
     Wall,
-    /// A wall whose angles stay: any wall of a surface that is kept, otherwise one that a marked tet has.
+    /// A wall whose angles stay: any wall of a surface that is kept, otherwise a wall of an exempt tet.
     Firm,
 }
 
 impl Complex {
-    /// Counts `tets` as good from now on, and of the tets that changes insert those whose quality is below `limit`, not below the worst of `tets`, and as high as two
-    /// walls on both sides of the tet, or the angles of a wall that is [`Side::Firm`], allow. All until [`Self::spare_none`].
+    /// Exempts `tets`, which count as good from now on. New tets are exempt, too, if their quality is below
+    /// `limit`, not below the worst of `tets`, and as high as two walls on both sides of the tet, or the
+    /// angles of a wall that is [`Side::Firm`], allow. Ends with [`Self::spare_none`].
     ///
-    /// Cannot be taken back by [`Self::undo`].
+    /// Cannot be undone by [`Self::undo`].
     pub fn spare(&mut self, tets: &[TetId], limit: f64) {
         let worst = tets.iter().map(|&tet| self.measure(self.corners(tet))).fold(f64::INFINITY, f64::min);
         self.spared = worst.max(FLATTEST)..limit;
@@ -60,9 +64,9 @@ impl Complex {
         self.forget();
     }
 
-    /// Judges every tet by its quality again.
+    /// Ends all exemptions: every tet is judged by its quality again.
     ///
-    /// Cannot be taken back by [`Self::undo`].
+    /// Cannot be undone by [`Self::undo`].
     pub fn spare_none(&mut self) {
         self.spared = NONE_SPARED;
         let marked = self.qualities.iter_mut().filter(|quality| quality.get() == SPARED);
@@ -70,7 +74,7 @@ impl Complex {
         self.forget();
     }
 
-    /// How many tets are marked.
+    /// How many tets are exempt.
     pub fn n_spared(&self) -> usize {
         if self.spared == NONE_SPARED { 0 } else { self.tets().filter(|&tet| self.is_spared(tet)).count() }
     }
@@ -79,7 +83,8 @@ impl Complex {
         self.qualities[tet.index()].get() == SPARED
     }
 
-    /// The quality of a tet to come, whose facets will be `sides`: its EAS, unless walls force it and such tets are spared.
+    /// The quality of a new tet whose facets will be `sides`: its EAS, or the mark of an exempt tet if walls
+    /// force it and such tets are exempt.
     #[inline]
     pub fn judge(&self, corners: [Point; 4], sides: impl Fn(usize) -> Side) -> f64 {
         let quality = self.measure(corners);
@@ -87,7 +92,7 @@ impl Complex {
         if may_be_spared && is_forced(corners, quality, sides) { SPARED } else { quality }
     }
 
-    /// What facet `i` of a tet is.
+    /// The role of facet `i` of a tet.
     pub fn side(&self, tet: TetId, i: usize) -> Side {
         match self.is_wall(tet, i) {
             false => Side::Inside,
@@ -96,7 +101,7 @@ impl Complex {
         }
     }
 
-    /// What the facet with these vertices, in rising order, is to those of `tets` that have it.
+    /// The role of the facet with these sorted vertices for those of `tets` that have it.
     pub fn side_of(&self, tets: &[TetId], vertices: [VertexId; 3]) -> Side {
         let facets = tets.iter().flat_map(|&tet| (0..4).map(move |i| (tet, i)));
         let same = facets.filter(|&(tet, i)| {
@@ -106,14 +111,14 @@ impl Complex {
     }
 }
 
-/// Whether the angle between two walls of a tet, or an angle of a firm one, decides its quality.
+/// Whether the angle between two walls of a tet, or an angle of a firm one, determines its quality.
 fn is_forced(corners: [Point; 4], quality: f64, sides: impl Fn(usize) -> Side) -> bool {
     let sides = [0, 1, 2, 3].map(sides);
     if sides == [Side::Inside; 4] {
         return false;
     }
     let angles = dihedral::angles(corners);
-    // The facets at an edge are those opposite to the two other vertices.
+    // The facets at an edge are those opposite the two other vertices.
     let is_between = |edge: usize| EDGES[5 - edge].into_iter().all(|i| sides[i] != Side::Inside);
     let is_narrow = |i: usize| {
         let wall = FACETS[i].map(|corner| corners[corner]);
@@ -123,7 +128,7 @@ fn is_forced(corners: [Point; 4], quality: f64, sides: impl Fn(usize) -> Side) -
         || (0..4).any(|i| sides[i] == Side::Firm && is_narrow(i))
 }
 
-/// The vertices of a facet in rising order.
+/// The vertices of a facet, sorted.
 pub(super) fn sorted(mut facet: [VertexId; 3]) -> [VertexId; 3] {
     facet.sort_unstable();
     facet

@@ -1,10 +1,10 @@
-//! Walking: the tets of a vertex (its star), the tets round an edge (its shell).
+//! Traversal: the tets of a vertex (its star), and the tets around an edge (its shell).
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::complex::{Complex, NO_TET};
 use crate::kernel::link::{Behind, WallId};
 
-/// The tets round an edge `ab`, in order, with the vertices opposite the edge.
+/// The tets around an edge `ab`, in order, with the vertices opposite the edge.
 ///
 /// ```text
 ///          r2               tet i is (a, b, ring[i], ring[i + 1]) and positive: seen along
@@ -19,13 +19,15 @@ pub struct Shell {
     pub tets: Vec<TetId>,
     /// The vertices opposite the edge.
     pub ring: Vec<VertexId>,
-    /// Whether the tets go all the way round.
+    /// Whether the tets form a closed ring around the edge.
     pub is_closed: bool,
-    /// Which of the facets at the edge are walls, by the places of their third vertices in the ring; those of an open shell's ends are.
+    /// Which of the facets at the edge are walls, by the index in the ring of their third vertex; both ends
+    /// of an open shell are walls.
     pub walls: Vec<usize>,
 }
 
-/// For vertices at places `i` and `j` of a positive tet, the other places `k` and `l` such that (i, j, k, l) is positive.
+/// For vertices `i` and `j` of a positive tet, by local number, the other two, `k` and `l`, such that (i, j,
+/// k, l) is positive.
 const OTHERS: [[[u8; 2]; 4]; 4] = [
     [[0, 0], [2, 3], [3, 1], [1, 2]],
     [[3, 2], [0, 0], [0, 3], [2, 0]],
@@ -33,20 +35,20 @@ const OTHERS: [[[u8; 2]; 4]; 4] = [
     [[2, 1], [0, 2], [1, 0], [0, 0]],
 ];
 
-/// The places of the vertices other than those at `i` and `j`; see [`OTHERS`].
+/// The local numbers of the vertices other than `i` and `j`; see [`OTHERS`].
 #[inline(always)]
 pub(super) fn others(i: usize, j: usize) -> [usize; 2] {
     OTHERS[i][j].map(usize::from)
 }
 
 impl Shell {
-    /// Walks round the edge from `a` to `b`, which `start` has.
+    /// Walks around the edge from `a` to `b`, beginning at `start`, a tet that has it.
     pub fn walk(&mut self, complex: &Complex, start: TetId, a: VertexId, b: VertexId) {
         self.clear();
         if self.turn(complex, start, a, b) {
             return;
         }
-        // The boundary was met: round the other way to where it begins, and once more from there.
+        // The walk met the boundary: go back the other way to the first tet, and walk again from there.
         let first = Self::first(complex, start, a, b);
         self.clear();
         self.walls.push(0);
@@ -60,7 +62,7 @@ impl Shell {
         self.is_closed = false;
     }
 
-    /// Goes round until it is back at `start` (true) or at the boundary (false).
+    /// Walks around the edge until it is back at `start` (true) or at the boundary (false).
     fn turn(&mut self, complex: &Complex, start: TetId, a: VertexId, b: VertexId) -> bool {
         let mut tet = start;
         loop {
@@ -69,7 +71,7 @@ impl Shell {
             let vertices = complex.vertices(tet);
             self.tets.push(tet);
             self.ring.push(vertices[k]);
-            // The facet ahead is that of the next ring vertex, of the first one at last.
+            // The facet ahead belongs to the next ring vertex: after the last tet, to the first one.
             let is_wall = complex.is_wall(tet, k);
             if is_wall {
                 self.walls.push(self.ring.len());
@@ -92,7 +94,7 @@ impl Shell {
         }
     }
 
-    /// The tet of an open shell from which [`Self::turn`] sees them all.
+    /// The tet of an open shell from which [`Self::turn`] visits all of them.
     fn first(complex: &Complex, start: TetId, a: VertexId, b: VertexId) -> TetId {
         let mut tet = start;
         loop {
@@ -105,9 +107,9 @@ impl Shell {
         }
     }
 
-    /// The wall at a place of [`Self::walls`], by one of its tets and the facet of that.
+    /// The wall at index `place` of the ring, which is one of [`Self::walls`].
     pub fn wall_at(&self, complex: &Complex, place: usize) -> WallId {
-        // Tet i has the ring vertices i and i + 1; its facet to either lies opposite the other.
+        // Tet i has the ring vertices i and i + 1; its facet at one of them lies opposite the other.
         let (tet, opposite) = match place {
             0 => (0, 1 % self.ring.len()),
             _ => (place - 1, place - 1),
@@ -126,7 +128,7 @@ impl Shell {
     }
 }
 
-/// The tets of a vertex, as far as they hang together by facets.
+/// The tets of a vertex that are connected through facets at it.
 #[derive(Clone, Debug, Default)]
 pub struct Star {
     /// The tets.
@@ -137,7 +139,7 @@ pub struct Star {
 }
 
 impl Complex {
-    /// Whether all tets of a vertex hang together by facets at it: `star` gathers them.
+    /// Whether all tets of a vertex are connected through facets at it; `star` gathers them.
     pub fn is_one_star(&self, vertex: VertexId, star: &mut Star) -> bool {
         star.gather(self, vertex);
         star.tets.len() == self.vertex_to_n_tets[vertex.index()] as usize
@@ -178,7 +180,8 @@ impl Star {
     }
 }
 
-/// A set of tets that is emptied in no time: each has the number of the round in which it was last added.
+/// A set of tets that can be emptied in constant time: each tet stores the number of the round in which it
+/// was last added.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Marks {
     rounds: Vec<u32>,
@@ -189,7 +192,7 @@ impl Marks {
     /// Empties the set; ids are below `n`.
     pub(crate) fn begin(&mut self, n: usize) {
         if self.rounds.len() < n {
-            // Some to spare, zeroed by the system where they are touched.
+            // With some extra, which the system zeroes on first use.
             self.rounds = vec![0; n + n / 8 + 64];
             self.round = 0;
         }
@@ -200,7 +203,7 @@ impl Marks {
         self.round += 1;
     }
 
-    /// Whether it was not in yet.
+    /// Adds a tet; returns whether it was not yet in the set.
     #[inline(always)]
     pub(crate) fn add(&mut self, tet: TetId) -> bool {
         std::mem::replace(&mut self.rounds[tet.index()], self.round) != self.round

@@ -1,4 +1,4 @@
-//! A change that only moves a vertex: its tets are joined as they were.
+//! Changes that only move a vertex: their tets are joined as before.
 
 use crate::base::TetId;
 use crate::kernel::change::{Change, Fill, VertexChange};
@@ -7,7 +7,7 @@ use crate::kernel::complex::Complex;
 use crate::kernel::link::{Behind, HalfFacet};
 
 impl Complex {
-    /// Whether all that a change does is to move a vertex: each tet of the cavity comes back.
+    /// Whether a change only moves a vertex: the fill repeats each tet of the cavity.
     pub(super) fn is_move(&self, change: &Change) -> bool {
         let is_same = |(&tet, fill): (&TetId, &Fill)| {
             self.vertices(tet) == fill.vertices && self.region(tet) == fill.region
@@ -19,7 +19,8 @@ impl Complex {
             && change.cavity.iter().zip(&change.fill).all(is_same)
     }
 
-    /// Joins the tets of a change that only moves a vertex as they are joined now: a fifth of the time of improving a mesh went to [`Self::join`].
+    /// Joins the tets of a change that only moves a vertex as they are joined now: [`Self::join`] took a
+    /// fifth of the time of improving a mesh.
     pub(super) fn join_as_before<'a>(&self, change: &'a Change) -> Checked<'a> {
         let mut joints = Vec::with_capacity(3 * change.cavity.len());
         let place_of = |half: HalfFacet| match half.is_none() {
@@ -63,7 +64,7 @@ mod tests {
     use crate::mesh::TetPart;
     use crate::mesh::shapes::box_grid;
 
-    /// What is joined to what, in an order of its own.
+    /// The joints of a change, in canonical order.
     fn joined(checked: &Checked) -> Vec<String> {
         let mut joints: Vec<String> = checked
             .joints
@@ -84,7 +85,7 @@ mod tests {
     #[test]
     fn every_star_is_joined_as_the_general_way_joins_it() {
         let mut mesh = TetPart::of(&box_grid([3; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
-        // Two regions, so that some stars have walls within and some at their rim.
+        // Two regions, so that some stars contain walls and some have them at their rim.
         let is_low = |tet: &[VertexId; 4]| tet.iter().all(|v| mesh.points[v.index()][2] < 0.34);
         mesh.regions = mesh.tets.iter().map(|tet| i32::from(is_low(tet))).collect();
         let complex = Complex::new(&mesh).unwrap();
