@@ -1,4 +1,4 @@
-//! Divisions taken back by lengths, where nobody knows any more what was whole.
+//! Divisions undone by edge lengths, where the record of what was divided is lost.
 
 use crate::base::{Error, Result, Threads, VertexId};
 use crate::geometry::tet::EDGES;
@@ -10,20 +10,26 @@ use crate::moving::wall::NO_NODE;
 use crate::refine::sizes::SizeLimits;
 use crate::remesh::{self, Goal, SHORT, Sizes, SurfaceRule, remesh_part};
 
-/// Below this part of tets with an edge that is too short nothing is done.
+/// If a smaller fraction of the tets than this has an edge that is too short, nothing is done.
 const ENOUGH: f64 = 0.05;
-/// So much of what an edge may be long is asked for: what is collapsed is not divided again at once. A flap that beat to its wall and back once was left with 27,017 of 18,924 tets;
-/// with 1 with 22,460, and as its gap became narrow 51 % of the tets changed in a step, with 0.7 30 %.
+/// Requested sizes are this fraction of the allowed edge length, so that what is collapsed is not divided
+/// again at once. A flap that beat to its wall and back once was left with 27,017 tets from 18,924; with a
+/// fraction of 1 with 22,460, but then, as its gap became narrow, 51 % of the tets changed per step, against
+/// 30 % with 0.7.
 const SIZE: f64 = 0.7;
 
 impl MovingMesh {
-    /// Takes back by lengths what [`Self::refine`] cannot: where repairs have changed what was divided, nobody knows any more what was whole. Edges are collapsed that are shorter than
-    /// about a third of what they were there at first and of the gap beside them, on walls within their flat parts; nodes of the first mesh stay. `smallest`: no gap asks for less.
+    /// Undoes by edge lengths what [`Self::refine`] cannot: where repairs have changed divided tets, the
+    /// record of what was divided is lost. Edges are collapsed that are shorter than about a third both of
+    /// their first length at this place and of the gap beside them, on walls only within flat parts; nodes of
+    /// the first mesh stay. `smallest` is the least size that a gap can require.
     ///
-    /// Nothing is done where less than a twentieth of the tets have such an edge. Where nothing is watched no gap asks for anything.
+    /// Nothing is done if less than a twentieth of the tets have such an edge. If nothing is watched, gaps
+    /// impose no size.
     ///
     /// # Errors
-    /// When `smallest` is no length, when an array cannot be carried, or who watches ends it. Then all is as it was before the call.
+    /// If `smallest` is not a length, if an array cannot be carried, and if the watch stops the call. Then
+    /// everything is as before the call.
     pub fn coarsen(&mut self, smallest: f64, threads: &Threads) -> Result<Option<Change>> {
         if smallest.is_nan() || smallest < 0.0 {
             return Err(
@@ -53,7 +59,8 @@ impl MovingMesh {
             sizes: Some(Sizes::Vertices(sizes)),
             surface: SurfaceRule::Flat { distance: None },
             min_eas: (repair.min_eas + options.margin).min(1.0),
-            // What is bad for the division of a wall alone is repaired here, where that may go.
+            // Tets that are bad only because a wall was divided are repaired here, where that division may be
+            // undone.
             only: Some(shape.bad.iter().map(|(cell, _)| *cell).collect()),
             ..repair
         };

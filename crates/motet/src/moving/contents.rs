@@ -1,4 +1,5 @@
-//! What cells hold of something that stays in them: while they move, and where they change.
+//! Cell arrays that are densities of contents: these stay in the cell while it moves, and are passed on where
+//! cells change.
 
 use crate::base::{CellId, Id, Point};
 use crate::geometry::tet;
@@ -6,7 +7,8 @@ use crate::geometry::vector::distance;
 use crate::mesh::history::{History, Row};
 use crate::mesh::{CellKind, Field, Labels, Mesh};
 
-/// Puts the vertices of a mesh to `points`. The cell arrays that `contents` names are densities of what stays in its cell.
+/// Moves the vertices of a mesh to `points`. The cell arrays named in `contents` are densities of what stays
+/// in its cell.
 pub(super) fn go_to(mesh: &mut Mesh, points: &[Point], contents: &[String]) {
     for field in mesh.cell_data.iter_mut().filter(|field| contents.contains(&field.name)) {
         let n = field.components;
@@ -27,8 +29,10 @@ pub(super) fn go_to(mesh: &mut Mesh, points: &[Point], contents: &[String]) {
     mesh.points.copy_from_slice(points);
 }
 
-/// After a change, what the tets that went held of `contents` is in those that came: each gives all of it to those that overlap it, by their parts of it. Where
-/// vertices have moved between a division and its end, a tet that is taken back has not quite the volume of its parts, and a mean over what it overlaps would lose some.
+/// After a change, passes the contents of removed tets to new ones: each gives all of it to the new tets that
+/// overlap it, in proportion to the overlap. If vertices moved between a division and its reversal, a
+/// restored tet does not have quite the volume of its parts, and a mean over what it overlaps would lose
+/// some.
 pub(super) fn hand_over(before: &Mesh, after: &mut Mesh, history: &History, contents: &[String]) {
     let fields: Vec<&Field> = contents.iter().filter_map(|name| before.cell_field(name)).collect();
     if fields.is_empty() {
@@ -53,13 +57,14 @@ pub(super) fn hand_over(before: &Mesh, after: &mut Mesh, history: &History, cont
     }
 }
 
-/// Who takes over from whom in a change.
+/// Which new cells inherit from which old ones in a change.
 struct Heirs<'a> {
-    /// Of the tets that came.
+    /// The rows of the new tets.
     rows: Vec<(CellId, Row<'a, CellId>)>,
-    /// Of each cell that went, the volume of those that came which is said to be of it.
+    /// For each removed cell, the volume of new cells that is assigned to it.
     taken: Vec<f64>,
-    /// Of a tet that went and that nothing overlaps, the nearest that came in its region, with that one's volume.
+    /// For each removed tet that nothing overlaps, the nearest new one in its region, and the volume of that
+    /// one.
     of_lost: Vec<(CellId, CellId, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! The first mesh, put back where walls come back and the mesh does not settle by itself.
+//! The first mesh, restored where walls return and the mesh does not settle by itself.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -19,63 +19,69 @@ use crate::moving::step::{Change, Why};
 use crate::moving::wall::NO_NODE;
 use crate::spatial::trace::between;
 
-/// Walls are back where each of their nodes is nearer than this part of the edges there to where it was at first.
+/// Walls are back if the distance of each node from its first position is within this fraction of the edges
+/// there.
 const BACK: f64 = 0.1;
 
-/// A mesh that has changed on the way to so many returns in a row does not settle.
+/// A mesh that has changed on the way to this many returns in a row does not settle.
 const MOST_RETURNS: u32 = 3;
 
-/// Such a mesh has lost enough where its mean EAS is below that of the first mesh by this part of it. With 3 % a flap kept a mesh for six cycles that lost up to 2.4 %.
+/// Such a mesh is replaced if its mean EAS has fallen by this fraction of that of the first mesh. With 3 %, a
+/// flap kept for six cycles a mesh that had lost up to 2.4 %.
 const LOSS: f64 = 0.01;
-/// Or where its number of vertices is off by this part, and so many more: repair keeps numbers no closer.
+/// It is also replaced if its number of vertices is off by this fraction, after allowing for
+/// `VERTICES_OFF_ALWAYS`: repair keeps the number no closer.
 const VERTICES_OFF: f64 = 0.01;
 const VERTICES_OFF_ALWAYS: usize = 5;
 
-/// As a part of these: enough for a mesh of which it is known that it does not settle.
+/// Fraction of these limits that suffices for a mesh already known not to settle.
 const AGAIN: f64 = 0.75;
-/// As a multiple: enough at once, without waiting for further returns.
+/// Multiple of these limits that suffices at once, without waiting for further returns.
 const AT_ONCE: f64 = 15.0;
 
-/// So often vertices are left where they are, since tets would turn over if they went to where the first mesh has them.
+/// The largest number of attempts to leave vertices in place because tets would turn over if they moved to
+/// their positions in the first mesh.
 const MOST_TRIES: usize = 8;
 
-/// The mesh that is wanted back, as it was before anything of it changed.
+/// The mesh to restore, as it was before anything changed.
 #[derive(Clone, Debug)]
 pub(super) struct FirstMesh {
-    /// The mesh with its points where they were at first, and of its arrays those that identify it: labels, ids, marks, the memory of refinement.
+    /// The mesh with its points where they were at first; of its arrays only those that identify it: labels,
+    /// ids, marks, the memory of refinement.
     pub(super) mesh: Mesh,
     pub(super) known: Known,
-    /// Bad tets that repair left, cells rising.
+    /// Bad tets that repair left, sorted by cell.
     pub(super) left: Vec<LeftBad>,
-    /// How long edges are at each vertex.
+    /// The mean edge length at each vertex.
     lengths: Vec<f64>,
     mean_eas: f64,
     n_bad: usize,
 }
 
-/// How walls come back, and what becomes of the mesh.
+/// The record of returns, and the mesh to restore.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Returns {
-    /// `None`: nothing is put back.
+    /// The first mesh; `None` if nothing is restored.
     pub(super) first: Option<Box<FirstMesh>>,
     pub(super) count: Count,
 }
 
-/// What is counted from return to return.
+/// The counts kept from return to return.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Count {
-    /// Returns in a row to which the mesh has changed on the way.
+    /// The number of returns in a row before which the mesh had changed on the way.
     pub(super) n_changed: u32,
-    /// Whether it has changed since the last return.
+    /// Whether the mesh has changed since the last return.
     pub(super) has_changed: bool,
-    /// Whether walls have been away since then.
+    /// Whether walls have been away since the last return.
     pub(super) is_away: bool,
     /// Whether the mesh does not settle by itself: the first one was put back.
     pub(super) is_unsettled: bool,
 }
 
 impl FirstMesh {
-    /// `None` for a mesh that cannot be stored beside another one, such as one with polyhedra.
+    /// The first mesh, if returns are requested and repair is on. `None` also for a mesh that cannot be
+    /// stored beside another one, such as one with polyhedra.
     pub(super) fn of(now: &Now, options: &Options, threads: &Threads) -> Option<Box<Self>> {
         let is_wanted = options.returns && options.repair.is_some();
         if !is_wanted || !now.mesh.cells.polyhedron_faces().is_empty() {
@@ -94,7 +100,7 @@ impl FirstMesh {
         Some(Box::new(Self::from_parts(mesh, known, now.left.clone(), options, threads)))
     }
 
-    /// How good it was is looked up.
+    /// Builds the first mesh from its parts, and evaluates its quality.
     pub(super) fn from_parts(
         mesh: Mesh,
         known: Known,
@@ -114,7 +120,8 @@ impl FirstMesh {
         nodes.into_iter().all(|(&node, length)| norm(displacement[node as usize]) <= BACK * length)
     }
 
-    /// What another mesh has lost against this one, 1: enough to put this one back.
+    /// How much another mesh has lost compared with this one, relative to the limits: at 1, enough to put
+    /// this one back.
     fn lost(&self, now: &Now, points: &[Point], shape: &Shape, threads: &Threads) -> f64 {
         let mean = now.tets.qualities(points, threads).mean;
         let in_mean = (1.0 - mean / self.mean_eas) / LOSS;
@@ -125,7 +132,7 @@ impl FirstMesh {
         in_mean.max(in_vertices).max(in_bad)
     }
 
-    /// This mesh with the walls displaced, and how its tets are; `None` where that makes tets bad.
+    /// This mesh with its walls displaced, and the shape of its tets; `None` if that makes tets bad.
     fn displaced(&self, way: &Way<'_>) -> Result<Option<(Now, Shape)>> {
         let (mesh, threads) = (self.mesh.clone(), way.threads);
         let mover = Mover::new(&mesh, &way.options.motion.of(&mesh), threads)?;
@@ -138,7 +145,7 @@ impl FirstMesh {
 }
 
 impl Returns {
-    /// Whether a step that takes walls to these displacements is one at whose end the first mesh may be put back.
+    /// Whether the first mesh may be put back at the end of a step that takes walls to these displacements.
     pub(super) fn is_return(&self, displacement: &[Point]) -> bool {
         self.count.is_away && self.is_back(displacement)
     }
@@ -147,7 +154,8 @@ impl Returns {
         self.first.as_ref().is_some_and(|first| first.has_walls_at(displacement))
     }
 
-    /// Whether a mesh that has lost that much is not to stay; `has_changed`: in this step.
+    /// Whether a mesh that has [lost](FirstMesh::lost) this much is to be replaced; `has_changed`: in this
+    /// step.
     fn is_enough(&self, lost: f64, has_changed: bool) -> bool {
         let Count { n_changed, has_changed: had_changed, is_unsettled, .. } = self.count;
         if is_unsettled {
@@ -157,7 +165,8 @@ impl Returns {
         lost >= AT_ONCE || lost >= 1.0 && is_third
     }
 
-    /// Counts a step that was made; `displacement`: where the walls are, `None` where they did not get there.
+    /// Counts a step that was made. `displacement` says where the walls are; `None` if they did not get
+    /// there.
     pub(super) fn count_step(&mut self, displacement: Option<&[Point]>, changes: &[Change]) {
         let is_back = displacement.is_some_and(|displacement| self.is_back(displacement));
         let count = &mut self.count;
@@ -176,7 +185,8 @@ impl Returns {
 }
 
 impl Way<'_> {
-    /// The first mesh in the place of `now`, whose vertices are at [`Self::points`]; with how good its tets are. `None` where it is not due, or would not be good there.
+    /// The first mesh as a replacement for `now`, whose vertices are at [`Self::points`], and the shape of
+    /// its tets. `None` if a replacement is not due, or would not be good there.
     pub(super) fn put_back(
         &mut self,
         now: &Now,
@@ -204,7 +214,8 @@ impl Way<'_> {
         Ok(put_back)
     }
 
-    /// Gives `next`, the first mesh with its walls displaced, what `now` has; `None` where its cells cannot be traced, or its tets are inverted where they are not to be.
+    /// Passes the data of `now` to `next`, the first mesh with its walls displaced. `None` if its cells
+    /// cannot be traced, or if its tets would be inverted at the start and may not be.
     fn handed_over(
         &mut self,
         now: &Now,
@@ -231,8 +242,8 @@ impl Way<'_> {
         Ok(Some(next))
     }
 
-    /// The vertices of a mesh with those of the first one where that has them, as far as no tet turns over: this is a part of the step's motion, so that tets which are still those
-    /// of the first mesh stay.
+    /// The vertices of a mesh, moved to their positions in the first one where that has them and no tet turns
+    /// over: this is part of the step's motion, so that tets still shared with the first mesh stay.
     fn nearest_to(&self, now: &Now, places: &[Point]) -> Vec<Point> {
         let mut is_first: Vec<Option<Point>> = now
             .known
@@ -255,7 +266,8 @@ impl Way<'_> {
     }
 }
 
-/// From `given`, which is `now` with all its arrays, to the first mesh; `None` where its cells cannot be traced: lines that were divided, labels in other arrays.
+/// The history from `given`, which is `now` with all its arrays, to the first mesh; `None` if its cells
+/// cannot be traced: lines that were divided, labels in other arrays.
 fn history(given: &Mesh, now: &Now, first: &Mesh, threads: &Threads) -> Result<Option<History>> {
     let array =
         |mesh: &Mesh| [mesh.regions(), mesh.patches()].map(|labels| labels.map(|labels| labels.array));
@@ -272,7 +284,7 @@ fn history(given: &Mesh, now: &Now, first: &Mesh, threads: &Threads) -> Result<O
     }
 }
 
-/// For each thing of the first mesh what it is now.
+/// For each entity of the first mesh its current id, or none: the inverse of `in_first`.
 fn turned_round<I: Id>(in_first: &[I], n_first: usize) -> Vec<I> {
     let mut now = vec![I::NONE; n_first];
     for (i, first) in in_first.iter().enumerate().filter(|(_, first)| **first != I::NONE) {
@@ -281,12 +293,13 @@ fn turned_round<I: Id>(in_first: &[I], n_first: usize) -> Vec<I> {
     now
 }
 
-/// Arrays in the order of others.
+/// Sorts arrays into the order of others.
 fn arrange(fields: &mut [Field], as_in: &[Field]) {
     fields.sort_by_key(|field| as_in.iter().position(|other| other.name == field.name));
 }
 
-/// The arrays that say what a mesh is: its labels, ids, marks and the memory of its refinement. All others are the user's, and may have changed since.
+/// The arrays that identify a mesh: its labels, ids, marks and the memory of its refinement. All others are
+/// the user's, and may have changed since.
 fn own_arrays(mesh: &Mesh, fields: &[Field]) -> Vec<Field> {
     let labels = [mesh.regions(), mesh.patches()].map(|labels| labels.map(|labels| labels.array));
     let is_label = |name: &str| labels.iter().flatten().any(|label| label == name);
@@ -311,11 +324,11 @@ mod tests {
             count: Count { n_changed, has_changed, is_away: true, is_unsettled },
         };
         assert!(at(2, true, false).is_enough(1.0, false) && at(2, false, false).is_enough(1.0, true));
-        // Twice only, or not since the last return, or hardly anything lost.
+        // Only twice, or not since the last return, or hardly anything lost.
         assert!(!at(1, true, false).is_enough(1.0, true));
         assert!(!at(2, false, false).is_enough(1.0, false));
         assert!(!at(2, true, false).is_enough(0.9, true));
-        // So much that nothing is waited for, and a mesh of which more is known.
+        // A loss so large that no further return is awaited, and a mesh known not to settle.
         assert!(at(0, true, false).is_enough(15.0, false));
         assert!(at(0, false, true).is_enough(0.8, false) && !at(0, false, true).is_enough(0.7, true));
     }

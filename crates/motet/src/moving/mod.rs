@@ -1,24 +1,24 @@
-//! Floor 9: the loop. A mesh that moves with its walls, step after step, and stays good.
+//! Floor 9: the loop. A mesh moves with its walls, step after step, and keeps its quality.
 //!
-//! | room | what it does |
+//! | file | what it does |
 //! |---|---|
-//! | `options` | what is asked: how the inside follows, what is repaired, what is watched; patches by label, since ids do not last |
+//! | `options` | options: how the inside follows, what is repaired, what is watched; patches by label, since ids do not last |
 //! | `handle` | [`MovingMesh`]: made once, then [`advance`](MovingMesh::advance), [`refine`](MovingMesh::refine), arrays, velocity, history |
-//! | `legs` | a step, in as many parts as it takes: on while tets stay well shaped, then repaired, then on |
-//! | `first` | the first mesh, put back where walls come back and the mesh does not settle by itself |
-//! | `now` | the mesh between two changes: where it is, what moves it, where each vertex was at first |
-//! | `coarsen` | divisions taken back by lengths, where nobody knows any more what was whole |
-//! | `contents` | what cells hold of something that stays in them, while they move and where they change |
+//! | `legs` | a step, in as many parts as it takes: move while tets stay well shaped, repair, move on |
+//! | `first` | the first mesh, restored where walls return and the mesh does not settle by itself |
+//! | `now` | the mesh between two changes: its positions, what moves it, where each vertex was at first |
+//! | `coarsen` | divisions undone by edge lengths, where the record of what was divided is lost |
+//! | `contents` | cell arrays whose contents stay in their cells while these move, and are passed on where they change |
 //! | `shapes` | which tets are bad, and how bad the worst is |
-//! | `wall` | the walls as they came: what the caller's displacements are about, however the walls are divided by now |
+//! | `wall` | the walls as given: displacements refer to them, however the walls are divided by now |
 //! | `hold` | walls that are kept apart: what would come too near stops in front of it |
-//! | `watch` | how near patches are to each other, and how long surely nothing touches |
-//! | `swept` | the volume that each facet sweeps in a step, exact to rounding: what a flow on a moving mesh has to know |
-//! | `script` | what walls do in time, told in words or by frames |
-//! | `step` | what a step says of itself |
-//! | `described` | options as text: a state is gone on with by those that it was saved with |
-//! | `first_state` | the first mesh as arrays of a state |
-//! | `state` | all of it in a file, and back: a run that was stopped goes on to the same bytes |
+//! | `watch` | how near patches are to each other, and for how long contact is ruled out |
+//! | `swept` | the volume that each facet sweeps in a step, exact to rounding: needed for flow on a moving mesh |
+//! | `script` | the motion of walls in time, given by formulas or by frames |
+//! | `step` | the report of a step |
+//! | `described` | options as text: a saved run continues with the options it was saved with |
+//! | `first_state` | the first mesh as arrays of a saved state |
+//! | `state` | everything in a file, and back: a run that was stopped continues with the same bytes |
 //!
 //! ```
 //! use motet::base::Threads;
@@ -47,14 +47,18 @@
 //!
 //! # How a step is made
 //!
-//! The mesh of the last change is the *reference*: as long as nothing changes, a step depends on where the walls are and on nothing else, so a
-//! wall that comes back brings every vertex back to the bit. A step that would leave a tet flatter than [`Options::floor`], or inverted, is gone in part;
-//! what is bad there is repaired while it still has a volume, and the mesh as it is then is the new reference. What is bad
-//! at the end of the step is repaired there; where that leaves what no wall forces, everything round it is made as good as it gets, once. With what is bad goes what soon will be: a tet within
-//! [`Options::margin`] above the limit that would be below it after another fall like the one since the last change.
+//! The mesh after the last change is the *reference*: as long as nothing changes, a step depends only on
+//! where the walls are, so a wall that comes back brings every vertex back to the bit. A step that would
+//! leave a tet flatter than [`Options::floor`], or inverted, is made in part; tets that are bad there are
+//! repaired while they still have a volume, and the resulting mesh is the new reference. Tets that are bad at
+//! the end of the step are repaired there; if that leaves bad ones that no wall forces, everything around
+//! them is improved as far as possible, once. Tets that will soon be bad are repaired with them: those within
+//! [`Options::margin`] above the limit that would be below it after another fall like the one since the last
+//! change.
 //!
-//! A change of connectivity happens at a time level and is announced: [`Step::changes`] has the time, [`MovingMesh::history_since`] the maps. A solver
-//! whose time integration needs the mesh before and after the change at the same time level finds both in [`Change`].
+//! A change of connectivity happens at a time level and is announced: [`Step::changes`] has the time,
+//! [`MovingMesh::history_since`] the maps. A solver whose time integration needs the mesh before and after
+//! the change at the same time level finds both in [`Change`].
 
 mod coarsen;
 mod contents;

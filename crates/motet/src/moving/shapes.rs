@@ -9,18 +9,18 @@ use crate::mesh::{Mesh, OrientedTets, Qualities, is_inverted};
 #[derive(Clone, Debug)]
 pub(super) struct Tets(OrientedTets);
 
-/// How the tets are at some places of the vertices.
+/// The quality of the tets with the vertices at some positions.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shape {
-    /// Those below the limit and their EAS, cells rising.
+    /// Tets below the limit and their EAS, sorted by cell.
     pub(super) bad: Vec<(CellId, f64)>,
-    /// The worst of all, with its EAS and the mean of its corners.
+    /// The worst tet, with its EAS and its centroid.
     pub(super) worst: Option<(CellId, f64, Point)>,
-    /// How many are flat or inverted.
+    /// How many tets are flat or inverted.
     pub(super) inverted: usize,
 }
 
-/// Tets that one thread looks at in one go.
+/// The number of tets that a thread evaluates at a time.
 const CHUNK: usize = 1 << 13;
 
 impl Tets {
@@ -32,7 +32,7 @@ impl Tets {
         self.0.tets.len()
     }
 
-    /// A shape at some places of the vertices, the tets of boundary layers not counted among the bad.
+    /// The shape with the tets of boundary layers removed from the bad ones, with the vertices at `points`.
     pub(super) fn without_layers(&self, shape: &Shape, points: &[Point], limit: f64) -> Shape {
         let place = |(cell, _): &(CellId, f64)| self.0.cells.binary_search(cell).ok();
         let judged = self.0.judge(points, shape.bad.iter().filter_map(place).collect(), limit);
@@ -40,7 +40,8 @@ impl Tets {
         Shape { bad: shape.bad.iter().copied().filter(is_bad).collect(), ..*shape }
     }
 
-    /// Looks closely only where a rough look leaves a doubt.
+    /// The shape with the vertices at `points`. The exact EAS is computed only if an approximate one leaves a
+    /// doubt.
     pub(super) fn shape(&self, points: &[Point], limit: f64, threads: &Threads) -> Shape {
         let chunks: Vec<usize> = (0..self.len()).step_by(CHUNK).collect();
         let look = |start: usize| self.look(start..(start + CHUNK).min(self.len()), points, limit);
@@ -48,12 +49,12 @@ impl Tets {
         parts.into_iter().fold(Shape::default(), Shape::and)
     }
 
-    /// How good all tets are at some places of the vertices.
+    /// The quality of all tets with the vertices at `points`.
     pub(super) fn qualities(&self, points: &[Point], threads: &Threads) -> Qualities {
         Qualities::of(points, &self.0.tets, threads)
     }
 
-    /// The EAS that some cells have at other places of the vertices.
+    /// The EAS of some cells with the vertices at `points`.
     pub(super) fn eas_of(&self, some: &[(CellId, f64)], points: &[Point]) -> Vec<f64> {
         let of = |(cell, _): &(CellId, f64)| {
             let tet = self.0.cells.binary_search(cell).ok().map(|i| self.0.tets[i]);
@@ -62,7 +63,8 @@ impl Tets {
         some.iter().map(of).collect()
     }
 
-    /// Some cells, the tets that share a vertex with them, those that share one with these, and so on.
+    /// Some cells and the tets within `rings` layers of neighbours around them, sharing a vertex from layer
+    /// to layer.
     pub(super) fn around(&self, some: &[(CellId, f64)], rings: usize, n_points: usize) -> Vec<CellId> {
         let mut tets: Vec<usize> =
             some.iter().filter_map(|(cell, _)| self.0.cells.binary_search(cell).ok()).collect();

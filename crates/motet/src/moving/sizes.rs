@@ -1,7 +1,10 @@
-//! The lengths that edges had, remembered beside the walls: near a body they go with the body, whatever has become of the mesh.
+//! The first edge lengths, stored relative to the walls: near a body they move with the body, whatever has
+//! become of the mesh.
 //!
-//! A size that a vertex carries is lost with the vertex, and mixed where one is inserted between others: while a body with fine edges turned once, a fifth more vertices were inserted than
-//! removed. So the size is a function of the place. A place belongs to the wall nearest to it; pulled back with that wall to where it was at first, it has the size that the mesh had there.
+//! A size carried by a vertex is lost with the vertex, and mixed where one is inserted between others: while
+//! a body with fine edges turned once, a fifth more vertices were inserted than removed. So the size is a
+//! function of position. A point belongs to the wall nearest to it; pulled back with that wall to its first
+//! position, it has the size that the mesh had there.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -16,7 +19,7 @@ use crate::moving::options::Options;
 use crate::moving::wall::{NO_NODE, Wall, wall_triangles};
 use crate::spatial::{BoxTree, NearestTriangle};
 
-/// The lengths of edges at first, and those that edges are to have now: the same unless the mesh has been refined.
+/// The first edge lengths, and those that edges should have now: the same unless the mesh has been refined.
 #[derive(Clone, Debug)]
 pub(super) struct Sizes {
     pub(super) first: Arc<SizeMap>,
@@ -24,14 +27,14 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    /// Of a mesh in its first place.
+    /// The sizes of a mesh in its first position.
     pub(super) fn at_first(mesh: &Mesh) -> Self {
         let first = Arc::new(SizeMap::new(mesh.points.clone(), lengths(mesh)));
         Self { now: first.clone(), first }
     }
 }
 
-/// The mean length of the edges at each vertex of tets; 0 at others.
+/// The mean edge length at each vertex of tets; 0 at others.
 pub(super) fn lengths(mesh: &Mesh) -> Vec<f64> {
     mean_edge_lengths(&mesh.points, mesh.cells.tets().map(|(_, tet)| tet))
 }
@@ -39,23 +42,23 @@ pub(super) fn lengths(mesh: &Mesh) -> Vec<f64> {
 /// Sizes at places.
 #[derive(Clone, Debug)]
 pub(super) struct SizeMap {
-    /// With the walls where they were at first.
+    /// Places when the walls were at their first position.
     pub(super) places: Vec<Point>,
-    /// 0: none.
+    /// The size at each place; 0 if there is none.
     pub(super) sizes: Vec<f64>,
-    /// Made when it is needed for the first time.
+    /// Built on first use.
     parts: OnceLock<Parts>,
 }
 
-/// The places by connected part of the walls: each belongs to the part nearest to it.
+/// The places, grouped by connected part of the walls: each belongs to the part nearest to it.
 #[derive(Clone, Debug)]
 struct Parts {
-    /// The part of each node, by a node of it.
+    /// The part of each node, identified by one of its nodes.
     of_node: Vec<u32>,
     regions: BTreeMap<u32, Region>,
 }
 
-/// What belongs to one part of the walls.
+/// The places that belong to one part of the walls.
 #[derive(Clone, Debug)]
 struct Region {
     places: Vec<Point>,
@@ -70,8 +73,10 @@ impl Region {
         Self { places, sizes, tree: BoxTree::new(&boxes) }
     }
 
-    /// The squared distance of the nearest vertex from a place, and the size there: the mean over the vertices within an edge of that one, the nearer the more. Each counts as
-    /// the volume that it stands for, or fine sizes, of which there are many, would win wherever they border on coarse ones.
+    /// The squared distance from `p` to the nearest vertex, and the size there: a mean over the vertices
+    /// within an edge length of that one, with weights that decrease with distance. Each is weighted by the
+    /// volume that it stands for; otherwise fine sizes, of which there are many, would dominate wherever they
+    /// border on coarse ones.
     fn at(&self, p: Point) -> Option<(f64, f64)> {
         let squared = |i: u32| distance_squared(p, self.places[i as usize]);
         let (nearest_squared, nearest, ()) = self.tree.nearest(p, |i| Some((squared(i), ())))?;
@@ -108,7 +113,8 @@ impl Parts {
         Self { of_node, regions }
     }
 
-    /// The size at a place that belongs to the part of a node; where nothing is known of that part, of whatever is nearest.
+    /// The size at a place that belongs to the part of a node; if that part has no sizes, from the nearest
+    /// place of any part.
     fn at(&self, node: u32, p: Point) -> f64 {
         let region = self.of_node.get(node as usize).and_then(|part| self.regions.get(part));
         let nearest =
@@ -122,13 +128,13 @@ impl SizeMap {
         Self { places, sizes, parts: OnceLock::new() }
     }
 
-    /// Of a mesh as it is, wherever its walls are.
+    /// The sizes of a mesh as it is, wherever its walls are.
     pub(super) fn anew(now: &Now, options: &Options, threads: &Threads) -> Self {
         let places = pulled_back(now, &now.mesh.points, options, threads);
         Self::new(places.into_iter().map(|(_, place)| place).collect(), lengths(&now.mesh))
     }
 
-    /// The size at each vertex of a mesh whose vertices are at `points`; 0 where none is known anywhere.
+    /// The size at each vertex of a mesh whose vertices are at `points`; 0 if no size is known anywhere.
     pub(super) fn at_vertices(
         &self,
         (now, points): (&Now, &[Point]),
@@ -142,7 +148,8 @@ impl SizeMap {
     }
 }
 
-/// Where the vertices of a mesh were when walls were at first, each as if it were fixed to the wall triangle nearest to it; with a node of the part of the walls that it is of, or [`NO_NODE`].
+/// Where each vertex of a mesh was when the walls were at their first position, as if it were fixed to the
+/// wall triangle nearest to it; with a node of the part of the walls it belongs to, or [`NO_NODE`].
 fn pulled_back(now: &Now, points: &[Point], options: &Options, threads: &Threads) -> Vec<(u32, Point)> {
     let first = &now.known.first;
     let mut is_driven = vec![false; points.len()];
@@ -184,7 +191,7 @@ mod tests {
         };
         let first = of(&mesh.points);
         let radius = mesh.points.iter().map(|p| norm(*p)).fold(f64::INFINITY, f64::min);
-        // The sphere and what is near it turn and shift.
+        // The sphere and the vertices near it turn and shift.
         let is_near = |p: &Point| norm(*p) < 1.3 * radius;
         let moved = |p: Point| [0.05 - p[1], p[0], p[2] + 0.02];
         let points: Vec<Point> =

@@ -1,6 +1,8 @@
-//! All of a moving mesh in a file, and back: a run that was stopped goes on to the same bytes.
+//! The whole state of a moving mesh in a file, and back: a run that was stopped continues with the same
+//! bytes.
 //!
-//! The file is a VTU that ParaView opens as it is. What is beside the mesh stands in arrays whose names begin with `moving:`; they are taken off when it is read.
+//! The file is a VTU that ParaView opens directly. Data besides the mesh is stored in arrays whose names
+//! begin with `moving:`; they are removed on reading.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -25,21 +27,22 @@ const TRIANGLES: &str = "moving:wall_triangles";
 const BODY: &str = "moving:wall_body";
 const HELD: &str = "moving:wall_held";
 const LEFT: &str = "moving:left";
-/// Places, and how long edges are to be there: at first, and after the last refinement.
+/// Places, and the edge lengths wanted there: at first, and after the last refinement.
 const SIZES: [[&str; 2]; 2] =
     [["moving:size_places", "moving:sizes"], ["moving:refined_size_places", "moving:refined_sizes"]];
 const CLOCK: &str = "moving:clock";
 const OPTIONS: &str = "moving:options";
 const POINT_ARRAYS: &str = "moving:point_arrays";
 const CELL_ARRAYS: &str = "moving:cell_arrays";
-/// Between the names of arrays: in none of them, since no XML has it.
+/// Separates the names of arrays: occurs in none of them, since XML does not allow it.
 const BETWEEN: char = '\0';
 
 impl MovingMesh {
-    /// Writes all that the next steps depend on. Changes before it are not in it: [`Self::remembers`] nothing that was before.
+    /// Writes everything that later steps depend on. Earlier changes are not included: after loading,
+    /// [`Self::remembers`] none of them.
     ///
     /// # Errors
-    /// As [`io::write`].
+    /// As for [`io::write`].
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let Now { mesh, mover, known, left, .. } = &self.now;
         let clock = self.clock;
@@ -74,15 +77,17 @@ impl MovingMesh {
         if let Some(hold) = &self.hold {
             file.field_data.push(Field::vectors(HELD, &hold.last));
         }
-        // Written after every step, read once: not worth packing.
+        // Written after every step, read once: not worth compressing.
         let options = WriteOptions { compression: Compression::None, ..WriteOptions::default() };
         io::write(path, &file, &options).map(|_| ())
     }
 
-    /// Goes on from what [`Self::save`] wrote, with the options that it was saved with; [`Options::remembered`] may differ.
+    /// Continues from a file written by [`Self::save`], with the options it was saved with;
+    /// [`Options::remembered`] may differ.
     ///
     /// # Errors
-    /// When the file cannot be read, or is no such file; when other options are given: names them; as [`Self::new`].
+    /// If the file cannot be read or is not such a file, if other options are given (the error names them),
+    /// and as for [`Self::new`].
     pub fn load(path: impl AsRef<Path>, options: Options, threads: &Threads) -> Result<Self> {
         let path = path.as_ref();
         let file = io::read(path)?;
@@ -103,7 +108,7 @@ impl MovingMesh {
             return Err(Error::options(format!("was saved with other options: {}", differ.join("; ")))
                 .remedy("give the options that it was saved with, or start anew from its mesh"));
         }
-        // Writers add arrays of labels where the mesh has them under other names.
+        // Writers add arrays of labels if the mesh has them under other names.
         arrange(&mut mesh.point_data, &taken.text(POINT_ARRAYS)?)?;
         arrange(&mut mesh.cell_data, &taken.text(CELL_ARRAYS)?)?;
         let clock = taken.floats(CLOCK)?;
@@ -147,7 +152,7 @@ impl MovingMesh {
     }
 }
 
-/// The arrays that were taken off a file.
+/// The arrays taken from a file.
 pub(super) struct Taken {
     fields: Vec<Field>,
 }
@@ -157,7 +162,7 @@ impl Taken {
         self.fields.iter().any(|field| field.name == name)
     }
 
-    /// Those whose names begin so, without that.
+    /// The arrays whose names begin with `prefix`, with the prefix removed.
     pub(super) fn named(&self, prefix: &str) -> Vec<Field> {
         let rest = |field: &Field| {
             field.name.strip_prefix(prefix).map(|name| Field { name: name.to_owned(), ..field.clone() })
@@ -195,7 +200,7 @@ impl Taken {
         String::from_utf8(self.bytes(name)?).map_err(|_| no_state(name))
     }
 
-    /// Bad tets that [`LeftBad::to_fields`] has written.
+    /// The bad tets that [`LeftBad::to_fields`] wrote.
     pub(super) fn left(&self, name: &str, n_cells: usize) -> Result<Vec<LeftBad>> {
         let [cells, eas, forced] = LeftBad::names(name);
         let (cells, eas, forced) = (self.ids(&cells)?, self.floats(&eas)?, self.floats(&forced)?);
@@ -260,12 +265,12 @@ fn text(name: &str, text: &str) -> Field {
     Field::scalars(name, text.as_bytes().to_vec())
 }
 
-/// The names of arrays, each with [`BETWEEN`] after it.
+/// The names of arrays, each followed by [`BETWEEN`].
 fn names(fields: &[Field]) -> String {
     fields.iter().flat_map(|field| [field.name.as_str(), "\0"]).collect()
 }
 
-/// Leaves the arrays of these names, in their order.
+/// Keeps only the arrays with these names, in their order.
 fn arrange(fields: &mut Vec<Field>, names: &str) -> Result<()> {
     let mut all = std::mem::take(fields);
     for name in names.split_terminator(BETWEEN) {

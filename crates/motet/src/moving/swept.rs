@@ -1,29 +1,30 @@
-//! The volume that each facet sweeps while vertices go straight from one place to another.
+//! The volume that each facet sweeps while its vertices move along straight lines.
 //!
-//! A scheme that keeps uniform flow uniform on a moving mesh takes the fluxes of the mesh from these: over the facets of a cell they sum to what its volume gains, to
-//! rounding (the geometric conservation law; Thomas and Lombard 1979). Velocities of facets times areas at one time do not.
+//! A scheme that keeps uniform flow uniform on a moving mesh takes the mesh fluxes from these: over the
+//! facets of a cell they sum to the change of its volume, to rounding (the geometric conservation law; Thomas
+//! and Lombard 1979). Velocities of facets times areas at one time do not.
 
 use crate::base::{CellId, Id, Point, VertexId};
 use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::mesh::Cells;
 use crate::mesh::adjacency::Facets;
 
-/// The triangles between tets, and what each sweeps. One entry a facet in all lists.
+/// The triangular facets of tets, and the volume that each sweeps. All lists have one entry per facet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SweptVolumes {
-    /// Its corners, counter-clockwise seen from outside of its owner.
+    /// The corners of each facet, counter-clockwise seen from outside its owner.
     pub facets: Vec<[VertexId; 3]>,
-    /// The tet that it is a facet of.
+    /// The tet that owns the facet.
     pub owners: Vec<CellId>,
-    /// The tet on its other side, [`Id::NONE`] at the boundary.
+    /// The tet on the other side, [`Id::NONE`] at the boundary.
     pub neighbors: Vec<CellId>,
-    /// The volume that it sweeps, in the unit of the points cubed: positive where the owner gains.
+    /// The swept volume, in the unit of the points cubed: positive if the owner grows.
     pub volumes: Vec<f64>,
 }
 
-/// What the facets of the tets among `cells` sweep from `before` to `after`.
+/// The volumes that the facets of the tets among `cells` sweep from `before` to `after`.
 ///
-/// Panics when a tet has a vertex without a place.
+/// Panics if a vertex of a tet has no entry in `before` or `after`.
 pub fn swept_volumes(cells: &Cells, before: &[Point], after: &[Point]) -> SweptVolumes {
     let facets = Facets::of(cells);
     let mut swept = SweptVolumes::default();
@@ -39,7 +40,8 @@ pub fn swept_volumes(cells: &Cells, before: &[Point], after: &[Point]) -> SweptV
     swept
 }
 
-/// The mean displacement of the corners times the mean of the area vector over the way: quadratic in time, so that three terms are all of it.
+/// The mean displacement of the corners times the mean of the area vector over the motion: quadratic in time,
+/// so three terms are exact.
 fn sweep(before: [Point; 3], after: [Point; 3]) -> f64 {
     let moved = [0, 1, 2].map(|i| sub(after[i], before[i]));
     let [e, f] = [1, 2].map(|i| sub(before[i], before[0]));
@@ -59,7 +61,7 @@ mod tests {
     #[test]
     fn what_the_facets_of_a_tet_sweep_is_what_it_gains() {
         let mesh = sphere_in_box(3, 3);
-        // In all directions: of displacements in one plane, terms of the third order vanish.
+        // Displacements in all directions: if they lie in one plane, terms of the third order vanish.
         let moved = |i: usize, k: usize| 0.3 * (((5 + 2 * k) * i) as f64).sin();
         let after: Vec<Point> =
             mesh.points.iter().enumerate().map(|(i, p)| [0, 1, 2].map(|k| p[k] + moved(i, k))).collect();

@@ -1,9 +1,10 @@
-//! A vertex drawn along an edge into its other end.
+//! Edge collapse: a vertex is moved along an edge into its other end and removed.
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::{Behind, Change, Complex, HalfFacet, Hold, NewLine, NewWall, VertexChange};
 
-/// Proposes to draw `gone` into `kept`. `star` are the tets of `gone`. `false` when a tet would not be better than `bar`.
+/// Proposes to collapse `gone` into `kept`. `star` holds the tets of `gone`. Returns `false` if a new tet
+/// would not be better than `bar`.
 pub fn collapse(
     complex: &Complex,
     star: &[TetId],
@@ -30,7 +31,7 @@ pub fn collapse(
     true
 }
 
-/// The walls of `gone` that are not at the edge go over to `kept`.
+/// Moves the walls of `gone` that do not have the edge over to `kept`.
 fn walls(complex: &Complex, star: &[TetId], gone: VertexId, kept: VertexId, change: &mut Change) {
     if complex.hold(gone) == Hold::Free {
         return;
@@ -48,7 +49,7 @@ fn walls(complex: &Complex, star: &[TetId], gone: VertexId, kept: VertexId, chan
     }
 }
 
-/// The lines of `gone` that are not the edge itself end in `kept`.
+/// Moves the lines of `gone`, other than the edge itself, over to `kept`.
 fn lines(complex: &Complex, star: &[TetId], gone: VertexId, kept: VertexId, change: &mut Change) {
     if complex.hold(gone) == Hold::Free {
         return;

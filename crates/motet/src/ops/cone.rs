@@ -1,16 +1,17 @@
-//! One vertex joined to every facet round a cavity.
+//! Filling a cavity by joining one vertex to every facet around it.
 
 use crate::base::VertexId;
 use crate::geometry::tet::FACETS;
 use crate::kernel::{Change, Complex};
 
-/// Fills the cavity of `change` with tets from `apex` to each facet of its boundary that does not have it. `false` when one of
-/// them is not better than `bar`, or a wall lies within the cavity.
+/// Fills the cavity of `change` with tets from `apex` to each facet of its boundary that does not contain it.
+/// Returns `false` if one of them is not better than `bar`, or if a wall lies within the cavity.
 pub fn cone(complex: &Complex, apex: VertexId, bar: f64, change: &mut Change) -> bool {
     cone_on_edge(complex, apex, None, bar, change)
 }
 
-/// The same for an apex that lies on an edge: facets of the edge get no tet, and may be walls.
+/// Fills a cavity as [`cone`] does, for an apex that lies on an edge: facets at the edge get no tet, and may
+/// be walls.
 pub(super) fn cone_on_edge(
     complex: &Complex,
     apex: VertexId,

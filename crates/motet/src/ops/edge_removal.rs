@@ -1,9 +1,10 @@
-//! An edge taken out, and the hole filled in the best of all ways.
+//! Edge removal: the tets around an edge are replaced by the best ones that do without it.
 //!
-//! The tets round an edge `ab` go. What comes in their place is a triangulation of the ring round the edge, each triangle joined to `a` and
-//! to `b`. The one whose worst tet is best, or whose tets cost least together, is found by dynamic programming (Klincsek 1980, *Minimal triangulations of
-//! polygonal domains*; Shewchuk 2002, *Two discrete optimization algorithms for the topological improvement of tetrahedral meshes*): the flips
-//! 3-2 and 4-4 are its cases for rings of three and four.
+//! The tets around an edge `ab` are removed. They are replaced by a triangulation of the ring around the
+//! edge, with each triangle joined to `a` and to `b`. The triangulation with the best worst tet, or the
+//! lowest total cost, is found by dynamic programming (Klincsek 1980, *Minimal triangulations of polygonal
+//! domains*; Shewchuk 2002, *Two discrete optimization algorithms for the topological improvement of
+//! tetrahedral meshes*): the flips 3-2 and 4-4 are its cases for rings of three and four.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::triangle::area_vector;
@@ -11,20 +12,22 @@ use crate::geometry::vector::{add, dot};
 use crate::kernel::{Change, Complex, NewWall, Shell};
 use crate::ops::{Objective, WorstAbove};
 
-/// Rings with more vertices are left alone: triangulations become many, and good ones rare.
+/// Edges with more ring vertices than this are not removed: triangulations become many, and good ones rare.
 const LARGEST_RING: usize = 10;
 
-/// Room for the tables, used again and again.
+/// Work arrays, reused from call to call.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeRemoval {
     shell: Shell,
-    /// For ring vertices i < j: the lowest cost of what fills the ring between them, and the third vertex of the triangle at `ij`.
+    /// For ring vertices i < j: the lowest cost of filling the ring between them, and the third vertex of the
+    /// triangle at `ij`.
     best: Vec<(f64, u8)>,
 }
 
 impl EdgeRemoval {
-    /// Proposes to remove the edge from `a` to `b`, which `start` has. Where the surface may change, an edge that two walls of one patch meet at
-    /// is removed, too: the edge between the other two vertices of the walls takes its place. `false` when there is no way better than `bar`.
+    /// Proposes to remove the edge from `a` to `b`, which `start` has. Where the surface may change, an edge
+    /// at which two walls of one patch meet can be removed, too: it is replaced by the edge between the other
+    /// two vertices of the walls. Returns `false` if no triangulation is better than `bar`.
     pub fn propose(
         &mut self,
         complex: &Complex,
@@ -36,7 +39,8 @@ impl EdgeRemoval {
         self.propose_for(complex, start, [a, b], &mut WorstAbove(bar), change)
     }
 
-    /// [`Self::propose`]s the way whose cost is lowest. `false` when none is below the limit of the objective.
+    /// Makes the proposal of [`Self::propose`] with the lowest cost. Returns `false` if none is below the
+    /// limit of the objective.
     pub fn propose_for(
         &mut self,
         complex: &Complex,
@@ -64,13 +68,13 @@ impl EdgeRemoval {
         }
     }
 
-    /// The tets round the edge that was looked at last.
+    /// The tets around the edge that was last examined.
     pub fn tets(&self) -> &[TetId] {
         &self.shell.tets
     }
 
-    /// The walls at places `i` and `j` of the ring go, two between the same four vertices come; `false` when they belong to different patches, and when one of
-    /// them would lie on the other.
+    /// Replaces the walls at indices `i` and `j` of the ring by two between the same four vertices. Returns
+    /// `false` if they belong to different patches, or if one of the new walls would lie on the other.
     fn swap_walls(
         &self,
         complex: &Complex,
@@ -86,7 +90,8 @@ impl EdgeRemoval {
         first.patch == second.patch && !would_fold([a, b, p, q].map(|v| complex.point(v)))
     }
 
-    /// Fills the part of the ring that begins at a place and has so many vertices. Nothing comes between two.
+    /// Fills the part of the ring that begins at index `start` and has `n` vertices. With fewer than three
+    /// vertices there is nothing to fill.
     fn fill(
         &mut self,
         complex: &Complex,
@@ -114,7 +119,7 @@ impl EdgeRemoval {
         }
     }
 
-    /// Fills the table; whether the whole ring has a filling that costs less than `limit`.
+    /// Fills the table; returns whether the whole ring can be filled at a cost below `limit`.
     fn tabulate<O: Objective>(
         &mut self,
         complex: &Complex,
@@ -180,8 +185,9 @@ impl EdgeRemoval {
         self.build(complex, [a, b], ring, region, (k, j), change);
     }
 }
-/// Whether of the walls `apq` and `bqp`, which are to take the place of `abp` and `baq`, one would face the other way: where all four vertices lie in a plane and the
-/// middle of `pq` outside of both walls, that leaves a tet of no volume between walls.
+/// Whether one of the walls `apq` and `bqp`, which would replace `abp` and `baq`, faces the other way. If all
+/// four vertices lie in a plane and the midpoint of `pq` is outside both old walls, that would leave a tet
+/// without volume between walls.
 fn would_fold([a, b, p, q]: [Point; 4]) -> bool {
     let before = add(area_vector([a, b, p]), area_vector([b, a, q]));
     [[p, a, q], [q, b, p]].into_iter().any(|wall| dot(area_vector(wall), before) <= 0.0)

@@ -1,28 +1,28 @@
-//! Some facets taken out, and an edge put through them: the inverse of the removal of an edge.
+//! Face removal: facets are removed and an edge is put through them, the inverse of edge removal.
 //!
-//! Facets that lie one beside the other between the same two vertices `a` and `b` go, with the tets on both sides of them; the edge `ab` comes, with a
-//! tet to every outer edge of the facets. Which facets to take is found by trying at each edge whether to stop or to
-//! go on (Shewchuk 2002, *Two discrete optimization algorithms for the topological improvement of tetrahedral
-//! meshes*). With one facet it is the flip 2-3.
+//! Adjacent facets between the same two vertices `a` and `b` are removed, with the tets on both sides of
+//! them; the edge `ab` is inserted, with a tet to every outer edge of the facets. Which facets to take is
+//! found by trying at each edge whether to stop or to go on (Shewchuk 2002, *Two discrete optimization
+//! algorithms for the topological improvement of tetrahedral meshes*). With one facet it is the flip 2-3.
 
 use crate::base::{TetId, VertexId};
 use crate::geometry::tet::FACETS;
 use crate::kernel::{Behind, Change, Complex};
 
-/// At most so many facets go at once.
+/// The largest number of facets removed at once.
 const MOST_FACES: usize = 8;
-/// And none is farther from the first.
+/// The largest number of edges crossed from the first facet to any other.
 const MOST_DEPTH: usize = 4;
 
-/// Room for the search, used again and again.
+/// Work arrays, reused from call to call.
 #[derive(Clone, Debug, Default)]
 pub struct FaceRemoval {
-    /// The tets on the sides of the facets taken so far, and the outer edges.
+    /// The tets on both sides of the facets taken so far; `rim` holds their outer edges.
     cavity: Vec<TetId>,
     rim: Vec<[VertexId; 2]>,
 }
 
-/// A facet between `a` and `b`, by its tets.
+/// A facet between `a` and `b`, by its two tets.
 #[derive(Clone, Copy)]
 struct Face {
     at_a: TetId,
@@ -30,7 +30,8 @@ struct Face {
 }
 
 impl FaceRemoval {
-    /// Proposes to remove facet `i` of a tet, and others beside it where that is better. `false` when there is no way better than `bar`.
+    /// Proposes to remove facet `i` of a tet, and adjacent ones if that is better. Returns `false` if there
+    /// is no way better than `bar`.
     pub fn propose(
         &mut self,
         complex: &Complex,
@@ -60,8 +61,8 @@ impl FaceRemoval {
         true
     }
 
-    /// The quality of the best that can come at an edge of a facet taken: the tet to the edge, or what comes when the facet behind the edge
-    /// is taken, too. Leaves what that takes in the lists.
+    /// The best quality possible at an edge of a taken facet: that of the tet to the edge, or that of the
+    /// tets if the facet behind the edge is taken, too. Adds what the better choice takes to the lists.
     fn at_edge(
         &mut self,
         complex: &Complex,
@@ -93,7 +94,7 @@ impl FaceRemoval {
         stop
     }
 
-    /// The quality of a tet in place of the tets taken so far.
+    /// The quality of a tet that would replace tets taken so far.
     fn judge(&self, complex: &Complex, vertices: [VertexId; 4]) -> f64 {
         complex.judge(vertices.map(|v| complex.point(v)), |i| {
             let mut facet = FACETS[i].map(|corner| vertices[corner]);

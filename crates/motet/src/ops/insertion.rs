@@ -1,8 +1,8 @@
-//! A vertex put in, and joined to whatever it sees well.
+//! Vertex insertion: a new vertex is joined to the facets of a cavity around it.
 //!
-//! The cavity begins with the tets that hold the new vertex and grows tet by tet across the facet at which the fill is worst, as long as that makes
-//! it better (after Klingner and Shewchuk 2007, *Aggressive tetrahedral mesh improvement*, who find the cavity by
-//! the quality of each tet of the fill).
+//! The cavity starts with the tets that contain the new vertex. It grows tet by tet across the facet with the
+//! worst new tet, as long as that improves the fill (after Klingner and Shewchuk 2007, *Aggressive
+//! tetrahedral mesh improvement*, who find the cavity by the quality of each tet of the fill).
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::FACETS;
@@ -10,20 +10,22 @@ use crate::kernel::{Behind, Change, Complex, Fill, Hold, Side, VertexChange};
 use crate::ops::smoothing::Corner;
 use crate::ops::{Anywhere, Smoothing};
 
-/// The cavity has at most so many tets.
+/// The largest number of tets in the cavity.
 const LARGEST_CAVITY: usize = 40;
 
-/// Room for the search, used again and again.
+/// Work arrays, reused from call to call.
 #[derive(Clone, Debug, Default)]
 pub struct Insertion {
     smoothing: Smoothing,
-    /// The facets round the cavity: the tet inside, which of its facets, the quality of the tet to come.
+    /// The facets around the cavity: the tet inside, the number of the facet in it, and the quality of the
+    /// new tet on it.
     rim: Vec<(TetId, usize, f64)>,
 }
 
 impl Insertion {
-    /// Proposes a vertex at `point` or, if that is better, somewhere else in the cavity; `seed` are the tets to begin the cavity with. A worst quality
-    /// of `enough` is enough. `false` when there is no cavity better than `bar`.
+    /// Proposes a vertex at `point` or, if that is better, somewhere else in the cavity; the cavity starts
+    /// with `seed`. The search stops at a worst quality of `enough`. Returns `false` if no cavity is better
+    /// than `bar`.
     pub fn propose(
         &mut self,
         complex: &Complex,
@@ -32,7 +34,8 @@ impl Insertion {
         [bar, enough]: [f64; 2],
         change: &mut Change,
     ) -> bool {
-        // A cavity that is not good enough yet may become so when the vertex moves: what has to be beaten is asked only after.
+        // A cavity that is not good enough yet may become so when the vertex moves: `bar` is applied only
+        // afterwards.
         let low = bar.min(0.5 * enough);
         self.find_cavity(complex, seed, point, low, change) && {
             let rim = self.rim.iter().map(|&(tet, facet, quality)| {
@@ -54,7 +57,7 @@ impl Insertion {
         }
     }
 
-    /// Grows a cavity round `point` until the tets from its facets to the point are all better than `bar`.
+    /// Grows a cavity around `point` until the tets from its facets to the point are all better than `bar`.
     fn find_cavity(
         &mut self,
         complex: &Complex,
@@ -85,8 +88,10 @@ impl Insertion {
         false
     }
 
-    /// Puts a tet into the cavity: facets towards it go from the rim, its others come. `false` where one of these is a wall, which stays whatever else comes, and not
-    /// better than `bar`: to grow on until it is the worst took a fifth of the time of repairing a cube with a crease of needles.
+    /// Adds a tet to the cavity: its facets shared with the rim leave the rim, its others join it. Returns
+    /// `false` if one of these is a wall, which stays from then on, with a tet that is not better than `bar`:
+    /// growing on until that tet is the worst took a fifth of the time of repairing a cube with a crease of
+    /// needles.
     fn take(&mut self, complex: &Complex, tet: TetId, point: Point, bar: f64, change: &mut Change) -> bool {
         let mut is_open = true;
         change.cavity.push(tet);
@@ -100,7 +105,7 @@ impl Insertion {
                 }
             }
             let [a, b, c] = corners.map(|corner| complex.point(complex.vertices(tet)[corner]));
-            // The facet of the rim is opposite the new vertex, the others lie inside.
+            // The facet on the rim is opposite the new vertex, the others lie inside.
             let side = |i: usize| if i == 3 { complex.side(tet, facet) } else { Side::Inside };
             let quality = complex.judge([a, c, b, point], side);
             is_open &= quality > bar || matches!(behind, Behind::Tet(_));
@@ -109,7 +114,7 @@ impl Insertion {
         is_open
     }
 
-    /// Whether a vertex of the cavity is on none of its outer facets.
+    /// Whether a vertex of the cavity lies on none of its outer facets.
     fn loses_a_vertex(&self, complex: &Complex, change: &Change) -> bool {
         let is_kept = |v: VertexId| change.fill.iter().any(|tet| tet.vertices.contains(&v));
         change.cavity.iter().any(|&t| !complex.vertices(t).into_iter().all(is_kept))

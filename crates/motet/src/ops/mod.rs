@@ -1,17 +1,18 @@
-//! Floor 5: the operations. Each looks at a few tets and *proposes* a change; none of them makes it.
+//! Floor 5: the operations. Each examines a few tets and *proposes* a change; none of them makes it.
 //!
-//! | operation | what goes | what comes |
+//! | operation | removed | inserted |
 //! |---|---|---|
-//! | [`EdgeRemoval`] | the tets round an edge | the best tets that do without it |
-//! | [`FaceRemoval`] | the tets on both sides of some facets | tets round a new edge through them |
-//! | [`collapse`] | the tets of a vertex | the same with another vertex in its place |
-//! | [`split_edge`] | the tets round an edge | two for each, with a vertex on the edge |
-//! | [`split_crossed`] | the tets round two opposite edges | tets that meet where the edges pass each other |
-//! | [`Smoothing`] | the tets of a vertex | the same, the vertex at a better place |
-//! | [`Relaxation`] | the tets of a vertex | the same, the vertex where they are better on the whole |
-//! | [`Insertion`] | the tets that see a new vertex well | tets that meet in it |
+//! | [`EdgeRemoval`] | the tets around an edge | the best tets that do without it |
+//! | [`FaceRemoval`] | the tets on both sides of some facets | tets around a new edge through them |
+//! | [`collapse`] | the tets of a vertex | those without the edge, with the other end in its place |
+//! | [`split_edge`] | the tets around an edge | two for each, with a vertex on the edge |
+//! | [`split_crossed`] | the tets around two opposite edges | tets that meet where the edges pass each other |
+//! | [`Smoothing`] | the tets of a vertex | the same tets, with the vertex where the worst of them is best |
+//! | [`Relaxation`] | the tets of a vertex | the same tets, with the vertex where they are better as a whole |
+//! | [`Insertion`] | tets around a new vertex | tets that meet in it |
 //!
-//! `bar` is the quality that a proposal has to beat: an operation that cannot stops as soon as it knows. An [`Objective`] takes its place where not the worst tet alone counts.
+//! `bar` is the quality that a proposal has to exceed: an operation that cannot exceed it stops as soon as it
+//! knows. An [`Objective`] takes its place if not only the worst tet counts.
 
 mod collapse;
 mod cone;

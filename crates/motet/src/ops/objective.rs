@@ -1,24 +1,24 @@
-//! Which of several ways to fill a cavity is best.
+//! Objectives: which of several ways to fill a cavity is best.
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::Complex;
 
-/// Costs of tets to come, and of several together; the lowest is best.
+/// The cost of a new tet, and of several together; the lowest cost is best.
 pub trait Objective {
-    /// What no tet costs.
+    /// The cost of no tets.
     const NOTHING: f64;
 
-    /// Looks at the tets that are to go, of which so many are to come in place; the limit that the cost of these has to be below.
+    /// Prepares for filling `cavity` with `n_fill` tets; returns the limit that their cost has to stay below.
     fn limit(&mut self, complex: &Complex, cavity: &[TetId], n_fill: usize) -> f64;
 
-    /// The cost of a tet with these vertices, of this quality; infinite where none such may come.
+    /// The cost of a tet with these vertices and this quality; infinite if it is not acceptable.
     fn cost(&self, vertices: [VertexId; 4], quality: f64) -> f64;
 
     /// The cost of two sets of tets together.
     fn both(&self, a: f64, b: f64) -> f64;
 }
 
-/// The worst tet is to be as good as it can, and better than this quality.
+/// Maximizes the worst quality, which has to exceed this one.
 #[derive(Clone, Copy, Debug)]
 pub struct WorstAbove(pub f64);
 

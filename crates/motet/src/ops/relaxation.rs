@@ -1,4 +1,4 @@
-//! A vertex moved to where its tets are better on the whole, and none of them bad.
+//! Relaxation: a vertex is moved to where its tets are better as a whole, with none bad.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, RoughStar};
@@ -6,47 +6,47 @@ use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
 use crate::kernel::{Change, Complex, VertexChange};
 use crate::ops::Track;
 
-/// How far a tet is from regular: the square of what its quality lacks. Convex, so that of two tets the worse one counts for more.
+/// How far a tet is from regular: (1 - quality)^2. Convex, so that the worse of two tets counts for more.
 #[inline]
 pub fn defect(quality: f64) -> f64 {
     let lack = 1.0 - quality.min(1.0);
     lack * lack
 }
 
-/// How many directions are tried.
+/// The largest number of directions tried.
 const MOST_STEPS: usize = 6;
-/// How often a step is halved.
+/// The largest number of times a step is halved.
 const MOST_HALVINGS: usize = 4;
-/// The first step, as a part of the mean edge of the star.
+/// Length of the first step, relative to the mean edge of the star.
 const FIRST_STEP: f64 = 0.15;
-/// The last step lowers the sum by less than this part of it.
+/// A step that lowers the sum by less than this fraction is the last.
 const SMALLEST_GAIN: f64 = 0.01;
-/// Gradients are differences over this part of the size of the star.
+/// Step of the difference quotients for gradients, relative to the size of the star.
 const DIFFERENCE: f64 = 1e-6;
 
-/// What a move has to reach.
+/// What a move has to achieve.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reach {
-    /// No quality is to be below this.
+    /// Every quality has to stay above this.
     pub floor: f64,
-    /// By about this or more the sum of the defects is to be lower.
+    /// The sum of the defects has to fall by about this much or more.
     pub gain: f64,
 }
 
-/// Room for the star, used again and again.
+/// Work arrays, reused from call to call.
 #[derive(Clone, Debug, Default)]
 pub struct Relaxation {
     here: View,
     in_pose: View,
-    /// How the vertex moves in the other pose; `None`: that does not count.
+    /// How the vertex moves in the other pose; `None` if there is no other pose.
     map: Option<LinearMap>,
-    /// Where the vertex was in turn.
+    /// The successive positions of the vertex.
     places: Vec<Point>,
-    /// Where the vertex of the last proposal is.
+    /// Position of the vertex in the last proposal.
     place: Point,
 }
 
-/// The tets of a star in one place.
+/// The tets of a star in one pose.
 #[derive(Clone, Debug, Default)]
 struct View {
     star: RoughStar,
@@ -54,17 +54,18 @@ struct View {
     tried: Vec<f64>,
 }
 
-/// How a vertex moves in a second place of its star, as it moves here.
+/// How a vertex moves in a second pose of its star when it moves here.
 #[derive(Clone, Copy, Debug)]
 struct LinearMap {
     from: Point,
     to: Point,
-    /// How each coordinate there follows those here.
+    /// Row i maps a shift here to coordinate i of the shift there.
     rows: [Point; 3],
 }
 
 impl LinearMap {
-    /// Takes the edges of a vertex here to those there, with the least squares of what is left. `None` where they lie in a plane.
+    /// The least-squares map that takes the edges of a vertex here to those there. `None` if the edges lie in
+    /// a plane.
     fn of(from: Point, to: Point, edges: impl Iterator<Item = [Point; 2]>) -> Option<Self> {
         let (mut normal, mut right) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
         for [here, there] in edges {
@@ -90,10 +91,13 @@ impl LinearMap {
 }
 
 impl Relaxation {
-    /// Proposes a place on its track for a vertex whose tets are `star` that has the [`Reach`]: the sum of their [defects](defect) is lower there, and no quality below the floor. With a map that says where each
-    /// vertex is in the other pose, the sum of their defects there counts as much. `false` when none was found.
+    /// Proposes a position on its track for a vertex with the tets `star` that achieves the [`Reach`]: the
+    /// sum of their [defects](defect) is lower there, and every quality above the floor. If `pose` gives the
+    /// position of each vertex in another pose, the sum of the defects there counts as much. Returns `false`
+    /// if no position was found.
     ///
-    /// Steps down the gradient; qualities are exact at the end only, and those in the other pose not even then.
+    /// Steps down the gradient; only the final qualities are exact, and those in the other pose not even
+    /// then.
     pub fn propose(
         &mut self,
         (complex, pose): (&Complex, Option<impl Fn(VertexId) -> Point>),
@@ -123,7 +127,7 @@ impl Relaxation {
             return false;
         }
         let before: f64 = star.iter().map(|&t| defect(complex.quality(t))).sum();
-        // Where a tet is below the floor after all, an earlier place.
+        // If an exact quality is not above the floor, tries the previous position.
         while let Some(place) = self.places.pop() {
             change.vertex = VertexChange::Move(vertex, place);
             change.fill.clear();
@@ -144,12 +148,14 @@ impl Relaxation {
         false
     }
 
-    /// About where the vertex of the last proposal is to be in the other pose: as the linear map that is nearest to the star's has it. `None` where that does not count.
+    /// The approximate position in the other pose of the vertex of the last proposal: given by the linear map
+    /// that fits the star best. `None` if there is no other pose.
     pub fn place_in_pose(&self) -> Option<Point> {
         self.map.map(|map| map.at(self.place))
     }
 
-    /// Moves the vertex downhill, step by step, and leaves where it was. By how much the sum is lower; stops where it cannot be by the gain of the reach, if it is convex.
+    /// Moves the vertex downhill, step by step, and records its positions. Returns by how much the sum has
+    /// fallen; stops when a convex sum could no longer fall by the required gain.
     fn descend(
         &mut self,
         complex: &Complex,
@@ -203,7 +209,8 @@ impl Relaxation {
         }
     }
 
-    /// The sum with the vertex elsewhere; the qualities are left in `tried`. In the other pose tets need not be valid, and one that is not is as bad as another.
+    /// The sum of the defects with the vertex at `place`; the qualities are left in `tried`. In the other
+    /// pose tets need not be valid, and all invalid ones cost the same.
     fn sum_at(&mut self, place: Point) -> f64 {
         let here = self.here.sum_at(place, f64::NEG_INFINITY);
         here + self.map.map_or(0.0, |map| self.in_pose.sum_at(map.at(place), 0.0))
@@ -223,13 +230,13 @@ impl Relaxation {
 }
 
 impl View {
-    /// The sum of the defects with the vertex at a place, no quality counted as lower than `lowest`.
+    /// The sum of the defects with the vertex at `place`, with no quality counted below `lowest`.
     fn sum_at(&mut self, place: Point, lowest: f64) -> f64 {
         self.star.judge(place, &mut self.tried);
         self.tried.iter().map(|&q| defect(q.max(lowest))).sum()
     }
 
-    /// By how much the sum rises from the qualities to those tried, to first order.
+    /// The first-order change of the sum from `qualities` to `tried`.
     fn rise(&self, lowest: f64) -> f64 {
         let of = |(&q, &there): (&f64, &f64)| {
             let (q, there) = (q.clamp(lowest, 1.0), there.max(lowest));

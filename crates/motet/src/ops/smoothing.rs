@@ -1,34 +1,35 @@
-//! A vertex moved to where the worst of its tets is best.
+//! Smoothing: a vertex is moved to where the worst of its tets is best.
 //!
-//! The worst quality is the smallest of many functions of the vertex' place. Where several are nearly smallest, the direction in which all of them rise
-//! fastest is the shortest vector in the convex hull of their gradients (Freitag and Ollivier-Gooch 1997, *Tetrahedral
-//! mesh improvement using swapping and smoothing*); the step is halved until the worst rises.
+//! The worst quality is the minimum of many functions of the vertex's position. If several are nearly
+//! smallest, the direction in which all of them rise fastest is the shortest vector in the convex hull of
+//! their gradients (Freitag and Ollivier-Gooch 1997, *Tetrahedral mesh improvement using swapping and
+//! smoothing*); the step is halved until the worst rises.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::vector::{add, dot, norm, scale, sub};
 use crate::kernel::{Change, Complex, Fill, Side, VertexChange};
 
-/// Qualities that are at most so far above the worst count as nearly smallest.
+/// Qualities that exceed the worst by no more than this count as nearly smallest.
 const NEARLY: f64 = 0.03;
-/// How many directions are tried.
+/// The largest number of directions tried.
 const MOST_STEPS: usize = 8;
-/// How often a step is halved.
+/// The largest number of times a step is halved.
 const MOST_HALVINGS: usize = 5;
-/// A step that raises the worst by less is the last.
+/// A step that raises the worst quality by less than this is the last.
 const SMALLEST_GAIN: f64 = 1e-3;
-/// Gradients are differences over this part of the size of the star.
+/// Step of the difference quotients for gradients, relative to the size of the star.
 const DIFFERENCE: f64 = 1e-6;
 
-/// Where a vertex may go.
+/// Where a vertex may move.
 pub trait Track {
-    /// Where it comes to lie when it is drawn to `point`; `None` when there is no such place.
+    /// The position on the track for a vertex that is to move to `point`; `None` if there is none.
     fn draw(&self, point: Point) -> Option<Point>;
 
-    /// What it can follow of a direction.
+    /// The component of a direction along the track.
     fn along(&self, direction: Point) -> Point;
 }
 
-/// Nothing holds the vertex.
+/// A track without constraint.
 #[derive(Clone, Copy, Debug)]
 pub struct Anywhere;
 
@@ -44,28 +45,30 @@ impl Track for Anywhere {
     }
 }
 
-/// Room for the star, used again and again.
+/// Work arrays, reused from call to call.
 #[derive(Clone, Debug, Default)]
 pub struct Smoothing {
     tets: Vec<Corner>,
-    /// The qualities of the tets where the vertex was tried last. Of all measurements in repairs a third were of tets that had been measured just before.
+    /// The qualities of the tets at the last position tried. A third of all measurements in repairs were of
+    /// tets that had been measured just before.
     tried: Vec<f64>,
     gradients: Vec<Point>,
 }
 
-/// A tet of the star: its points, the place of the vertex, and its quality.
+/// A tet of the star: its points, the local number of the vertex, and its quality.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub(super) points: [Point; 4],
     pub(super) place: usize,
     pub(super) quality: f64,
-    /// The tet that it is; or of one to come, whose other facets lie inside, a tet and which facet there is its facet 3.
+    /// The existing tet that this is, with `None`; or, for a new tet whose other facets lie inside, an
+    /// existing tet and which of its facets is the new tet's facet 3.
     pub(super) of: (TetId, Option<usize>),
 }
 
 impl Smoothing {
-    /// Proposes a better place on its track for a vertex whose tets are `star`: one where the worst quality is `enough`, or as high as it gets. `false`
-    /// when there is none better than `bar`.
+    /// Proposes a better position on its track for a vertex with the tets `star`: one where the worst quality
+    /// is `enough`, or as high as possible. Returns `false` if none is better than `bar`.
     pub fn propose(
         &mut self,
         complex: &Complex,
@@ -93,7 +96,7 @@ impl Smoothing {
         change.worst() > bar
     }
 
-    /// The best place found for a vertex of some tets that is at `start`.
+    /// The best position found for a common vertex of some tets that is at `start`.
     pub(super) fn best_place(
         &mut self,
         complex: &Complex,
@@ -115,7 +118,8 @@ impl Smoothing {
             }
             let direction = self.direction(complex, place, worst, size, track);
             let slope = dot(direction, direction);
-            // Along the direction the worst rises by its square, if nothing else gets in the way.
+            // Along the direction, the worst quality rises at the rate of its squared length if no other tet
+            // interferes.
             if slope * size * size <= 1e-6 {
                 break;
             }
@@ -143,7 +147,7 @@ impl Smoothing {
         place
     }
 
-    /// The qualities that the tets have at the place that was found, in their order.
+    /// The qualities of the tets at the position that was found, in their order.
     pub(super) fn qualities(&self) -> impl Iterator<Item = f64> + '_ {
         self.tets.iter().map(|tet| tet.quality)
     }
@@ -152,7 +156,7 @@ impl Smoothing {
         self.qualities().fold(f64::INFINITY, f64::min)
     }
 
-    /// The worst quality with the vertex elsewhere; anything at most `bar` where it is not better.
+    /// The worst quality with the vertex at `place`; any value up to `bar` if it is not better than `bar`.
     fn worst_at(&mut self, complex: &Complex, place: Point, bar: f64) -> f64 {
         let mut worst = f64::INFINITY;
         self.tried.clear();
@@ -167,7 +171,7 @@ impl Smoothing {
         worst
     }
 
-    /// Moves the vertex to where it was tried last, in all tets.
+    /// Moves the vertex to `place`, the position tried last, in all tets.
     fn move_to(&mut self, place: Point) {
         for (tet, &quality) in self.tets.iter_mut().zip(&self.tried) {
             tet.points[tet.place] = place;
@@ -175,7 +179,7 @@ impl Smoothing {
         }
     }
 
-    /// The shortest vector in the convex hull of the gradients of the nearly worst.
+    /// The shortest vector in the convex hull of the gradients of the nearly worst tets.
     fn direction(
         &mut self,
         complex: &Complex,
@@ -211,8 +215,9 @@ impl Corner {
     }
 }
 
-/// The shortest vector in the convex hull of some, nearly: from the shortest one, again and again towards the one that lies farthest on the
-/// other side (Gilbert 1966, *An iterative procedure for computing the minimum of a quadratic form on a convex set*).
+/// An approximation of the shortest vector in the convex hull of some vectors: starts from the shortest one
+/// and moves repeatedly towards the one that lies farthest on the other side (Gilbert 1966, *An iterative
+/// procedure for computing the minimum of a quadratic form on a convex set*).
 fn shortest_in_hull(vectors: &[Point]) -> Point {
     let Some(mut shortest) = vectors.iter().copied().min_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)))
     else {

@@ -1,12 +1,12 @@
-//! Edges divided by a vertex: one edge, two crossed ones, or one at a vertex that is already there.
+//! Splits: one edge or two crossed ones are divided by a new vertex, or one edge at a vertex that exists.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::kernel::{Change, Complex, Hold, NewLine, NewWall, Shell, VertexChange};
 use crate::ops::cone;
 use crate::ops::cone::cone_on_edge;
 
-/// Proposes a new vertex at `point` on the edge `ab` whose shell is given, held by `hold`; walls at the edge, and the line that it is, are split with it. `false` when a tet would
-/// not be better than `bar`.
+/// Proposes a new vertex at `point`, with the constraint `hold`, on the edge `ab` whose shell is given; walls
+/// at the edge, and its line, are split with it. Returns `false` if a tet would not be better than `bar`.
 pub fn split_edge(
     complex: &Complex,
     shell: &Shell,
@@ -32,8 +32,8 @@ pub fn split_edge(
     cone_on_edge(complex, middle, Some([a, b]), bar, change)
 }
 
-/// Proposes a new vertex at `point` between two edges that pass each other closely, in place of what lies round both: the same as to
-/// split each of them, and to collapse the short edge between the two new vertices.
+/// Proposes a new vertex at `point` between two edges that pass each other closely, replacing the tets around
+/// both: equivalent to splitting each of them and collapsing the short edge between the two new vertices.
 pub fn split_crossed(
     complex: &Complex,
     shells: [&Shell; 2],
@@ -50,8 +50,8 @@ pub fn split_crossed(
     first.is_free() && second.is_free() && cone(complex, complex.next_vertex(), bar, change)
 }
 
-/// Proposes to join the vertex `onto`, which the shell's ring has, to everything round the edge: the same as to split the edge
-/// and to collapse the new vertex into `onto`.
+/// Proposes to join the vertex `onto`, which is on the shell's ring, to everything around the edge:
+/// equivalent to splitting the edge and collapsing the new vertex into `onto`.
 pub fn split_onto(complex: &Complex, shell: &Shell, onto: VertexId, bar: f64, change: &mut Change) -> bool {
     change.clear();
     change.cavity.extend_from_slice(&shell.tets);
