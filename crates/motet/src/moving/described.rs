@@ -1,4 +1,4 @@
-//! Options as JSON, by which a state knows that it goes on with the options that it was saved with.
+//! Options as JSON, by which a saved state makes sure that it continues with the options it was saved with.
 
 use std::collections::BTreeMap;
 
@@ -7,21 +7,22 @@ use serde_json::Value;
 use crate::base::{Error, Result};
 use crate::moving::options::Options;
 
-/// So many differences are named.
+/// The largest number of differences that are named.
 const MOST: usize = 4;
 
 impl Options {
-    /// All that steps depend on, as JSON. How many changes are remembered is left out.
+    /// All options that steps depend on, as JSON. The number of remembered changes is left out.
     ///
     /// # Errors
-    /// When they cannot be written as JSON.
+    /// If they cannot be written as JSON.
     pub(super) fn described(&self) -> Result<String> {
         serde_json::to_string(&Self { remembered: 0, ..self.clone() })
             .map_err(|e| Error::options(format!("the options cannot be written as JSON: {e}")))
     }
 }
 
-/// What differs between two [`Options::described`], each by its name, its old and its new value; empty where nothing does.
+/// The differences between two [`Options::described`], each with its name, its old and its new value; empty
+/// if there are none.
 pub(super) fn differences(was: &str, is: &str) -> Vec<String> {
     let (was, is) = (values(was), values(is));
     let names = was.keys().chain(is.keys().filter(|name| !was.contains_key(*name)));
@@ -39,10 +40,10 @@ pub(super) fn differences(was: &str, is: &str) -> Vec<String> {
     named
 }
 
-/// Values by their names, those of objects within objects joined by dots.
+/// Values by their names; the names in nested objects are joined by dots.
 fn values(text: &str) -> BTreeMap<String, Value> {
     let mut values = BTreeMap::new();
-    // Text that is no JSON is another state than any: it has one value without a name.
+    // Text that is not JSON differs from any state: it has one value without a name.
     let mut open = vec![(String::new(), serde_json::from_str(text).unwrap_or_else(|_| Value::from(text)))];
     while let Some((name, value)) = open.pop() {
         match value {

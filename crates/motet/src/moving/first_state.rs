@@ -1,4 +1,4 @@
-//! The first mesh of walls that come back as arrays of a state, and back.
+//! The first mesh of walls that come back, as arrays of a saved state, and back.
 
 use crate::base::{Id, Result, Threads, VertexId};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
@@ -8,7 +8,7 @@ use crate::moving::options::Options;
 use crate::moving::state::{Taken, no_state};
 use crate::moving::wall::NO_NODE;
 
-/// Of the vertices and of the cells of the mesh: what each is in the first one.
+/// Arrays on the vertices and cells of the mesh: the id of each in the first one.
 const VERTEX: &str = "moving:first_vertex";
 const CELL: &str = "moving:first_cell";
 const COUNT: &str = "moving:returns";
@@ -19,14 +19,15 @@ const VERTICES: &str = "moving:first_mesh_vertices";
 const FIRST: &str = "moving:first_mesh_first";
 const NODE: &str = "moving:first_mesh_node";
 const FIRST_EAS: &str = "moving:first_mesh_first_eas";
-/// Before the names of its bad tets that repair left.
+/// Prefix of the arrays of its bad tets that repair left.
 const LEFT: &str = "moving:first_mesh_left";
-/// Before the names of its own arrays.
+/// Prefixes of its own point and cell arrays.
 const OF_POINTS: &str = "moving:first_mesh_point:";
 const OF_CELLS: &str = "moving:first_mesh_cell:";
 
 impl Returns {
-    /// Puts all of it on the mesh of a state; nothing where the first mesh may not be put back and no mesh ever was.
+    /// Stores everything in the mesh of a saved state; nothing if the first mesh may not be put back and no
+    /// mesh ever was.
     pub(super) fn put_on(&self, file: &mut Mesh, in_first: &InFirst) {
         let Count { n_changed, has_changed, is_away, is_unsettled } = self.count;
         let count = [n_changed, u32::from(has_changed), u32::from(is_away), u32::from(is_unsettled)];
@@ -57,7 +58,8 @@ impl Returns {
         }
     }
 
-    /// Back from the arrays of a state: the second is for [`Known::in_first`]. `mesh`: that of the state.
+    /// Restores everything from the arrays of a saved state with this `mesh`; the second result is
+    /// [`Known::in_first`].
     pub(super) fn taken(
         taken: &Taken,
         mesh: &Mesh,
@@ -121,7 +123,7 @@ fn numbers<I: Id>(ids: &[I]) -> Vec<u32> {
     ids.iter().map(|id| if *id == I::NONE { u32::MAX } else { id.place() as u32 }).collect()
 }
 
-/// An id in the first mesh, or none, for each of `n` things; no id twice.
+/// An id in the first mesh, or none, for each of `n` entities; fails if an id occurs twice.
 fn ids_of<I: Id>(taken: &Taken, name: &str, n: usize, n_first: usize) -> Result<Vec<I>> {
     let numbers = taken.ids(name)?;
     let mut is_taken = vec![false; n_first];

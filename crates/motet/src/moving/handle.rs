@@ -24,9 +24,10 @@ use crate::moving::watch::Watch;
 use crate::refine::{self, Criterion, MeshRefinement, Size, Wanted};
 use crate::remesh::Counts;
 
-/// A mesh that moves with its walls and stays good: moved, certified, repaired, refined, watched, its arrays carried along.
+/// A mesh that moves with its walls and keeps its quality: moved, certified, repaired, refined, watched, with
+/// its arrays carried along.
 ///
-/// One at a time for each mesh; any number of them beside each other.
+/// Calls on one mesh are made one at a time; different meshes can be used at the same time.
 #[derive(Debug)]
 pub struct MovingMesh {
     pub(super) options: Options,
@@ -36,33 +37,34 @@ pub struct MovingMesh {
     pub(super) changes: VecDeque<(usize, Arc<History>)>,
     /// Changes of steps up to this one are no longer known.
     pub(super) forgotten: Option<usize>,
-    /// How walls have come back, and the first mesh.
+    /// The record of returns, and the first mesh.
     pub(super) returns: Returns,
-    /// How long edges are to be.
+    /// Requested edge lengths.
     pub(super) sizes: Sizes,
     watch: Option<Watch>,
     pub(super) hold: Option<Hold>,
-    /// What the last step stopped.
+    /// The nodes stopped in the last step.
     held: Held,
 }
 
-/// Where in time a mesh is.
+/// The time of a mesh, and its counters.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Clock {
-    /// How many steps were made.
+    /// The number of steps made.
     pub(super) step: usize,
     pub(super) time: f64,
-    /// How long the last step took.
+    /// The duration of the last step.
     pub(super) dt: f64,
-    /// How many vertices that nothing holds there are to be: as many as at first, or as refinement left. `None`: as many as there are.
+    /// How many free vertices the mesh is to have: as many as at first, or as refinement left. `None`: as
+    /// many as it has.
     pub(super) n_free: Option<usize>,
 }
 
 impl MovingMesh {
-    /// Takes over a mesh where its walls are undisplaced. Time is 0.
+    /// Takes over a mesh with its walls undisplaced, at time 0.
     ///
     /// # Errors
-    /// As [`Mover::new`]; when a watched patch is not there.
+    /// As for [`Mover::new`], and if a watched patch does not exist.
     pub fn new(mesh: &Mesh, options: Options, threads: &Threads) -> Result<Self> {
         options.check()?;
         let mover = Mover::new(mesh, &options.motion.of(mesh), threads)?;
@@ -101,7 +103,7 @@ impl MovingMesh {
         })
     }
 
-    /// The mesh as it is now is the first one.
+    /// Remembers the current mesh as the first one.
     fn remember_first(&mut self, threads: &Threads) {
         self.returns.first = FirstMesh::of(&self.now, &self.options, threads);
         if self.returns.first.is_some() {
@@ -109,13 +111,14 @@ impl MovingMesh {
         }
     }
 
-    /// Where the vertices that are driven were at first: those of the boundary, and of patches inside that were asked for, in the
-    /// order of the first mesh. Displacements are given for these, whatever becomes of the mesh.
+    /// The first positions of the driven vertices: those of the boundary, and of the requested patches
+    /// inside, in the order of the first mesh. Displacements are given for these, whatever becomes of the
+    /// mesh.
     pub fn driven_places(&self) -> &[Point] {
         &self.wall.places
     }
 
-    /// The mesh as it is, with its arrays.
+    /// The mesh as it is now, with its arrays.
     pub fn mesh(&self) -> &Mesh {
         &self.now.mesh
     }
@@ -125,71 +128,75 @@ impl MovingMesh {
         self.clock.time
     }
 
-    /// How many steps were made.
+    /// The number of steps made.
     pub fn step(&self) -> usize {
         self.clock.step
     }
 
-    /// Where a rim of a sliding patch leaves its plane the farthest, if walls had these displacements now: counted from the planes of the last change.
+    /// Where a rim of a sliding patch would deviate farthest from its plane if walls had these displacements
+    /// now, measured from the planes of the last change.
     ///
     /// # Panics
-    /// When there are not as many displacements as [`Self::driven_places`].
+    /// Panics if there are not as many displacements as [`Self::driven_places`].
     pub fn leaves_plane(&self, displacement: &[Point]) -> Option<LeavesPlane> {
         assert_eq!(displacement.len(), self.wall.places.len(), "a displacement for each driven vertex");
         self.now.mover.leaves_plane(&self.now.target(displacement))
     }
 
-    /// What it was told.
+    /// The options of this mesh.
     pub fn options(&self) -> &Options {
         &self.options
     }
 
-    /// The velocity of each vertex in the last step; zero before there was one. Of a vertex that came in it: from the place, at its beginning, between those
-    /// that it came from.
+    /// The velocity of each vertex in the last step; zero before the first. For a vertex inserted in it,
+    /// measured from the position at its beginning that is interpolated between the vertices it came from.
     pub fn velocity(&self) -> Vec<Point> {
         let Self { now, clock, .. } = self;
         let points = &now.mesh.points;
-        // In no time there is none.
+        // A step without duration has no velocity.
         mesh_velocity(&now.known.before, points, clock.dt).unwrap_or_else(|_| vec![[0.0; 3]; points.len()])
     }
 
-    /// How far each vertex is from where it was at first.
+    /// The displacement of each vertex from its first position.
     pub fn displacement(&self) -> Vec<Point> {
         let pairs = self.now.mesh.points.iter().zip(&self.now.known.first);
         pairs.map(|(&p, &first)| sub(p, first)).collect()
     }
 
-    /// What the watch measured last; `None` where nothing is watched, and where the mesh has been divided, coarsened or repaired since: [`Self::certify`] measures again.
+    /// The last measurement of gaps; `None` if nothing is watched, or if the mesh has been divided, coarsened
+    /// or repaired since: [`Self::certify`] measures again.
     pub fn gaps(&self) -> Option<&contact::Gaps> {
         self.watch.as_ref().filter(|watch| !watch.is_stale()).and_then(|watch| watch.last.as_ref())
     }
 
-    /// Puts a point array on the mesh, in place of one of that name: a solver's new values. Arrays are carried where the mesh changes.
+    /// Sets a point array of the mesh, replacing one of the same name: a solver's new values. Arrays are
+    /// carried where the mesh changes.
     ///
     /// # Errors
-    /// When it has not one row for each point.
+    /// If the field does not have one row per point.
     pub fn set_point_field(&mut self, field: Field) -> Result<()> {
         check_rows(&field, self.now.mesh.points.len(), "points")?;
         self.now.mesh.set_point_field(field);
         Ok(())
     }
 
-    /// The same with a cell array.
+    /// Sets a cell array of the mesh, replacing one of the same name.
     ///
     /// # Errors
-    /// When it has not one row for each cell.
+    /// If the field does not have one row per cell.
     pub fn set_cell_field(&mut self, field: Field) -> Result<()> {
         check_rows(&field, self.now.mesh.cells.len(), "cells")?;
         self.now.mesh.set_cell_field(field);
         Ok(())
     }
 
-    /// From the mesh after `step` (0: the first) to the mesh as it is: carries any array of any time level in between. `None` where the
-    /// connectivity is the same.
+    /// The history from the mesh after `step` (0: the first) to the mesh as it is: transfers any array at any
+    /// time level in between. `None` if the connectivity is the same.
     ///
     /// # Errors
-    /// When that step was not made yet, or changes since it are not known: those before a state that was loaded, and those before the last
-    /// [`Options::remembered`]. [`Self::remembers`] asks first.
+    /// If that step has not been made yet, or if changes since it are not known: those made before a loaded
+    /// state was saved, and those before the last [`Options::remembered`]. [`Self::remembers`] tests for
+    /// that.
     pub fn history_since(&self, step: usize) -> Result<Option<History>> {
         if !self.remembers(step) {
             return Err(self.not_known(step));
@@ -221,13 +228,15 @@ impl MovingMesh {
         step <= self.clock.step && self.forgotten.is_none_or(|forgotten| step >= forgotten)
     }
 
-    /// Takes the walls to where they are at `time`: `displacement` has an entry for each of [`Self::driven_places`], counted from there. The inside
-    /// follows; what becomes bad is repaired, on the way where need be.
+    /// Moves the walls to where they are at `time`: `displacement` has an entry for each of
+    /// [`Self::driven_places`], measured from there. The inside follows; tets that become bad are repaired,
+    /// on the way if necessary.
     ///
-    /// A motion that cannot be gone to the end is no error: see [`Step::complete`].
+    /// A motion that cannot be completed is not an error: see [`Step::complete`].
     ///
     /// # Errors
-    /// When a displacement is missing or not finite, time does not go on, an array cannot be carried, or who watches ends it. Then all is as it was before the call.
+    /// If a displacement is missing or not finite, if time does not advance, if an array cannot be carried,
+    /// and if the watch stops the call. Then everything is as before the call.
     pub fn advance(&mut self, time: f64, displacement: &[Point], threads: &Threads) -> Result<Step> {
         let begin = Instant::now();
         self.check(time, displacement)?;
@@ -277,10 +286,10 @@ impl MovingMesh {
         })
     }
 
-    /// How good the mesh is as it is, without a step.
+    /// Certifies the mesh as it is, without a step.
     ///
     /// # Errors
-    /// Those of measuring gaps.
+    /// If gaps cannot be measured.
     pub fn certify(&mut self, threads: &Threads) -> Result<Step> {
         let begin = Instant::now();
         let shape = self.now.tets.shape(&self.now.mesh.points, self.options.limit(), threads);
@@ -291,10 +300,11 @@ impl MovingMesh {
         Ok(Step { complete: true, fraction: 1.0, gaps, seconds, ..self.certified(&shape, threads) })
     }
 
-    /// Repairs what is bad where the mesh is, at the time that was reached. A step does so by itself; a mesh that came, or was refined, may need it before the first.
+    /// Repairs bad tets of the mesh where it is, at the current time. A step does so by itself; a mesh that
+    /// was just given or refined may need it before the first.
     ///
     /// # Errors
-    /// When an array cannot be carried, or who watches ends it. Then all is as it was before the call.
+    /// If an array cannot be carried, and if the watch stops the call. Then everything is as before the call.
     pub fn repair(&mut self, threads: &Threads) -> Result<Option<Change>> {
         let mut way = self.way(&[], self.clock.time, threads);
         let Reached { changed, left, .. } = way.stay(&self.now, self.clock.step == 0)?;
@@ -307,7 +317,7 @@ impl MovingMesh {
             self.now = now;
             self.remember(&changes);
         }
-        // What is bad at first is not wanted back.
+        // Initially bad tets should not come back with the first mesh.
         if self.clock.step == 0 && self.returns.first.is_some() {
             self.remember_first(threads);
         }
@@ -331,19 +341,21 @@ impl MovingMesh {
         }
     }
 
-    /// Divides tets and takes divisions back, at the time that was reached, as [`MeshRefinement::reach`] does. What was divided is remembered by arrays of the mesh.
+    /// Divides tets and undoes divisions, at the current time, as [`MeshRefinement::reach`] does. Divisions
+    /// are recorded in arrays of the mesh.
     ///
-    /// Where patches are watched, criteria find the point array [`GAP`]: the gap at each of their vertices, no limit elsewhere. As a size it keeps edges of walls as short as the gap
-    /// between them is wide, and so the tets in it well shaped; a limit of the smallest edge ends that. Where that is all that is asked for,
-    /// what is taken back is also taken back [by lengths](Self::coarsen).
+    /// If patches are watched, criteria find the point array [`GAP`]: the gap at each vertex of the patches,
+    /// no limit elsewhere. As a size it keeps edges of walls as short as the gap between them is wide, and so
+    /// the tets in it well shaped; a limit on the smallest edge ends that. If [`GAP`] is the only criterion,
+    /// divisions are also undone [by lengths](Self::coarsen).
     ///
     /// # Errors
-    /// As there. Then all is as it was before the call.
+    /// As for [`MeshRefinement::reach`]. Then everything is as before the call.
     pub fn refine(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Vec<Change>> {
         let mut changes: Vec<Change> = self.divide(wanted, threads)?.into_iter().collect();
         let is_gap =
             |criterion: &Criterion| matches!(criterion, Criterion::Size(Size::Array(name)) if name == GAP);
-        // Only of gaps it is known how long edges may be. What did not move yet was not repaired.
+        // Only gaps determine how long edges may be. A mesh that has not moved yet was not repaired.
         let knows_lengths = !wanted.criteria.is_empty() && wanted.criteria.iter().all(is_gap);
         if wanted.coarsen && knows_lengths && self.clock.step > 0 {
             changes.extend(self.coarsen(wanted.limits.smallest.unwrap_or(0.0), threads)?);
@@ -376,7 +388,8 @@ impl MovingMesh {
         self.take_over((&given, mesh), history, (&shape, Counts::default()), threads).map(Some)
     }
 
-    /// Goes on with a mesh that was divided or coarsened where it is: it came of `given`, the one that is with all that is known of it as arrays.
+    /// Continues with a mesh that was divided or coarsened in place. It is derived from `given`: the current
+    /// mesh, with its records as arrays.
     pub(super) fn take_over(
         &mut self,
         came: (&Mesh, Mesh),
@@ -392,13 +405,13 @@ impl MovingMesh {
         self.now = now;
         self.clock.n_free = None;
         self.sizes.now = Arc::new(SizeMap::anew(&self.now, &self.options, threads));
-        // The first mesh is no longer the one that is wanted.
+        // The first mesh is no longer the one to restore.
         (self.returns.first, self.now.known.in_first) = (None, InFirst::default());
         self.remember(std::slice::from_ref(&change));
         Ok(change)
     }
 
-    /// The gap at each vertex of the mesh as it is, no limit where there is none; `None` where nothing is watched.
+    /// The gap at each vertex of the mesh as it is, infinite if there is none; `None` if nothing is watched.
     pub(super) fn gaps_here(&mut self, threads: &Threads) -> Result<Option<Vec<f64>>> {
         if self.watch.as_ref().is_some_and(Watch::is_stale) {
             self.measure_gaps(threads)?;
@@ -483,10 +496,10 @@ impl MovingMesh {
     }
 }
 
-/// No edge is as long. Infinity is no number to interpolate with.
+/// Longer than any edge. Infinity cannot be interpolated with.
 const NO_LIMIT: f64 = 1e100;
 
-/// The point array that criteria of [`MovingMesh::refine`] find where patches are watched.
+/// The point array that criteria of [`MovingMesh::refine`] find if patches are watched.
 pub const GAP: &str = "moving:gap";
 
 fn check_rows(field: &Field, n: usize, what: &str) -> Result<()> {

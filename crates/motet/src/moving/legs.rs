@@ -1,4 +1,4 @@
-//! A step, in as many parts as it takes: on while tets stay well shaped, then repaired, then on.
+//! A step, in as many parts as it takes: move while tets stay well shaped, repair, move on.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -16,54 +16,54 @@ use crate::moving::step::{Change, Seconds, Why};
 use crate::moving::wall::Wall;
 use crate::remesh::{self, Density, Goal, Improve, MeshOutcome, remesh_mesh};
 
-/// Parts are halved down to this where tets would become flat: repairing more often than so is no way to go on.
+/// Parts are halved down to this if tets would become flat: repairing more often than that makes no progress.
 const SMALLEST: f64 = 1.0 / 32.0;
-/// And down to this where they would be inverted.
+/// Parts are halved down to this if tets would be inverted.
 const LEAST: f64 = 1.0 / 4096.0;
 
-/// So often a repair is made once more with tets held that it is not to replace.
+/// The largest number of times a repair is repeated with more tets held.
 const MOST_HELD: usize = 8;
 
-/// No vertex is extrapolated to the next step farther than this part of the mean length of its edges.
+/// No vertex is extrapolated to the next step farther than this fraction of the mean length of its edges.
 const FARTHEST_AHEAD: f64 = 0.5;
 
-/// A tet of the first mesh is as it was at first while its EAS is no more than this below what it was.
+/// A tet of the first mesh counts as unchanged if its EAS has fallen by no more than this.
 const AS_AT_FIRST: f64 = 0.005;
 
-/// So many tets away from a bad one tets are near it.
+/// Tets within this many layers of a bad one are near it.
 const RINGS: usize = 2;
 
-/// On the way of one step.
+/// The progress of one step.
 pub(super) struct Way<'a> {
     pub(super) options: &'a Options,
     pub(super) wall: &'a Wall,
-    /// How walls have come back so far.
+    /// The record of returns so far.
     pub(super) returns: &'a Returns,
-    /// How long edges are to be.
+    /// Requested edge lengths.
     pub(super) sizes: &'a SizeMap,
-    /// Of the nodes of the wall, from where they were at first.
+    /// Displacement of each node of the wall from its first position.
     pub(super) displacement: &'a [Point],
-    /// From when to when.
+    /// The times of the start and the end of the step.
     pub(super) times: [f64; 2],
-    /// How many vertices that nothing holds there are to be; `None`: as many as the mesh has when it changes first.
+    /// How many free vertices the mesh is to have; `None`: as many as it has when it first changes.
     pub(super) n_free: Option<usize>,
     pub(super) threads: &'a Threads,
-    /// Where the vertices are to be: scratch, and the result.
+    /// The new positions of the vertices: scratch space, and the result.
     pub(super) points: Vec<Point>,
     pub(super) seconds: Seconds,
     pub(super) changes: Vec<Change>,
     pub(super) legs: usize,
 }
 
-/// Where a way has led.
+/// The result of a step.
 pub(super) struct Reached {
-    /// The mesh that came; `None`: the one that there was, with its vertices at [`Way::points`].
+    /// The new mesh; `None`: the old one, with its vertices at [`Way::points`].
     pub(super) changed: Option<Now>,
-    /// The bad tets that nothing could be done about, where that was tried last and nothing changed.
+    /// Bad tets that could not be repaired, if repair was tried last and changed nothing.
     pub(super) left: Option<Vec<LeftBad>>,
-    /// How good the tets are.
+    /// The shape of the tets.
     pub(super) shape: Shape,
-    /// How much of the way was gone.
+    /// The fraction of the step that was completed.
     pub(super) fraction: f64,
 }
 
@@ -71,16 +71,17 @@ pub(super) struct Reached {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Effort {
     Usual,
-    /// Nothing is known of how tets fall: all within the margin.
+    /// Before anything has moved: all tets within the margin.
     Margin,
-    /// Bad tets were left: everything round them as good as it gets.
+    /// Bad tets were left: improve everything around them as far as possible.
     AllAround,
-    /// Nothing could move: everything as good as it gets.
+    /// No progress was possible: improve everything as far as possible.
     All,
 }
 
 impl Way<'_> {
-    /// Goes from where `start` is, which stays as it is. Where walls have come back, the first mesh may be put back at the end.
+    /// Makes the step from `start`, which is not changed. If walls have come back, the first mesh may be put
+    /// back at the end.
     pub(super) fn go(&mut self, start: &Now) -> Result<Reached> {
         let reached = self.moved_and_repaired(start)?;
         if reached.fraction < 1.0 || self.returns.count.is_unsettled {
@@ -112,9 +113,9 @@ impl Way<'_> {
                 return Ok(Reached { changed, left: None, shape, fraction: gone });
             }
             let is_end = part == 1.0;
-            // The first mesh of a step is where it was as the step began.
+            // The first mesh of a step is where it was when the step began.
             let before = changed.as_ref().map_or(&start.mesh.points, |now| &now.known.before);
-            // What is going to be put back anyhow is not repaired first.
+            // A mesh that will be replaced anyway is not repaired first.
             if is_end
                 && self.returns.count.is_unsettled
                 && let Some(put_back) = self.put_back(now, before, changed.is_some())?
@@ -144,8 +145,9 @@ impl Way<'_> {
         }
     }
 
-    /// Where repair has left bad tets that no wall forces, all round them is made as good as it gets, once: the step ends here, and none should be bad where it does. A flap pressed
-    /// to its wall had up to 26 such tets of 150,000, in 32 of 480 steps.
+    /// If repair has left bad tets that no wall forces, everything around them is improved as far as
+    /// possible, once: the step ends here, and no tet should be bad at its end. A flap pressed to its wall
+    /// had up to 26 such tets of 150,000, in 32 of 480 steps.
     fn tried_again(&mut self, next: Now, effort: Effort, time: f64) -> Result<(Now, Shape)> {
         let shape = self.shape(&next);
         let n_left = shape.bad.len() - next.n_forced(&shape);
@@ -162,7 +164,7 @@ impl Way<'_> {
         }
     }
 
-    /// Repairs what is bad without going anywhere; `is_first`: before the first step.
+    /// Repairs bad tets without moving; `is_first`: before the first step.
     pub(super) fn stay(&mut self, start: &Now, is_first: bool) -> Result<Reached> {
         self.points.clone_from(&start.mesh.points);
         let shape = self.shape_at(start);
@@ -177,7 +179,8 @@ impl Way<'_> {
         Ok(reached)
     }
 
-    /// Goes on as far as tets stay well shaped: all the way that is left, or a half of it, and so on. How far, and how the tets are there.
+    /// Moves on as far as tets stay well shaped: all the remaining way, or half of it, and so on. Returns the
+    /// fraction of the remaining way, and the shape of the tets there.
     fn leg(&mut self, now: &Now) -> Result<(f64, Shape)> {
         let (from, to) = (now.here(), now.target(self.displacement));
         let mut part = 1.0;
@@ -209,7 +212,7 @@ impl Way<'_> {
         }
     }
 
-    /// The shape of the tets where [`Self::points`] has the vertices.
+    /// The shape of the tets with the vertices at [`Self::points`].
     pub(super) fn shape_at(&mut self, now: &Now) -> Shape {
         let begin = Instant::now();
         let shape = now.tets.shape(&self.points, self.options.limit(), self.threads);
@@ -225,7 +228,7 @@ impl Way<'_> {
         shape
     }
 
-    /// The mesh with its bad tets repaired where [`Self::points`] has the vertices.
+    /// The mesh with its bad tets repaired, with the vertices at [`Self::points`].
     fn repaired(
         &mut self,
         now: &Now,
@@ -275,7 +278,7 @@ impl Way<'_> {
         Ok(Repaired::Changed(Box::new(next)))
     }
 
-    /// The tets that are to be repaired; `None`: all.
+    /// The tets to repair; `None`: all.
     fn worth_repair(&self, now: &Now, shape: &Shape, effort: Effort) -> Option<Vec<CellId>> {
         let limit = self.options.limit();
         let low = || now.tets.shape(&self.points, limit + self.options.margin, self.threads).bad;
@@ -292,9 +295,10 @@ impl Way<'_> {
         }
     }
 
-    /// What is improved beside the bad tets: those that are not as they were at first. A mesh of sizes of its own has no other density to keep.
+    /// Which tets are improved besides the bad ones: those that have deteriorated since the start. If the
+    /// repair has sizes of its own, they replace the density.
     ///
-    /// `before`: where the vertices were as the step began.
+    /// `before`: where the vertices were when the step began.
     fn improve(
         &self,
         now: &Now,
@@ -306,7 +310,8 @@ impl Way<'_> {
         if below == 0.0 || effort == Effort::Margin {
             return None;
         }
-        // Where walls come back, tets are as they were at first, or not, at rest. A mesh that is put back need not be good there.
+        // If walls come back, tets are compared with the first mesh at rest. A mesh that is put back need not
+        // be good there.
         let rest = now.known.rest.as_ref().filter(|_| !self.returns.count.is_unsettled);
         let places = rest.unwrap_or(&self.points);
         let low = now.tets.shape(places, below, self.threads).bad;
@@ -314,7 +319,7 @@ impl Way<'_> {
         let is_as_at_first = |&(cell, eas): &(CellId, f64)| eas >= first[cell.index()] - AS_AT_FIRST;
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
         let sizes = self.sizes.at_vertices((now, &self.points), self.wall, self.options, self.threads);
-        // The mesh ahead is nearly the mesh as it is: a gain counts twice, and so must the cost.
+        // The mesh ahead is nearly the current one: a gain counts twice, and so must the cost.
         let (pose, cost) = match rest {
             Some(rest) => (rest.clone(), Improve::FEW_CHANGES),
             None => (self.ahead(before, &sizes), 2.0 * Improve::FEW_CHANGES),
@@ -331,7 +336,8 @@ impl Way<'_> {
         })
     }
 
-    /// Where the vertices will be after the next step if they go on straight as in this one; all of them less far where one would go farther than [`FARTHEST_AHEAD`], since walls turn.
+    /// The positions of the vertices after the next step if they continue as in this one. All move less far
+    /// if one would exceed [`FARTHEST_AHEAD`], since walls turn.
     fn ahead(&self, before: &[Point], sizes: &[f64]) -> Vec<Point> {
         let ways: Vec<Point> = self.points.iter().zip(before).map(|(&to, &from)| sub(to, from)).collect();
         let lengths = ways.iter().zip(sizes).filter(|(_, size)| **size > 0.0);
@@ -340,7 +346,7 @@ impl Way<'_> {
         self.points.iter().zip(ways).map(|(&to, way)| add(to, scale(way, part))).collect()
     }
 
-    /// The same mesh, that moves on from where [`Self::points`] has the vertices.
+    /// The same mesh, with the positions in [`Self::points`] as its new reference.
     fn re_referenced(&mut self, now: &Now, before: &[Point], left: Vec<LeftBad>) -> Result<Now> {
         let begin = Instant::now();
         let mesh = now.moved(&self.points, &self.options.contents);
@@ -351,14 +357,15 @@ impl Way<'_> {
     }
 }
 
-/// What repair came to.
+/// The result of a repair.
 enum Repaired {
     Changed(Box<Now>),
-    /// Nothing could be done about these.
+    /// Nothing changed; these tets could not be repaired.
     Left(Vec<LeftBad>),
 }
 
-/// The tets of the mesh before that a repair has replaced by such that have no volume where their vertices were as the step began.
+/// The tets of the old mesh that a repair has replaced by tets without volume at the positions that their
+/// vertices had when the step began.
 fn replaced_by_inverted(outcome: &MeshOutcome) -> Result<Vec<CellId>> {
     let Some(start) = outcome.mesh.point_field(BEFORE) else { return Ok(Vec::new()) };
     let start = start.to_vectors()?;
@@ -379,7 +386,8 @@ fn replaced_by_inverted(outcome: &MeshOutcome) -> Result<Vec<CellId>> {
     Ok(replaced)
 }
 
-/// The bad tets that repair has left. Those between the limit and what repair aims at are not bad yet: they are tried when they fall below the limit.
+/// The bad tets that repair has left. Those between the limit and the target of the repair are not bad yet:
+/// they are tried once they fall below the limit.
 fn left_of(report: &remesh::Report, limit: f64) -> Vec<LeftBad> {
     let of = |left: &remesh::Left| LeftBad {
         cell: CellId(left.tet),

@@ -1,4 +1,4 @@
-//! The mesh between two changes: where it is, what moves it, where each vertex was at first.
+//! The mesh between two changes: its positions, what moves it, where each vertex was at first.
 
 use std::ops::RangeInclusive;
 
@@ -14,21 +14,22 @@ use crate::moving::shapes::{Shape, Tets};
 use crate::moving::step::{InvertedAtStart, WorstTet};
 use crate::moving::wall::{Drive, NO_NODE, Wall};
 
-/// A bad tet that repair has left is worth another try once its EAS is outside of this range, as a part of what it was then: worse, or better because walls that forced it have let go.
+/// A bad tet that repair has left is tried again once the ratio of its EAS to what it was then is outside
+/// this range: worse, or better because walls no longer force it.
 const AS_LEFT: RangeInclusive<f64> = 0.5..=1.25;
 
-/// The mesh, and all that is made anew when it changes.
+/// The mesh, and everything that is rebuilt when it changes.
 #[derive(Debug)]
 pub(super) struct Now {
-    /// Its points are where they are; the arrays are the user's.
+    /// The mesh with its points at their current positions, and the user's arrays.
     pub(super) mesh: Mesh,
     pub(super) tets: Tets,
-    /// Its reference is where the vertices were at the last change.
+    /// Its reference is the mesh after the last change.
     pub(super) mover: Mover,
-    /// What is known of each vertex.
+    /// Records of each vertex and cell.
     pub(super) known: Known,
     drive: Drive,
-    /// Bad tets that repair has left, cells rising.
+    /// Bad tets that repair has left, sorted by cell.
     pub(super) left: Vec<LeftBad>,
 }
 
@@ -36,30 +37,33 @@ pub(super) struct Now {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LeftBad {
     pub(super) cell: CellId,
-    /// Its EAS then.
+    /// Its EAS when it was left.
     pub(super) eas: f64,
     /// Whether walls force it.
     pub(super) is_forced: bool,
 }
 
-/// What is known of each vertex beside where it is.
+/// Records of each vertex and cell besides its position.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Known {
-    /// Where it was at first: for one that came later, the place between those that it came from.
+    /// First position of each vertex; for one that was inserted later, interpolated between the vertices that
+    /// it came from.
     pub(super) first: Vec<Point>,
-    /// Where it was when the walls were last where they were at first, for walls that come back: for one that came later, the place between those that it came from.
+    /// Position of each vertex when the walls were last at their first position, for walls that come back;
+    /// for a vertex inserted later, interpolated between those that it came from.
     pub(super) rest: Option<Vec<Point>>,
-    /// Where it was when the step began.
+    /// Position of each vertex when the step began.
     pub(super) before: Vec<Point>,
-    /// The node of the wall that it is, or [`NO_NODE`].
+    /// The wall node of each vertex, or [`NO_NODE`].
     pub(super) node: Vec<u32>,
-    /// Of each cell that is a tet of the first mesh the EAS that it had then, of others no number.
+    /// For each cell that is a tet of the first mesh, its first EAS; NaN for others.
     pub(super) first_eas: Vec<f64>,
-    /// What it is in the first mesh, where that may be put back.
+    /// Ids in the first mesh, if that may be put back.
     pub(super) in_first: InFirst,
 }
 
-/// What each vertex and each cell is in the first mesh: no id for those that came later. Empty where the first mesh is not remembered.
+/// The id of each vertex and each cell in the first mesh: none for those that were inserted later. Empty if
+/// the first mesh is not remembered.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct InFirst {
     pub(super) vertices: Vec<VertexId>,
@@ -67,7 +71,7 @@ pub(super) struct InFirst {
 }
 
 impl InFirst {
-    /// Of the first mesh itself.
+    /// The ids of the first mesh itself.
     pub(super) fn same(first: &Mesh) -> Self {
         Self {
             vertices: (0..first.points.len()).map(VertexId::new).collect(),
@@ -75,7 +79,7 @@ impl InFirst {
         }
     }
 
-    /// After a change.
+    /// The ids after a change.
     fn after(&self, history: &History) -> Self {
         if self.vertices.is_empty() {
             return Self::default();
@@ -87,13 +91,13 @@ impl InFirst {
     }
 }
 
-/// Of each thing what it was before the change, where it was kept.
+/// The values of the old entities that were kept; none for new ones.
 fn of_kept<I: Id>(kept: &[I], before: &[I]) -> Vec<I> {
     kept.iter().map(|old| if *old == I::NONE { I::NONE } else { before[old.place()] }).collect()
 }
 
 impl Known {
-    /// Of a mesh in its first place.
+    /// The records of a mesh in its first position.
     pub(super) fn at_first(mesh: &Mesh, driven: &[VertexId]) -> Self {
         let mut node = vec![NO_NODE; mesh.points.len()];
         (0..).zip(driven).for_each(|(number, v)| node[v.index()] = number);
@@ -108,13 +112,13 @@ impl Known {
     }
 }
 
-/// The EAS of each cell that is a tet, of others no number.
+/// The EAS of each cell that is a tet; NaN for others.
 fn first_eas(mesh: &Mesh) -> Vec<f64> {
     mesh.tet_field("eas", eas).values.to_f64().unwrap_or_default()
 }
 
 impl Now {
-    /// Sets up the motion of a mesh from where it is.
+    /// Sets up the motion of a mesh from its current position.
     pub(super) fn new(
         mesh: Mesh,
         known: Known,
@@ -127,7 +131,7 @@ impl Now {
         Self::of(mesh, mover, known, left, wall, threads)
     }
 
-    /// The same with a mover that is there; its reference may be another place than where the mesh is.
+    /// Builds the state of a mesh with a given mover, whose reference may differ from the current position.
     pub(super) fn of(
         mesh: Mesh,
         mover: Mover,
@@ -141,7 +145,7 @@ impl Now {
         Ok(Self { mesh, tets, mover, known, drive, left })
     }
 
-    /// Goes on with a mesh that came of `given`: this one, with [all that is known of it](Self::put_known) as arrays.
+    /// Continues with a mesh derived from `given`: this one, with [its records](Self::put_known) as arrays.
     pub(super) fn next(
         &self,
         (given, mut mesh): (&Mesh, Mesh),
@@ -155,14 +159,15 @@ impl Now {
         Self::new(mesh, known, left, wall, options, threads)
     }
 
-    /// Tets that are flat or inverted where their vertices were as the last step began.
+    /// Tets that are flat or inverted at the positions that their vertices had when the last step began.
     pub(super) fn inverted_at_start(&self, threads: &Threads) -> Option<InvertedAtStart> {
         let shape = self.tets.shape(&self.known.before, 0.0, threads);
         let worst = shape.worst.map(|(cell, eas, place)| WorstTet { eas, cell, place });
         worst.filter(|_| shape.inverted > 0).map(|worst| InvertedAtStart { tets: shape.inverted, worst })
     }
 
-    /// Where the mover is to take the driven vertices, for displacements of the nodes of the wall.
+    /// The displacements of the driven vertices from the mover's reference, given those of the nodes of the
+    /// wall.
     pub(super) fn target(&self, displacement: &[Point]) -> Vec<Point> {
         let carried = self.drive.carry(displacement);
         let reference = self.mover.reference();
@@ -170,27 +175,27 @@ impl Now {
         self.mover.boundary().iter().zip(carried).map(of).collect()
     }
 
-    /// Where the driven vertices are, from the mover's reference.
+    /// The current displacements of the driven vertices from the mover's reference.
     pub(super) fn here(&self) -> Vec<Point> {
         let reference = self.mover.reference();
         let of = |v: &VertexId| sub(self.mesh.points[v.index()], reference[v.index()]);
         self.mover.boundary().iter().map(of).collect()
     }
 
-    /// Whether a bad tet was left by repair, and is about as bad as then.
+    /// Whether repair has left this tet, and it is about as bad as then.
     pub(super) fn is_left(&self, cell: CellId, eas: f64) -> bool {
         let found = self.left.binary_search_by_key(&cell, |left| left.cell);
         found.is_ok_and(|i| AS_LEFT.contains(&(eas / self.left[i].eas)) || eas == self.left[i].eas)
     }
 
-    /// Forgets that tets were left by repair which are bad no longer: if they are bad again they are tried again.
+    /// Drops the records of left tets that are no longer bad: if they become bad again they are tried again.
     pub(super) fn forget_good(&mut self, shape: &Shape) {
         let mut bad: Vec<CellId> = shape.bad.iter().map(|(cell, _)| *cell).collect();
         bad.sort_unstable();
         self.left.retain(|left| bad.binary_search(&left.cell).is_ok());
     }
 
-    /// How many of the bad tets walls force.
+    /// How many of the bad tets are forced by walls.
     pub(super) fn n_forced(&self, shape: &Shape) -> usize {
         let is_forced = |cell: CellId| {
             let found = self.left.binary_search_by_key(&cell, |left| left.cell);
@@ -206,8 +211,8 @@ impl Now {
         mesh
     }
 
-    /// Gives a mesh that is about to change what has to follow as point arrays; the rules with those for it. `before` is where the vertices were as the step
-    /// began.
+    /// Adds the records of vertices to a mesh that is about to change, as point arrays, and returns the rules
+    /// with those for them. `before` is where the vertices were when the step began.
     pub(super) fn put_known(&self, mesh: &mut Mesh, before: &[Point], rules: &Rules) -> Rules {
         let mut rules = rules.clone();
         let rest = self.known.rest.as_deref().map(|rest| (REST, rest));
@@ -216,13 +221,13 @@ impl Now {
             mesh.set_point_field(Field::vectors(name, values));
             rules.points.insert(name.to_owned(), Rule::Linear);
         }
-        // A rule may name an array that the user has taken off since.
+        // A rule may name an array that the user has removed since.
         rules.points.retain(|name, _| mesh.point_field(name).is_some());
         rules.cells.retain(|name, _| mesh.cell_field(name).is_some());
         rules
     }
 
-    /// What is known of the vertices of a mesh that came of one with [these arrays](Self::put_known).
+    /// Takes the records of vertices off a mesh derived from one that [has them as arrays](Self::put_known).
     pub(super) fn known_of(&self, mesh: &mut Mesh, history: &History) -> Result<Known> {
         let mut take = |name: &str| -> Result<Field> {
             let place = mesh.point_data.iter().position(|field| field.name == name);
@@ -250,9 +255,9 @@ impl Now {
     }
 }
 
-/// Point arrays that go along while a mesh is changed.
+/// Point arrays that are carried along while a mesh changes.
 pub(super) const FIRST: &str = "moving:first";
 pub(super) const REST: &str = "moving:rest";
 pub(super) const BEFORE: &str = "moving:before";
-/// Arrays of a state.
+/// A cell array of a saved state.
 pub(super) const FIRST_EAS: &str = "moving:first_eas";

@@ -1,4 +1,4 @@
-//! What a moving mesh is told: patches by label, since ids do not outlast a change.
+//! Options of a moving mesh: patches by label, since ids do not outlast a change.
 
 use serde::Serialize;
 
@@ -10,37 +10,50 @@ use crate::mesh::{Boundary, Mesh, Surface, cone_volume, seamless};
 use crate::motion::{self, Extent, FacetSet, Limits, Method, RigidLayer, SlideTolerance};
 use crate::remesh;
 
-/// How a mesh is kept good while its walls move.
+/// How a mesh moves with its walls, and how its quality is kept.
 #[derive(Clone, Debug, Serialize)]
 pub struct Options {
     /// How the inside follows the walls.
     pub motion: Motion,
-    /// What is bad, and what may be done about it; `None`: nothing is repaired, and a step ends where a cell would turn over. Default: EAS below 0.2, the surface kept.
+    /// Which tets are bad, and what may be done about them; `None`: nothing is repaired, and a step ends
+    /// where a cell would turn over. Default: EAS below 0.2, the surface kept.
     pub repair: Option<remesh::Options>,
-    /// Where something is repaired, it becomes this much better than the limit, and so do tets in between that would be bad after another fall like the one since the last
-    /// change: the next step is not to bring them below it at once. Default: 0.05.
+    /// Repaired tets are improved to this much above the limit, so that the next step does not bring them
+    /// below it at once. Tets within this margin are repaired, too, if another fall like the one since the
+    /// last change would make them bad. Default: 0.05.
     pub margin: f64,
-    /// No step, or part of one, takes a tet that can be repaired below this EAS: it is repaired on the way, as long as that is easy. Default: 0.05.
+    /// No step, or part of one, takes a repairable tet below this EAS: it is repaired on the way, as long as
+    /// that is easy. Default: 0.05.
     pub floor: f64,
-    /// Where a repair changes the mesh, tets below this EAS are made better on the whole, too: those near it, and those that are not as they were at first. And as many vertices inside are
-    /// kept as there were at first. So the next steps make fewer tets bad, and a long motion leaves the mesh that it began with. Default: 0.75; 0: bad tets are repaired, and nothing else is done.
+    /// Where a repair changes the mesh, tets below this EAS are improved as a whole, too: those near the
+    /// change, and those that have deteriorated since the start. The number of free vertices is kept as well.
+    /// So the next steps make fewer tets bad, and a long motion preserves the mesh that it began with.
+    /// Default: 0.75; with 0 only bad tets are repaired.
     pub improve_below: f64,
-    /// Whether the walls come back to where they were at first, again and again. Then what is [improved](Self::improve_below) is to be good there, too: otherwise each cycle undoes what
-    /// the last one did. A mesh that still changes on the way to each return, and loses, is replaced by the first one when the walls are back: a change of its own
-    /// ([`Why::Return`](super::Why::Return)), by which arrays are carried as by all others. From then on the mesh is improved for where it is alone, and the first one is put back at each return. Meshes that settle are
-    /// never replaced; nothing is put back after a refinement, or where nothing is repaired. Harmful where walls go on, such as a body that turns. Default: no.
+    /// Whether the walls come back to their first position again and again. Then
+    /// [improved](Self::improve_below) tets are to be good there, too: otherwise each cycle undoes what the
+    /// last one did. A mesh that still changes on the way to each return, and loses quality, is replaced by
+    /// the first one when the walls are back: a change of its own ([`Why::Return`](super::Why::Return)), by
+    /// which arrays are carried as by all others. From then on the mesh is improved only for its current
+    /// position, and the first one is put back at each return. Meshes that settle are never replaced; nothing
+    /// is put back after a refinement, or if nothing is repaired. Harmful where walls do not come back, as
+    /// with a body that turns. Default: no.
     pub returns: bool,
-    /// Whether a repair that brings tets without volume where their vertices were as the step began is made once more with the tets that they replace held, and so on: schemes that
-    /// integrate over an earlier time level need their volume there. Held tets may stay bad for this step. What is left after some tries is reported as
+    /// Whether a repair is repeated if it makes tets without positive volume at the positions that their
+    /// vertices had when the step began, with the tets that they replaced held, and so on: schemes that
+    /// integrate over an earlier time level need their volume there. Held tets may stay bad for this step.
+    /// Tets left after some tries are reported as
     /// [`Step::inverted_at_start`](super::Step::inverted_at_start). Default: no.
     pub valid_at_start: bool,
-    /// What becomes of arrays where the mesh changes.
+    /// How arrays are carried where the mesh changes.
     pub rules: Rules,
-    /// Cell arrays whose integral over each cell stays while the cell moves: a density goes down where its cell grows. All others keep their values.
+    /// Cell arrays whose integral over each cell stays constant while the cell moves: a density decreases as
+    /// its cell grows. All others keep their values.
     pub contents: Contents,
     /// Which patches are watched. Default: none.
     pub watch: Option<Watching>,
-    /// So many changes are remembered for [`MovingMesh::history_since`](super::MovingMesh::history_since). Default: 64.
+    /// How many changes are remembered for [`MovingMesh::history_since`](super::MovingMesh::history_since).
+    /// Default: 64.
     pub remembered: usize,
 }
 
@@ -63,10 +76,10 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Refuses numbers that mean nothing.
+    /// Checks that all numbers are in their ranges.
     ///
     /// # Errors
-    /// Names the first of them.
+    /// If a number is out of range; the error names the first.
     pub(super) fn check(&self) -> Result<()> {
         self.repair.as_ref().map_or(Ok(()), remesh::Options::check)?;
         for (what, value) in
@@ -89,33 +102,36 @@ impl Options {
 /// Names of cell arrays that are densities of something that stays in its cell.
 pub type Contents = Vec<String>;
 
-/// How the inside follows the walls: as [`motion::Options`], with patches by label.
+/// How the inside follows the walls: the options of [`motion::Options`], with patches by label.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Motion {
-    /// The method. Facets that it names are not looked at: see [`Self::bodies`].
+    /// The method. Facets that it names are ignored: see [`Self::bodies`].
     pub method: Method,
-    /// As [`motion::Options::strain`].
+    /// Where the strain around bodies goes: see [`motion::Options::strain`].
     pub strain: motion::Strain,
-    /// The patches of [`Method::Bodies`], each a body; none: as there.
+    /// The patches of [`Method::Bodies`], each a body; if empty, each connected part of the walls is one,
+    /// except the outer one.
     pub bodies: Vec<i32>,
-    /// As [`motion::Options::within_walls`].
+    /// Whether vertices only follow walls that they can reach: see [`motion::Options::within_walls`].
     pub within_walls: bool,
-    /// As [`motion::Options::smoothing`]. Default: none.
+    /// The number of smoothing sweeps after each step: see [`motion::Options::smoothing`]. Default: none.
     pub smoothing: usize,
     /// Patches inside the volume whose vertices are driven, such as a flap.
     pub inside: Vec<i32>,
-    /// Flat patches whose vertices slide in their plane, but for those of patches inside.
+    /// Flat patches whose vertices slide in their plane, except those that are also on patches inside.
     pub sliding: Vec<i32>,
-    /// As [`motion::Options::slide_tolerance`].
+    /// How far sliding vertices may be off their plane: see [`motion::Options::slide_tolerance`].
     pub slide_tolerance: SlideTolerance,
-    /// Vertices that keep their place relative to the wall, and the patches that are that wall; no patches: all that do not slide.
+    /// The extent of the layer of vertices that keep their place relative to the wall, and the patches of
+    /// that wall; with no patches, all that do not slide.
     pub rigid_layer: Option<(Extent, Vec<i32>)>,
-    /// As [`motion::Options::limits`].
+    /// Limits of a step: see [`motion::Options::limits`].
     pub limits: Limits,
 }
 
 impl Motion {
-    /// The vertices of a mesh that are driven: those of its boundary, and of patches inside; rising. What [`Script`](super::Script) is about.
+    /// The driven vertices of a mesh: those of its boundary and of patches inside, in rising order. A
+    /// [`Script`](super::Script) moves these.
     pub fn driven(&self, mesh: &Mesh) -> Vec<VertexId> {
         let mut driven = Boundary::of(&mesh.cells).vertices;
         driven.extend(self.driven_inside(mesh));
@@ -124,7 +140,7 @@ impl Motion {
         driven
     }
 
-    /// The same for a mesh as it is now.
+    /// The options for a mesh as it is now, with patches by their facets.
     pub(super) fn of(&self, mesh: &Mesh) -> motion::Options {
         let sets = |labels: &[i32]| -> Vec<FacetSet> {
             labels.iter().map(|&label| FacetSet::of_patch(mesh, label)).collect()
@@ -150,7 +166,7 @@ impl Motion {
         }
     }
 
-    /// The vertices of patches inside, rising; some may lie on the boundary.
+    /// The vertices of patches inside, in rising order; some may lie on the boundary.
     fn driven_inside(&self, mesh: &Mesh) -> Vec<VertexId> {
         let all = self.inside.iter().map(|&label| FacetSet::of_patch(mesh, label).vertices);
         let mut inside: Vec<VertexId> = all.flatten().collect();
@@ -162,7 +178,7 @@ impl Motion {
 
 impl Watching {
     /// # Errors
-    /// Names the first number that means nothing.
+    /// If a number is out of range; the error names the first.
     fn check(&self) -> Result<()> {
         self.options.check()?;
         if let Some(hold) = self.hold.filter(|hold| !(*hold >= 0.0 && *hold <= LARGEST)) {
@@ -182,20 +198,24 @@ impl Watching {
 pub struct Watching {
     /// Names or numbers of patches; each is a body. All pairs are measured.
     pub patches: Vec<String>,
-    /// How.
+    /// How distances are measured.
     pub options: contact::Options,
-    /// How far ahead is looked at the present velocity, in units of time; `None`: as long as the last step took.
+    /// How far contact is predicted, at the present velocity, in units of time; `None`: as far as the last
+    /// step.
     pub horizon: Option<f64>,
-    /// Walls stop at this distance, wherever they are requested to go: each of the patches gives way to all after it, and slides along them. In a step they go straight, from where the
-    /// last one left them. No triangle is kept farther away than it was at first. Default: none, and walls that meet end a step.
+    /// The distance at which walls stop, wherever they are requested to go: each patch gives way to all those
+    /// after it, and slides along them. Within a step, walls move in a straight line from where the last one
+    /// left them. No triangle is kept farther away than it was at first. Default: none; walls that meet then
+    /// end a step.
     pub hold: Option<f64>,
 }
 
 impl Watching {
-    /// The bodies in a mesh. Those that are closed parts of its boundary have their free side where the volume is, however their triangles are turned in the file.
+    /// The watched patches of a mesh as bodies. Those that are closed parts of its boundary have their free
+    /// side where the volume is, however the file orders their triangles.
     ///
     /// # Errors
-    /// When it has no such patch.
+    /// If the mesh has no such patch.
     pub(super) fn bodies(&self, mesh: &Mesh) -> Result<Vec<contact::Body>> {
         let boundary = Surface::boundary_of(mesh);
         let bodies = contact::Body::of_mesh(mesh, "surface", &self.patches, 0)?;
@@ -203,7 +223,7 @@ impl Watching {
         let body = |(mut body, _): (contact::Body, _)| {
             let all = boundary.turned(&body.triangles);
             if let Some(mut triangles) = all.filter(is_closed) {
-                // The outer wall is the room; what is closed otherwise is a body in it, and faces the volume.
+                // The outer wall is a room; any other closed patch is a body in it, and faces the volume.
                 let origin = mesh.points[triangles[0][0].index()];
                 let volume = |t: &[VertexId; 3]| cone_volume(t.iter().copied(), &mesh.points, origin);
                 body.room = match triangles.iter().map(volume).sum::<f64>() >= 0.0 {

@@ -1,27 +1,31 @@
-//! What walls do in time: motions told in words, displacements of their own, measured frames; each with a course in time.
+//! The motion of walls in time: prescribed motions, given displacements, and measured frames, each with a
+//! course in time.
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, norm, scale, sub};
 use crate::motion::{FacetSet, Prescribed};
 
-/// The part of a motion that is done at a phase: 0 at the begin of a period, 1 at its end. Beyond, periods follow each other.
+/// The fraction of a motion that is done at a phase: 0 at the beginning of a period, 1 at its end. Periods
+/// repeat.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum InTime {
-    /// There and back, softly: `(1 - cos(2 pi phase)) / 2`, all of it at half the period.
+    /// There and back, smoothly: `(1 - cos(2 pi phase)) / 2`, complete at half the period.
     #[default]
     Beat,
     /// To one side, to the other, and back: `sin(2 pi phase)`.
     Swing,
-    /// Evenly, from none at the begin of the first period to all of it at its end, where it stays.
+    /// Linear, from zero at the beginning of the first period to complete at its end, where it stays.
     Ramp,
-    /// Linear between these pairs of phase and part, which rise in phase; the first follows the last a period later.
+    /// Linear between these pairs of phase and fraction, in rising order of phase; the last pair is followed
+    /// by the first of the next period.
     Table(Vec<[f64; 2]>),
 }
 
 impl InTime {
     /// # Errors
-    /// When a table has no two entries, phases outside of 0 to 1 or that do not rise, or a number that is not finite.
+    /// If a table has fewer than two entries, phases outside 0 to 1 or not rising, or a number that is not
+    /// finite.
     pub fn check(&self) -> Result<()> {
         let Self::Table(table) = self else { return Ok(()) };
         let is_finite = table.as_flattened().iter().all(|x| x.is_finite());
@@ -36,7 +40,7 @@ impl InTime {
         }
     }
 
-    /// The part that is done.
+    /// The fraction of the motion that is done at this phase.
     pub fn at(&self, phase: f64) -> f64 {
         let turn = std::f64::consts::TAU * (phase - phase.floor());
         match self {
@@ -63,22 +67,24 @@ fn in_table(table: &[[f64; 2]], phase: f64) -> f64 {
     if width > 0.0 { a[1] + (b[1] - a[1]) * (phase - a[0]) / width } else { b[1] }
 }
 
-/// Parts of a script are compared at so many phases of a period.
+/// The number of phases per period at which parts of a script are compared.
 const PHASES: usize = 16;
 
-/// Two displacements are one where they differ by less than this part of their size and that of the coordinates.
+/// Two displacements are equal if they differ by less than this fraction of their size and that of the
+/// coordinates.
 const ROUNDING: f64 = 1e-12;
 
-/// The displacement of each driven vertex at any time. A vertex obeys the first that is told about it; the others stay.
+/// The displacement of each driven vertex at any time. A vertex follows the first part that names it;
+/// vertices that no part names stay.
 #[derive(Clone, Debug)]
 pub struct Script {
-    /// The vertices of the first mesh, rising.
+    /// The driven vertices of the first mesh, in rising order.
     driven: Vec<VertexId>,
     places: Vec<Point>,
-    /// Which part each obeys, and its place in it.
+    /// The part that each vertex follows, and its index in it.
     obeys: Vec<Option<(usize, usize)>>,
     parts: Vec<Part>,
-    /// The driven vertices that the last part is about, and the place of each in it.
+    /// The driven vertices that the last part names, and the index of each in it.
     last_rows: Vec<(usize, usize)>,
 }
 
@@ -89,12 +95,13 @@ enum Part {
     Follow(Prescribed, InTime),
     /// A displacement for each vertex.
     Go(Vec<Point>, InTime),
-    /// Displacements for each frame, evenly over a period; whether the first follows the last.
+    /// Displacements for each frame, evenly spaced over a period, and whether the first follows the last.
     Frames(Vec<Vec<Point>>, bool),
 }
 
 impl Script {
-    /// Nothing moves. `driven` are the vertices that [`Motion::driven`](super::Motion::driven) tells, at their first `places`.
+    /// A script in which nothing moves. `driven` lists the vertices that
+    /// [`Motion::driven`](super::Motion::driven) returns; `points` are the points of the first mesh.
     pub fn still(driven: &[VertexId], points: &[Point]) -> Self {
         Self {
             driven: driven.to_vec(),
@@ -105,40 +112,42 @@ impl Script {
         }
     }
 
-    /// Where the driven vertices are at first.
+    /// The first positions of the driven vertices.
     pub fn places(&self) -> &[Point] {
         &self.places
     }
 
-    /// These stay; how many of them obey, since nothing was told about them before.
+    /// Lets these vertices stay; returns how many of them were not named before, and so obey.
     pub fn hold(&mut self, vertices: &[VertexId]) -> usize {
         self.give(vertices, Part::Stay)
     }
 
-    /// These follow a motion of space.
+    /// Lets these vertices follow a motion of space; returns how many of them were not named before.
     ///
     /// # Errors
-    /// As [`Prescribed::check`] and [`InTime::check`].
+    /// As for [`Prescribed::check`] and [`InTime::check`].
     pub fn follow(&mut self, vertices: &[VertexId], motion: Prescribed, in_time: InTime) -> Result<usize> {
         motion.check()?;
         in_time.check()?;
         Ok(self.give(vertices, Part::Follow(motion, in_time)))
     }
 
-    /// These go each its own way: `by` is the whole of it.
+    /// Lets each of these vertices move by its own displacement in `by`, scaled by `in_time`; returns how
+    /// many of them were not named before.
     ///
     /// # Errors
-    /// As [`InTime::check`]; when there are not as many ways as vertices.
+    /// As for [`InTime::check`], and if `by` does not have one displacement per vertex.
     pub fn go(&mut self, vertices: &[VertexId], by: Vec<Point>, in_time: InTime) -> Result<usize> {
         in_time.check()?;
         check_rows(&by, vertices)?;
         Ok(self.give(vertices, Part::Go(by, in_time)))
     }
 
-    /// These are where frames say, which are spread evenly over a period and linear in between.
+    /// Lets these vertices follow frames, which are evenly spaced over a period, with linear interpolation in
+    /// between; returns how many of them were not named before.
     ///
     /// # Errors
-    /// When there is no frame, or one that has not as many displacements as there are vertices.
+    /// If there are no frames, or if a frame does not have one displacement per vertex.
     pub fn frames(
         &mut self,
         vertices: &[VertexId],
@@ -167,8 +176,8 @@ impl Script {
         n
     }
 
-    /// Vertices that the part told last is about, too, but that obey an earlier one which takes them elsewhere in a period: by more than rounding.
-    /// Those that stay are not among them.
+    /// Vertices that the last part names but that follow an earlier one which moves them differently during a
+    /// period, by more than rounding. Vertices that were told to stay are not included.
     pub fn contradicted(&self) -> Vec<VertexId> {
         let Some((last, part)) = self.parts.len().checked_sub(1).map(|last| (last, &self.parts[last])) else {
             return Vec::new();
@@ -189,7 +198,7 @@ impl Script {
         self.last_rows.iter().map(|(i, row)| (i, row)).filter_map(contradicted).collect()
     }
 
-    /// The displacement of each driven vertex at a phase: time over period.
+    /// The displacement of each driven vertex at a phase, which is time over period.
     pub fn at(&self, phase: f64) -> Vec<Point> {
         let of = |(&place, obeys): (&Point, &Option<(usize, usize)>)| match obeys {
             None => [0.0; 3],
@@ -207,7 +216,7 @@ impl Part {
             Self::Go(by, in_time) => scale(by[row], in_time.at(phase)),
             Self::Frames(frames, is_periodic) => {
                 let n = frames.len();
-                // A phase of k / n is frame k, whatever rounding did to it.
+                // A phase of k / n is frame k, whatever its rounding error.
                 let at = match is_periodic {
                     true => whole((phase - phase.floor()) * n as f64),
                     false => whole(phase.clamp(0.0, 1.0) * (n - 1) as f64),
@@ -220,7 +229,7 @@ impl Part {
     }
 }
 
-/// A number of frames, whole where it is but for rounding.
+/// A number of frames, rounded if it is whole but for rounding error.
 fn whole(x: f64) -> f64 {
     if (x - x.round()).abs() < 1e-9 { x.round() } else { x }
 }
@@ -232,7 +241,8 @@ fn check_rows(rows: &[Point], vertices: &[VertexId]) -> Result<()> {
     }
 }
 
-/// The unit normals of the vertices of some facets, away from the volume where the facets face that way: means of the facets by area. The way of a wall that swells.
+/// The unit normals at the vertices of some facets, outward from the volume if the facets are: area-weighted
+/// means over the facets. The direction of a wall that swells.
 pub fn normals(facets: &FacetSet, points: &[Point]) -> Vec<Point> {
     let mut sums = vec![[0.0; 3]; facets.vertices.len()];
     for triangle in facets.triangles() {
@@ -293,7 +303,8 @@ mod tests {
         }
         assert_eq!(script.at(0.5)[0], [0.0, 0.0, 1.0]);
         assert!((script.at(6.5 / 7.0)[1][0] - 0.3).abs() < 1e-15);
-        // Vertex 4 follows frames, 5 stays; 2 and 4 obey earlier parts that take them elsewhere than this one.
+        // Vertex 4 follows frames, 5 stays; 2 and 4 obey earlier parts that move them differently from this
+        // one.
         assert_eq!(script.follow(&driven, Prescribed::Shift([0.0, 0.0, 1.0]), InTime::Ramp).unwrap(), 0);
         assert_eq!(script.contradicted(), [2, 4].map(VertexId));
         assert_eq!(script.follow(&driven, Prescribed::Shift([0.0, 0.0, 2.0]), InTime::Ramp).unwrap(), 0);

@@ -1,4 +1,4 @@
-//! What a step says of itself.
+//! The report of a step.
 
 use std::sync::Arc;
 
@@ -10,45 +10,46 @@ use crate::mesh::history::History;
 use crate::moving::shapes::Shape;
 use crate::remesh::Counts;
 
-/// What became of a step: the certificate of the mesh as it is now.
+/// The outcome of a step: the certificate of the mesh as it is now.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Step {
-    /// Its number, from 1.
+    /// Number of the step, from 1.
     pub step: usize,
     /// The time that was reached.
     pub time: f64,
-    /// Whether the walls are where they were asked to be.
+    /// Whether the walls are at their requested places.
     pub complete: bool,
-    /// The part of the way that was gone: 1 when complete.
+    /// The fraction of the way that was completed: 1 if complete.
     pub fraction: f64,
-    /// In how many parts it was gone; 1 as a rule.
+    /// The number of parts in which the step was made; usually 1.
     pub legs: usize,
-    /// What was changed, in order.
+    /// The changes of the mesh, in order.
     pub changes: Vec<Change>,
-    /// Points of the mesh.
+    /// Number of points of the mesh.
     pub points: usize,
-    /// Its tets.
+    /// Number of tets.
     pub tets: usize,
-    /// Tets that are bad: below the limit of EAS, and not of a boundary layer.
+    /// Number of bad tets: below the EAS limit, and not in a boundary layer.
     pub bad: usize,
-    /// Of these, tets that walls force: too narrow an angle or gap for a good one.
+    /// Number of bad tets that walls force: the angle or gap is too narrow for a good one.
     pub forced: usize,
-    /// Tets that are flat or inverted.
+    /// Number of tets that are flat or inverted.
     pub inverted: usize,
     /// The worst tet.
     pub worst: Option<WorstTet>,
-    /// How good all tets are.
+    /// Quality statistics of all tets.
     pub quality: Qualities,
-    /// Where the step changed the mesh: tets that are flat or inverted where their vertices were as the step began. `None` where there is none.
+    /// If the step changed the mesh: tets that are flat or inverted at the positions that their vertices had
+    /// when the step began. `None` if there are none.
     pub inverted_at_start: Option<InvertedAtStart>,
-    /// How near the watched patches are.
+    /// The gaps between the watched patches.
     pub gaps: Option<Gaps>,
-    /// Where the time went.
+    /// Seconds by stage.
     pub seconds: Seconds,
 }
 
 impl Step {
-    /// Why the walls are not where they were requested to be; `None` where they are.
+    /// Why the walls are not at their requested places; `None` if they are.
     pub fn not_reached(&self) -> Option<String> {
         if !self.complete {
             let way = percent(self.fraction);
@@ -64,19 +65,21 @@ impl Step {
 pub struct WorstTet {
     /// Its EAS.
     pub eas: f64,
-    /// Which cell.
+    /// Id of the cell.
     pub cell: CellId,
-    /// The mean of its corners.
+    /// Its centroid.
     pub place: Point,
 }
 
-/// Tets of a changed mesh that are flat or inverted at the places that their vertices had as the step began; for new vertices these places are carried across the change as
-/// any array of points. Schemes that integrate over the mesh of an earlier time level (BDF2, a discrete geometric conservation law) find no positive volume there.
+/// Tets of a changed mesh that are flat or inverted at the positions that their vertices had when the step
+/// began; for new vertices these positions are carried across the change like any point array. Schemes that
+/// integrate over the mesh of an earlier time level (BDF2, a discrete geometric conservation law) find no
+/// positive volume there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct InvertedAtStart {
-    /// How many.
+    /// Number of such tets.
     pub tets: usize,
-    /// The worst of them, with its EAS and place as the step began.
+    /// The worst of them, with its EAS and place when the step began.
     pub worst: WorstTet,
 }
 
@@ -86,43 +89,44 @@ pub struct InvertedAtStart {
 pub enum Why {
     /// Tets were bad.
     Repair,
-    /// Tets were to be divided, or divisions taken back.
+    /// Tets were divided, or divisions undone.
     Refinement,
     /// Walls have come back, and the first mesh was put back.
     Return,
 }
 
-/// A change of connectivity, at one time.
+/// A change of connectivity at one time.
 #[derive(Clone, Debug, Serialize)]
 pub struct Change {
-    /// When.
+    /// The time of the change.
     pub time: f64,
-    /// Why.
+    /// The reason for the change.
     pub why: Why,
-    /// Tets before.
+    /// Number of tets before.
     pub tets_before: usize,
-    /// Tets after.
+    /// Number of tets after.
     pub tets_after: usize,
-    /// The part of the cells that are as they came, to the bit.
+    /// The fraction of the old cells that are unchanged, to the bit.
     pub kept_share: f64,
-    /// Bad tets before, by the limit of the step.
+    /// Number of bad tets before, by the limit of the step.
     pub bad_before: usize,
     /// The worst EAS before.
     pub worst_before: f64,
-    /// How often each operation was made; of repairs.
+    /// How often each operation was applied, for repairs and coarsening.
     pub operations: Counts,
-    /// By how much new tets took more or less than the volume of old ones, as a part of what changed.
+    /// By how much new tets took more or less than the volume of the old ones, relative to that volume: the
+    /// largest over all regions.
     pub volume_deviation: f64,
-    /// From the mesh before to the mesh after, both at this time.
+    /// The history from the mesh before to the mesh after, both at this time.
     #[serde(skip)]
     pub history: Arc<History>,
-    /// Where the vertices of the mesh before were at this time.
+    /// Positions of the old vertices at this time.
     #[serde(skip)]
     pub points_before: Vec<Point>,
 }
 
 impl Change {
-    /// `counts`: tets before and after; `shape`: how the tets before were.
+    /// A change; `counts` are the tets before and after, `shape` is that of the tets before.
     pub(super) fn new(
         (time, why): (f64, Why),
         [tets_before, tets_after]: [usize; 2],
@@ -148,22 +152,23 @@ impl Change {
     }
 }
 
-/// How near watched patches are to each other.
+/// The gaps between watched patches.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Gaps {
-    /// The least gap of all; `None` where nothing is within reach.
+    /// The least gap of all; `None` if nothing is within reach.
     pub least: Option<f64>,
-    /// Every pair.
+    /// The nearest points of every pair.
     pub pairs: Vec<Closest>,
-    /// Vertices that warn.
+    /// Number of vertices within the warning distance.
     pub warned: usize,
-    /// Nodes of the first mesh that are not where they were requested to be, since they were stopped in front of another patch, or held back by one that was: see [`Watching::hold`](super::Watching::hold).
+    /// Number of nodes of the first mesh that are not at their requested place because they were stopped in
+    /// front of another patch, or held back by one that was: see [`Watching::hold`](super::Watching::hold).
     pub held: usize,
-    /// Of these the one that is farthest from where it was requested to be.
+    /// Of these nodes, the one farthest from its requested place.
     pub farthest_held: Option<Stopped>,
-    /// A patch that is nearer to another one than it is to be held: there is no room for it to give way.
+    /// A patch that is nearer to another one than the distance to keep, because it has no space to give way.
     pub cramped: Option<String>,
-    /// Nothing touches earlier, at the velocities of this step; `None`: not within the horizon.
+    /// The earliest time of contact at the velocities of this step; `None`: not within the horizon.
     pub touch_not_before: Option<f64>,
 }
 
@@ -174,20 +179,20 @@ pub struct Stopped {
     pub patch: String,
     /// How far it is from its requested place.
     pub short: f64,
-    /// Where it is.
+    /// Its position.
     pub place: Point,
 }
 
-/// The nearest places of two patches.
+/// The nearest points of two patches.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Closest {
-    /// Their names.
+    /// The names of the patches.
     pub patches: [String; 2],
-    /// How far apart; `None` where farther than is looked.
+    /// Their distance; `None` if it exceeds the search range.
     pub gap: Option<f64>,
-    /// The place on the first.
+    /// The nearest point on the first patch.
     pub place: Option<Point>,
-    /// Triangles that cross.
+    /// Number of pairs of triangles that cross.
     pub crossings: usize,
 }
 
@@ -196,15 +201,15 @@ pub struct Closest {
 pub struct Seconds {
     /// Placing vertices.
     pub motion: f64,
-    /// Looking for bad and inverted tets.
+    /// Finding bad and inverted tets.
     pub quality: f64,
     /// Repairing, and carrying arrays.
     pub repair: f64,
-    /// Setting the motion up again after a change.
+    /// Rebuilding the motion after a change.
     pub setup: f64,
     /// Keeping walls apart, and measuring gaps.
     pub contact: f64,
-    /// All of it.
+    /// The total.
     pub total: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The walls as they came: what the caller's displacements are about, however the walls are divided by now.
+//! The walls as given: displacements refer to them, however the walls are divided by now.
 
 use std::collections::HashMap;
 
@@ -8,31 +8,32 @@ use crate::mesh::{Mesh, Surface, bounds, largest_extent};
 use crate::motion::{FacetSet, SurfaceCarrier};
 use crate::moving::options::Options;
 
-/// Walls that are so near to where they were at first, as a part of their extent, are at rest.
+/// Walls are at rest if no node has moved by more than this fraction of their extent.
 const AT_REST: f64 = 1e-9;
 
-/// Stands for no node: a vertex that came later.
+/// Marks a vertex that is not a node: one that was inserted later.
 pub(super) const NO_NODE: u32 = u32::MAX;
 
-/// Stands for none of the watched patches.
+/// Marks a triangle of none of the watched patches.
 pub(super) const NO_BODY: u32 = u32::MAX;
 
 /// The driven vertices of the first mesh, the *nodes*, and the triangles between them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Wall {
-    /// Where each node was at first.
+    /// The position of each node at first.
     pub(super) places: Vec<Point>,
-    /// By number of node.
+    /// Triangles, by node numbers.
     pub(super) triangles: Vec<[VertexId; 3]>,
-    /// Where walls are kept apart, which of the watched patches each triangle is of, or [`NO_BODY`]; else empty.
+    /// If walls are kept apart: the index of the watched patch of each triangle, or [`NO_BODY`]; otherwise
+    /// empty.
     pub(super) body: Vec<u32>,
 }
 
 impl Wall {
-    /// `driven` are the vertices of the first mesh that the caller moves, rising.
+    /// The walls of the first mesh; `driven` lists the vertices that the caller moves, in rising order.
     ///
     /// # Errors
-    /// When a patch that is to be kept apart is not there, or is not driven.
+    /// If a patch that is to be kept apart does not exist, or is not driven.
     pub(super) fn of(mesh: &Mesh, driven: &[VertexId], options: &Options) -> Result<Self> {
         let node = |v: VertexId| driven.binary_search(&v).ok().map(VertexId::new);
         let nodes = |t: &[VertexId; 3]| Some([node(t[0])?, node(t[1])?, node(t[2])?]);
@@ -50,19 +51,20 @@ impl Wall {
         Ok(Self { places, triangles, body })
     }
 
-    /// Whether displacements leave the walls where they were at first, to rounding.
+    /// Whether displacements leave the walls at their first position, to rounding.
     pub(super) fn is_at_rest(&self, displacement: &[Point]) -> bool {
         let near = AT_REST * bounds(&self.places).map_or(0.0, largest_extent);
         displacement.iter().all(|d| norm(*d) <= near)
     }
 
-    /// The triangles of a watched patch.
+    /// The triangles of watched patch `k`.
     pub(super) fn body(&self, k: u32) -> Vec<[VertexId; 3]> {
         let of = self.triangles.iter().zip(&self.body).filter(|(_, body)| **body == k);
         of.map(|(t, _)| *t).collect()
     }
 
-    /// How the driven vertices of a later mesh take their displacements; `first` and `node` are about all of its vertices.
+    /// How the driven vertices of a later mesh take their displacements; `first` and `node` have an entry for
+    /// each of its vertices.
     pub(super) fn drive(
         &self,
         driven: &[VertexId],
@@ -97,9 +99,9 @@ fn not_driven(name: &str) -> Error {
 /// How the driven vertices of a mesh take their displacements from those of the nodes.
 #[derive(Clone, Debug)]
 pub(super) struct Drive {
-    /// The node that each is.
+    /// The node of each driven vertex, or [`NO_NODE`].
     node: Vec<u32>,
-    /// For those that are none.
+    /// Carries displacements to driven vertices that are not nodes, if there are any.
     carrier: Option<SurfaceCarrier>,
 }
 

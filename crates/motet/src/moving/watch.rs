@@ -1,4 +1,4 @@
-//! How near patches are to each other, and how long surely nothing touches.
+//! How near patches are to each other, and for how long contact is ruled out.
 
 use crate::base::{Point, Result, Threads, VertexId};
 use crate::contact::{self, Contact, FirstContact};
@@ -6,12 +6,12 @@ use crate::mesh::Mesh;
 use crate::moving::options::Watching;
 use crate::moving::step::{Closest, Gaps};
 
-/// The watched patches. Prepared once for each mesh, refitted at each step.
+/// The watched patches: prepared once for each mesh, refitted at each step.
 #[derive(Clone, Debug)]
 pub(super) struct Watch {
     asked: Watching,
     contact: Option<Contact>,
-    /// What was measured last.
+    /// The last measurement.
     pub(super) last: Option<contact::Gaps>,
 }
 
@@ -20,17 +20,17 @@ impl Watch {
         Self { asked, contact: None, last: None }
     }
 
-    /// The mesh has other triangles now.
+    /// Discards the prepared search after the mesh has changed its triangles.
     pub(super) fn forget(&mut self) {
         self.contact = None;
     }
 
-    /// Whether [`Self::last`] is of triangles that are no more, or there is none.
+    /// Whether [`Self::last`] refers to triangles that no longer exist, or does not exist.
     pub(super) fn is_stale(&self) -> bool {
         self.contact.is_none()
     }
 
-    /// Measures, and looks ahead where there is a velocity and time to look.
+    /// Measures the gaps, and looks ahead if a velocity and a duration are given.
     pub(super) fn measure(
         &mut self,
         mesh: &Mesh,
@@ -63,11 +63,12 @@ impl Watch {
     }
 }
 
-/// With a warning distance alone, patches that hang together are measured as far as this many of it.
+/// With only a warning distance given, connected patches are measured up to this multiple of it.
 const JOINED_WARNINGS: f64 = 4.0;
 
-/// Patches that share vertices are near to each other everywhere along what they share; which of that is a gap is found by ways along the surface. Without a
-/// limit that is the work of the whole wall: 6 s a step for a flap of 336 triangles, 7 ms within two warning distances.
+/// Patches that share vertices are near each other everywhere along what they share; which of that is a gap
+/// is found by paths along the surface. Without a limit the search covers the whole wall: 6 s per step for a
+/// flap of 336 triangles, 7 ms within two warning distances.
 fn within_reach(bodies: &[contact::Body], options: contact::Options) -> contact::Options {
     let Some(warn) = options.warn.filter(|_| options.within == f64::INFINITY) else { return options };
     let vertices = |body: &contact::Body| {

@@ -6,25 +6,26 @@ use crate::geometry::distance::triangle_triangle::closest_below;
 use crate::geometry::vector::largest_coordinate;
 use crate::spatial::{BoxTree, around, widened};
 
-/// What is nearer than this part of the coordinates touches.
+/// Anything nearer than this fraction of the largest coordinate touches.
 const TOUCHES: f64 = 1e-13;
 
-/// All of a wall that is kept away from others.
+/// All elements of a wall that is kept away from others.
 #[derive(Clone, Debug)]
 pub(super) struct Elements {
     pub(super) all: Vec<Element>,
 }
 
-/// A triangle, or a node: that has its node three times.
+/// A triangle or a node; a node is stored as three equal corners.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Element {
     pub(super) corners: [VertexId; 3],
-    /// How far away it has to be: no farther than at first, or what joins walls would be torn off.
+    /// The distance to keep: no more than at first, or walls that are joined would be torn apart.
     pub(super) least: f64,
 }
 
 impl Elements {
-    /// Of triangles between these nodes, rising, and of the nodes where triangles came nearer than the distance. What touches the obstacle at first is in none.
+    /// The elements of a wall: its triangles between these nodes (in rising order), and the nodes whose
+    /// triangles came nearer than the distance. Elements that touch the obstacle at first are left out.
     pub(super) fn new(
         triangles: &[[VertexId; 3]],
         nodes: &[VertexId],
@@ -52,7 +53,7 @@ impl Elements {
         });
         let mut all: Vec<Element> =
             free.iter().zip(least).map(|(&corners, least)| Element { corners, least }).collect();
-        // A node by itself may have to stay farther away than the triangles at it.
+        // A single node may have to stay farther away than the triangles at it.
         let mut of_triangles = vec![(distance, 0u32); nodes.len()];
         for element in &all {
             element.corners.iter().filter_map(place).for_each(|k| {

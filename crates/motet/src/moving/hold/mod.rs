@@ -1,4 +1,5 @@
-//! Walls that are kept apart: what would come too near to another wall, or go through it, stops in front of it.
+//! Walls that are kept apart: what would come too near another wall, or pass through it, stops in front of
+//! it.
 //!
 //! ```text
 //!      requested                       held
@@ -8,19 +9,22 @@
 //!    ============o============         =========================  the other wall
 //! ```
 //!
-//! | room | what it does |
+//! | file | what it does |
 //! |---|---|
-//! | `obstacle` | the walls that another one gives way to, and where it is when it goes along with them |
+//! | `obstacle` | the walls that another one gives way to, and where it is when it is carried along with them |
 //! | `elements` | triangles and nodes of a wall, and how near each may come |
-//! | `round` | how far they get without coming too near, and how they are pushed back to the distance |
-//! | `spread` | nodes beside one that was stopped are held back with it, so that no edge between them is lost |
+//! | `round` | how far elements get without coming too near, and how they are pushed back to the distance |
+//! | `spread` | nodes next to one that was stopped are held back with it, so that no edge between them is lost |
 //!
-//! In a step, every node of a wall is requested to go straight from where the last step left it to a new place. Of two walls the first gives way: it is carried along by
-//! the second, then goes straight on to its requested place. Each of its triangles goes as far as it comes no nearer to the other wall than a part
-//! ([`SLACK`](crate::contact::SLACK)) of the distance, which [`sweep_apart`](crate::contact::sweep_apart) finds by conservative advancement. So nothing passes through, however far it
-//! is requested to go. From there it is pushed back to the distance, away from what is nearest. A node that stands at the distance slides along as far as it is requested to go farther along than
-//! into what it stands on (friction, Coulomb 1785, of a coefficient of 1): pressed on hard it stops, on whatever slope it is.
-//! A round that neither stops nor pushes anything is the proof of what it leaves.
+//! In a step, every node of a wall is requested to move in a straight line from where the last step left it
+//! to a new place. Of two walls, the first gives way: it is carried along by the second, then moves straight
+//! on to its requested place. Each of its triangles moves only while its distance from the other wall exceeds
+//! a fraction ([`SLACK`](crate::contact::SLACK)) of the one to keep, which
+//! [`sweep_apart`](crate::contact::sweep_apart) finds by conservative advancement. So nothing passes through,
+//! however far it is requested to go. From there it is pushed back to the distance, away from what is
+//! nearest. A node that stands at the distance slides along as far as its requested way is longer along the
+//! obstacle than into it (friction, Coulomb 1785, with a coefficient of 1): pressed on hard it stops,
+//! whatever the slope. A round that neither stops nor pushes anything proves that its result is sound.
 
 mod elements;
 mod obstacle;
@@ -39,76 +43,79 @@ use crate::geometry::vector::{add, distance, dot, largest_coordinate, scale, sub
 use crate::moving::options::Watching;
 use crate::moving::wall::Wall;
 
-/// In how many parts a step is gone, and by which part of an edge's length the corrections at its ends may differ: one after the other, until the wall is sound.
+/// The number of parts of a step, and the fraction of an edge's length by which the corrections at its ends
+/// may differ: tried one after the other, until the wall is sound.
 const TRIES: [(usize, f64); 3] = [(1, 0.5), (4, 0.25), (8, 0.0)];
 
-/// Rounds of stopping, pushing back and holding back at most. Two or three are the rule.
+/// The largest number of rounds of stopping, pushing back and holding back. Two or three are typical.
 const ROUNDS: usize = 8;
 
-/// A distance is above this part of the coordinates: theirs are rounded to 1e-16.
+/// A distance has to exceed this fraction of the largest coordinate: coordinates are rounded to 1e-16.
 const RESOLUTION: f64 = 1e-12;
 
-/// A triangle that is held keeps this part of its area, seen along the normal that it would have where it is requested to be.
+/// A held triangle keeps at least this fraction of its area, projected along the normal at its requested
+/// place.
 const UPRIGHT: f64 = 0.01;
 
-/// Walls of which each is kept away from all that follow it.
+/// Walls, each of which is kept away from all that follow it.
 #[derive(Clone, Debug)]
 pub(super) struct Hold {
-    /// The last of the walls that give way first, and so on.
+    /// In reverse order: the last of the walls that give way comes first.
     walls: Vec<Yielding>,
-    /// Where each node was left by the last step, from its first place.
+    /// Displacement of each node from its first position, as the last step left it.
     pub(super) last: Vec<Point>,
 }
 
 /// A wall that gives way to others.
 #[derive(Clone, Debug)]
 struct Yielding {
-    /// The place of this wall among the watched patches.
+    /// Index of this wall among the watched patches.
     wall: usize,
     triangles: Vec<[VertexId; 3]>,
-    /// The nodes of these that the others do not share.
+    /// The nodes of the triangles that the other walls do not share.
     nodes: Vec<VertexId>,
     obstacle: Obstacle,
     elements: Elements,
     slopes: Slopes,
 }
 
-/// Where walls are after a step.
+/// The result of keeping walls apart in a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Held {
-    /// The displacement of each node from its first place.
+    /// Displacement of each node from its first position.
     pub(super) displacement: Vec<Point>,
-    /// How many nodes are not where they were requested to be.
+    /// How many nodes are not at their requested place.
     pub(super) n_nodes: usize,
-    /// The one that is farthest from there.
+    /// The node that is farthest from its requested place.
     pub(super) farthest: Option<Stopped>,
-    /// The first wall that has no room to keep its distance.
+    /// A wall that has no space to keep its distance.
     pub(super) cramped: Option<usize>,
 }
 
-/// A node that is not where it was requested to be.
+/// A node that is not at its requested place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stopped {
-    /// The place of its wall among the watched patches.
+    /// Index of its wall among the watched patches.
     pub(super) wall: usize,
     /// How far it is from its requested place.
     pub(super) short: f64,
-    /// Where it is.
+    /// Its position.
     pub(super) place: Point,
 }
 
 impl Hold {
-    /// Of patches that are watched and to be kept apart. A node that two of them share is kept from neither.
+    /// The watched patches as walls to keep apart; `None` if they are not to be. A node that two of them
+    /// share is not kept away from either.
     ///
     /// # Errors
-    /// When the distance is not above 0, or is less than coordinates resolve.
+    /// If the distance is not above 0, or is less than coordinates resolve.
     pub(super) fn of(watch: &Watching, wall: &Wall, threads: &Threads) -> Result<Option<Self>> {
         let Some(distance) = watch.hold else { return Ok(None) };
         let bodies: Vec<_> = (0..watch.patches.len() as u32).map(|k| wall.body(k)).collect();
         Self::between(distance, &wall.places, &bodies, threads).map(Some)
     }
 
-    /// Of walls by their triangles between nodes at these first places.
+    /// Keeps walls apart, given as triangles between nodes at these first places.
     fn between(
         distance: f64,
         places: &[Point],
@@ -124,7 +131,8 @@ impl Hold {
         Ok(Self { walls: walls.collect(), last: vec![[0.0; 3]; places.len()] })
     }
 
-    /// Stops what goes too far on its way from where the last step left it. [`Self::advance`] takes over how much of that was done.
+    /// Stops whatever goes too far on its way from where the last step left it. [`Self::advance`] then
+    /// records how much of that was done.
     pub(super) fn stop(&mut self, places: &[Point], requested: &[Point], threads: &Threads) -> Held {
         let displaced =
             |by: &[Point]| -> Vec<Point> { places.iter().zip(by).map(|(&p, &d)| add(p, d)).collect() };
@@ -145,7 +153,7 @@ impl Hold {
         held
     }
 
-    /// Takes over that walls have gone this part of the way to these displacements.
+    /// Records that walls have gone this fraction of the way to these displacements.
     pub(super) fn advance(&mut self, displacement: &[Point], part: f64) {
         for (last, &to) in self.last.iter_mut().zip(displacement) {
             *last = if part == 1.0 { to } else { lerp(*last, to, part) };
@@ -154,7 +162,7 @@ impl Hold {
 }
 
 impl Yielding {
-    /// The wall of this number gives way to all after it.
+    /// Sets up the wall with this index, which gives way to all after it.
     fn new(
         distance: f64,
         places: &[Point],
@@ -171,7 +179,8 @@ impl Yielding {
         Self { wall, triangles, nodes, obstacle, elements, slopes }
     }
 
-    /// Puts the nodes to where they may be on their way to where they are in `at`. Whether they keep their distance: it may be that there is no room to.
+    /// Moves the nodes as far as allowed on their way to their places in `at`. Returns whether they keep
+    /// their distance: there may be no space to do so.
     fn give_way(&mut self, from: &[Point], at: &mut [Point], threads: &Threads) -> bool {
         let is_still = self.obstacle.is_still(from, at);
         if is_still && self.nodes.iter().all(|v| from[v.index()] == at[v.index()]) {
@@ -181,11 +190,11 @@ impl Yielding {
         let is_found = found.is_some();
         let end = found.unwrap_or_else(|| self.carried(from, at, threads));
         self.nodes.iter().for_each(|v| at[v.index()] = end[v.index()]);
-        // Where nothing pushes, what stays where it was is as far away as it was.
+        // If nothing pushes, a wall that stays where it was is as far away as it was.
         is_found || is_still
     }
 
-    /// Goes in `n` parts.
+    /// Moves to `to` in `n` parts.
     fn advance(
         &mut self,
         from: &[Point],
@@ -204,7 +213,7 @@ impl Yielding {
         })
     }
 
-    /// Goes one part: straight on, then along what stopped it. `None` where the wall would not be sound.
+    /// Moves one part: straight on, then along what stopped it. `None` if the wall would not be sound.
     fn part(
         &mut self,
         here: &[Point],
@@ -220,14 +229,14 @@ impl Yielding {
         Some(self.closed_up(at, wanted, threads))
     }
 
-    /// What was pushed farther away than need be goes on, where it is sound.
+    /// Moves nodes that were pushed farther away than necessary closer again, if the wall stays sound.
     fn closed_up(&mut self, at: Vec<Point>, wanted: &[Point], threads: &Threads) -> Vec<Point> {
         let closer = Round::new(&self.elements, &self.nodes, &at, wanted, &mut self.obstacle, threads)
             .close_up(wanted);
         if self.is_upright(&closer, wanted) { closer } else { at }
     }
 
-    /// Goes straight on from where nothing is too near.
+    /// Moves straight on from a place where nothing is too near.
     fn pass(
         &mut self,
         start: &[Point],
@@ -254,7 +263,7 @@ impl Yielding {
         None
     }
 
-    /// Where all are when the nodes are carried along by the walls that they give way to.
+    /// The positions of all nodes if these are carried along by the walls that they give way to.
     fn carried(&mut self, here: &[Point], wanted: &[Point], threads: &Threads) -> Vec<Point> {
         let mut start = wanted.to_vec();
         self.nodes.iter().for_each(|v| start[v.index()] = here[v.index()]);
@@ -265,7 +274,7 @@ impl Yielding {
         start
     }
 
-    /// Whether no triangle is turned over, or lost, that is not as it was requested.
+    /// Whether no triangle that is off its requested place is turned over or lost.
     fn is_upright(&self, at: &[Point], wanted: &[Point]) -> bool {
         self.triangles.iter().filter(|t| t.iter().any(|v| at[v.index()] != wanted[v.index()])).all(|t| {
             let [is, requested] = [at, wanted].map(|at| area_vector(t.map(|v| at[v.index()])));
@@ -274,7 +283,7 @@ impl Yielding {
     }
 }
 
-/// The nodes of triangles, rising.
+/// The nodes of triangles, in rising order.
 fn nodes_of(triangles: &[[VertexId; 3]]) -> Vec<VertexId> {
     let mut nodes = triangles.as_flattened().to_vec();
     nodes.sort_unstable();
@@ -282,7 +291,7 @@ fn nodes_of(triangles: &[[VertexId; 3]]) -> Vec<VertexId> {
     nodes
 }
 
-/// After this part of the way from one place to another.
+/// The point at fraction `part` of the way from one place to another.
 fn lerp(from: Point, to: Point, part: f64) -> Point {
     add(from, scale(sub(to, from), part))
 }

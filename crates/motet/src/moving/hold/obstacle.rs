@@ -1,4 +1,4 @@
-//! The walls that another one gives way to, and where it is when it goes along with them.
+//! The walls that another one gives way to, and where it is when it is carried along with them.
 
 use super::nodes_of;
 use crate::base::{Point, Threads, VertexId};
@@ -10,9 +10,9 @@ use crate::spatial::NearestTriangle;
 #[derive(Clone, Debug)]
 pub(super) struct Obstacle {
     pub(super) triangles: Vec<[VertexId; 3]>,
-    /// Of each triangle, the number of its wall among these.
+    /// For each triangle, the index of its wall among these.
     wall: Vec<u32>,
-    /// The nodes of each wall, rising.
+    /// The nodes of each wall, in rising order.
     nodes: Vec<Vec<VertexId>>,
     tree: NearestTriangle,
 }
@@ -29,12 +29,12 @@ impl Obstacle {
         self.nodes.iter().any(|nodes| nodes.binary_search(&v).is_ok())
     }
 
-    /// Whether all its nodes are where they were.
+    /// Whether all nodes of these walls stay where they are.
     pub(super) fn is_still(&self, from: &[Point], to: &[Point]) -> bool {
         self.nodes.iter().flatten().all(|v| from[v.index()] == to[v.index()])
     }
 
-    /// How far each of these nodes is from the nearest place, where all are at `at`.
+    /// The distance of each of these nodes from the nearest point of the walls, with all nodes at `at`.
     pub(super) fn distances(&mut self, nodes: &[VertexId], at: &[Point], threads: &Threads) -> Vec<f64> {
         self.tree.refit(at, threads);
         let places: Vec<Point> = nodes.iter().map(|v| at[v.index()]).collect();
@@ -45,7 +45,8 @@ impl Obstacle {
             .collect()
     }
 
-    /// Where nodes are that go along: each with the rigid motion that fits that of the wall nearest to it best, and with what the nearest place of it goes beside that.
+    /// The positions of nodes that are carried along: each follows the best rigid fit to the motion of the
+    /// wall nearest to it, plus the deviation from that fit at the nearest point.
     pub(super) fn carry(
         &mut self,
         nodes: &[VertexId],
@@ -77,7 +78,7 @@ fn fit(nodes: &[VertexId], from: &[Point], to: &[Point]) -> Rigid {
 mod tests {
     use super::*;
 
-    /// A triangle round a place, facing z.
+    /// A triangle around a place, facing z.
     fn triangle([x, y, z]: Point) -> [Point; 3] {
         [[x - 1.0, y - 1.0, z], [x + 1.0, y - 1.0, z], [x, y + 1.0, z]]
     }
@@ -97,7 +98,7 @@ mod tests {
         };
         let node = [0.0, 0.0, 1.0];
         let mut obstacle = Obstacle::new(&at(0.0, 10.0), &walls, &threads);
-        // The first wall is the nearer one; then they change places.
+        // The first wall is the nearer one; then the two swap places.
         assert_eq!(obstacle.distances(&[VertexId(6)], &place(node, 0.0, 10.0), &threads), [1.0]);
         let (from, to) = (place(node, 10.0, 0.0), place(node, 10.5, 2.0));
         assert_eq!(obstacle.carry(&[VertexId(6)], &from, &to, &threads), [[0.0, 0.0, 3.0]]);

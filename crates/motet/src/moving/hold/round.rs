@@ -1,4 +1,5 @@
-//! How far elements get without coming too near to what they give way to, and how they are pushed back to the distance.
+//! How far elements move without coming too near what they give way to, and how they are pushed back to the
+//! distance.
 
 use super::elements::{Element, Elements};
 use super::lerp;
@@ -9,62 +10,63 @@ use crate::geometry::distance::triangle_triangle::closest_below;
 use crate::geometry::vector::{add, distance, dot, largest_coordinate, norm, scale, sub};
 use crate::spatial::{BoxTree, around, touch, widened};
 
-/// What is nearer than it may be by this part of its distance is pushed back.
+/// Elements that fall short of their distance by this fraction of it are pushed back, ...
 const TOO_NEAR: f64 = 1e-13;
 
-/// Or by this part of the coordinates.
+/// ... or by this fraction of the largest coordinate.
 const ROUNDING: f64 = 1e-15;
 
-/// What is at its distance but for this part of it stands on the obstacle.
+/// An element stands on the obstacle if it exceeds its distance by no more than this fraction.
 const STANDS: f64 = 1e-6;
 
-/// What was stopped is at most this part of its distance farther away from what stopped it.
+/// An element that was stopped exceeds its distance from what stopped it by at most this fraction.
 const HITS: f64 = 0.02;
 
-/// Sweeps that take what leads into the obstacle out of a way: where more than one thing stops a node.
+/// Number of sweeps that remove from a motion the components into the obstacle: needed where several things
+/// stop a node.
 const CORNER: usize = 8;
 
-/// Looks at which elements are too near, at most, and sweeps over them after each.
+/// The largest number of searches for elements that are too near, and of sweeps over them after each search.
 const PUSHES: [usize; 2] = [8, 8];
 
-/// One part of a step: from a start where nothing is too near, with the obstacle where it stays.
+/// One part of a step: from a start where nothing is too near, with the obstacle at rest.
 pub(super) struct Round<'a> {
-    /// Where all are at the start.
+    /// The positions of all nodes at the start.
     start: &'a [Point],
-    /// Those elements that may come near.
+    /// The elements that may come near.
     elements: Vec<Element>,
-    /// The triangles of the obstacle that they may come near to.
+    /// The triangles of the obstacle that they may come near.
     others: Vec<[VertexId; 3]>,
     tree: BoxTree,
     nodes: &'a [VertexId],
-    /// No node goes farther from the start.
+    /// An upper bound on the distance of any node from its start.
     farthest: f64,
     rounding: f64,
     threads: &'a Threads,
 }
 
-/// What pushing came to.
+/// The result of pushing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pushed {
     /// Nothing was too near.
     Nothing,
-    /// All is far enough away.
+    /// Everything is far enough away now.
     Away,
-    /// Something is still too near: where there is little room, or what pushes is on more than one side.
+    /// Something is still too near: there is little space, or it is pushed from more than one side.
     NotFarEnough,
 }
 
 /// Which nodes of an element slide.
 #[derive(Clone, Copy, Debug)]
 enum Who {
-    /// Those that its nearest place is between.
+    /// The nodes that span its nearest point.
     Nearest,
-    /// All: a triangle that was stopped slides as a whole.
+    /// All nodes: a triangle that was stopped slides as a whole.
     All,
 }
 
 impl<'a> Round<'a> {
-    /// Of nodes that go from the start to where they are wanted.
+    /// Sets up the elements and obstacles for nodes that move from `start` to `wanted`.
     pub(super) fn new(
         elements: &Elements,
         nodes: &'a [VertexId],
@@ -76,7 +78,7 @@ impl<'a> Round<'a> {
         let from_obstacle = obstacle.distances(nodes, start, threads);
         let longest = nodes.iter().map(|v| distance(start[v.index()], wanted[v.index()])).fold(0.0, f64::max);
         let least = elements.all.iter().map(|e| e.least).fold(0.0, f64::max);
-        // Held back, a node goes the other way by as much as another one was to go.
+        // When held back, a node may move in the opposite direction by as much as another one was to go.
         let farthest = 2.0 * (longest + least);
         let may_come_near = |element: &&Element| {
             let place = |v: &VertexId| nodes.binary_search(v).map_or(f64::INFINITY, |k| from_obstacle[k]);
@@ -95,12 +97,13 @@ impl<'a> Round<'a> {
         Self { start, elements, others, tree, nodes, farthest, rounding, threads }
     }
 
-    /// Whether no node is farther away than was looked.
+    /// Whether no node has moved beyond the region that was searched.
     pub(super) fn has_seen(&self, at: &[Point]) -> bool {
         self.nodes.iter().all(|v| distance(self.start[v.index()], at[v.index()]) <= self.farthest)
     }
 
-    /// Where nodes are to go: where they are wanted, but for those that stand on the obstacle at the start, which go along it.
+    /// Where nodes should go: to their wanted places, except that nodes which stand on the obstacle at the
+    /// start slide along it.
     pub(super) fn aims(&self, wanted: &[Point]) -> Vec<Point> {
         let all: Vec<(usize, f64)> = (0..self.elements.len()).map(|i| (i, 0.0)).collect();
         let mut at = wanted.to_vec();
@@ -108,7 +111,8 @@ impl<'a> Round<'a> {
         at
     }
 
-    /// Stops elements where they come too near on a straight way from the start; from there they go along. Whether there are such.
+    /// Stops elements where they come too near on a straight way from the start; from there they slide.
+    /// Returns whether there are any.
     pub(super) fn stop(&self, at: &mut [Point]) -> bool {
         let hits = self.hits(at, |element| SLACK * element.least);
         if hits.is_empty() {
@@ -122,7 +126,8 @@ impl<'a> Round<'a> {
         true
     }
 
-    /// The elements that come as near as `apart` says on straight ways from the start, each with the part of the way that it may go.
+    /// The elements that come as near as `apart` on straight ways from the start, each with the fraction of
+    /// the way that it may go.
     fn hits(&self, at: &[Point], apart: impl Fn(&Element) -> f64) -> Vec<(usize, f64)> {
         if self.elements.is_empty() || self.others.is_empty() {
             return Vec::new();
@@ -134,7 +139,7 @@ impl<'a> Round<'a> {
         times.into_iter().enumerate().filter(|(_, time)| *time < 1.0).collect()
     }
 
-    /// The first time of each node that elements have at which they are stopped; nodes rising.
+    /// The earliest time at which each node is stopped, in rising order of nodes.
     fn first_of_nodes(&self, hits: &[(usize, f64)]) -> Vec<(VertexId, f64)> {
         let nodes = |&(i, time): &(usize, f64)| self.elements[i].corners.map(|v| (v, time));
         let mut first: Vec<(VertexId, f64)> = hits.iter().flat_map(nodes).collect();
@@ -143,8 +148,9 @@ impl<'a> Round<'a> {
         first
     }
 
-    /// From where elements are stopped, at parts of their way, their nodes go on along what they are as near to there as `reach` says: by as much as it is farther to where they are to go
-    /// along it than into it.
+    /// From where elements are stopped, at a fraction of their way, their nodes slide along the obstacles
+    /// within `reach` of them there: by as much as their remaining way is longer along the obstacle than into
+    /// it.
     fn slide(
         &self,
         at: &mut [Point],
@@ -164,7 +170,7 @@ impl<'a> Round<'a> {
         let mut normals: Vec<(VertexId, f64, Point)> = found.concat();
         normals.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)));
         for normals in normals.chunk_by(|x, y| x.0 == y.0) {
-            // What stops a node later does not stop it where it goes along.
+            // Obstacles that would stop a node later do not stop it once it slides.
             let (v, time, _) = normals[0];
             let first: Vec<Point> =
                 normals.iter().take_while(|(_, t, _)| *t == time).map(|(_, _, n)| *n).collect();
@@ -175,7 +181,7 @@ impl<'a> Round<'a> {
         }
     }
 
-    /// Nodes of an element that is within reach of the obstacle, each with the way away from it.
+    /// The nodes of an element that is within reach of the obstacle, each with the direction away from it.
     fn normals(
         &self,
         element: &Element,
@@ -195,9 +201,10 @@ impl<'a> Round<'a> {
         all
     }
 
-    /// Goes on towards where nodes are wanted, all by the same part of what is left, until something is at its distance: where pushing left all farther away.
+    /// Moves all nodes towards their wanted places, by the same fraction of the remaining way, until
+    /// something is at its distance: for when pushing left them too far away.
     pub(super) fn close_up(&self, wanted: &[Point]) -> Vec<Point> {
-        // Nothing is too near, so nothing has slack.
+        // Nothing is too near, so nothing needs slack.
         let hits =
             self.hits(wanted, |element| element.least - 2.0 * (element.least - self.too_near(element)));
         let time = hits.iter().fold(1.0, |least: f64, (_, time)| least.min(*time));
@@ -249,7 +256,8 @@ impl<'a> Round<'a> {
         self.around(corners, least).iter().any(is_near)
     }
 
-    /// Pushes an element away from each triangle that it is too near to: its corners, by the weights of the nearest place (position based dynamics; Mueller et al. 2007).
+    /// Pushes an element away from each triangle that it is too near: moves its corners, by the weights of
+    /// the nearest point (position based dynamics; Mueller et al. 2007).
     fn push_one(&self, element: &Element, at: &mut [Point]) -> bool {
         let least = self.too_near(element);
         let mut is_pushed = false;
@@ -267,7 +275,8 @@ impl<'a> Round<'a> {
     }
 }
 
-/// How far a node goes along what it stands on, by its normals: by as much as its way is longer along it than into it. `None` where it goes away from it.
+/// How far a node slides along the obstacles with these normals: by as much as its way is longer along them
+/// than into them. `None` if it moves away from them.
 fn along(way: Point, normals: &[Point]) -> Option<Point> {
     let mut along = way;
     for _ in 0..CORNER {
@@ -279,7 +288,8 @@ fn along(way: Point, normals: &[Point]) -> Option<Point> {
     (into > 0.0).then(|| scale(along, if free > into { 1.0 - into / free } else { 0.0 }))
 }
 
-/// By how much of a push each node goes, so that the place of these weights goes by all of it. A node that is there three times is one.
+/// The share of a push that each node takes, so that the point with these weights moves by all of it. An
+/// element that is a node counts once.
 fn shares(corners: [VertexId; 3], weights: [f64; 3]) -> impl Iterator<Item = (VertexId, f64)> {
     let is_node = corners[0] == corners[1];
     let weights = if is_node { [1.0, 0.0, 0.0] } else { weights };

@@ -1,8 +1,11 @@
-//! Nodes beside one that was stopped are held back with it, so that no edge between them is lost.
+//! Nodes next to one that was stopped are held back with it, so that no edge between them is lost.
 //!
-//! A node that stops while its neighbour goes on comes nearer to it, or passes it. So what stops a node also holds its neighbours back: along an edge, corrections of requested places differ by no
-//! more than a part of its requested length. Edges are those of its triangles, and of the Delaunay tets between its nodes: else the far side of a body would go on through the side that was stopped.
-//! A body that is pressed on by little flattens where it is near; one that is requested to go far through a wall stops as a whole.
+//! A node that stops while its neighbour moves on comes nearer to it, or is passed by it. So what stops a
+//! node also holds its neighbours back: along an edge, corrections of requested places differ by no more than
+//! a fraction of the edge's requested length. Edges are those of the wall's triangles, and of the Delaunay
+//! tets between its nodes: otherwise the far side of a body would move on through the side that was stopped.
+//! A body that is pressed on gently flattens where it is near; one that is requested to go far through a wall
+//! stops as a whole.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -11,23 +14,24 @@ use crate::base::{Csr, Point, Threads, VertexId};
 use crate::delaunay::Triangulation;
 use crate::geometry::vector::{add, distance, norm, scale, sub};
 
-/// Corrections that differ by this part more are within it.
+/// Corrections may exceed their limit by this fraction.
 const ROUNDING: f64 = 1e-9;
 
-/// Passes over all nodes at most.
+/// The largest number of passes over all nodes.
 const PASSES: usize = 16;
 
-/// Nodes of a wall, and which are joined by edges.
+/// The nodes of a wall, and which of them are joined by edges.
 #[derive(Clone, Debug)]
 pub(super) struct Slopes {
-    /// All of its nodes, rising, with whether they may be held back.
+    /// All nodes, in rising order, with whether they may be held back.
     nodes: Vec<(VertexId, bool)>,
-    /// By the places of nodes in the list.
+    /// Neighbours of each node, by index in [`Self::nodes`].
     neighbors: Csr<u32>,
 }
 
 impl Slopes {
-    /// Of triangles at first, and those of their nodes that may be held back; these rising.
+    /// The edges of a wall at its first position; `free` lists the nodes that may be held back, in rising
+    /// order.
     pub(super) fn new(
         triangles: &[[VertexId; 3]],
         free: &[VertexId],
@@ -39,7 +43,7 @@ impl Slopes {
         let mut edges: Vec<(usize, u32)> = Vec::with_capacity(6 * triangles.len());
         triangles.iter().for_each(|t| pairs_of(&t.map(place), &mut edges));
         let points: Vec<Point> = nodes.iter().map(|v| places[v.index()]).collect();
-        // In one plane there are no tets, and no far side.
+        // Points in one plane have no tets, and no far side.
         if let Ok(delaunay) = Triangulation::new(&points, threads) {
             delaunay.tets().iter().for_each(|t| pairs_of(&t.map(|v| v.index()), &mut edges));
         }
@@ -50,7 +54,8 @@ impl Slopes {
         Self { nodes, neighbors }
     }
 
-    /// Holds nodes back until corrections along each edge differ by no more than this part of its requested length.
+    /// Holds nodes back until the corrections along each edge differ by no more than `slope` times its
+    /// requested length.
     pub(super) fn limit(&self, at: &mut [Point], wanted: &[Point], slope: f64) {
         let by = |(v, _): &(VertexId, bool)| sub(at[v.index()], wanted[v.index()]);
         let before: Vec<Point> = self.nodes.iter().map(by).collect();
@@ -58,21 +63,22 @@ impl Slopes {
             return;
         }
         let mut by = before.clone();
-        // Corrections are vectors: what a node takes over from one neighbour may be far from what another one has.
+        // Corrections are vectors: what a node takes over from one neighbour may be far from the correction
+        // of another.
         let _ = (0..PASSES).any(|_| !self.pass(&mut by, wanted, slope));
         for (((v, _), by), _) in self.nodes.iter().zip(by).zip(before).filter(|((_, by), was)| by != was) {
             at[v.index()] = add(wanted[v.index()], by);
         }
     }
 
-    /// Once over all nodes, the largest correction first; whether any was raised.
+    /// Makes one pass over all nodes, largest correction first; returns whether any correction was raised.
     fn pass(&self, by: &mut [Point], wanted: &[Point], slope: f64) -> bool {
         let all = (0..by.len()).map(|node| Next { size: norm(by[node]), node });
         let mut open: BinaryHeap<Next> = all.filter(|next| next.size > 0.0).collect();
         let mut is_done = vec![false; by.len()];
         let mut is_raised = false;
         while let Some(Next { size, node }) = open.pop() {
-            // Raised since it was put there.
+            // Its correction was raised after it was queued.
             if is_done[node] || size != norm(by[node]) {
                 continue;
             }
@@ -93,14 +99,14 @@ impl Slopes {
     }
 }
 
-/// All ordered pairs.
+/// All ordered pairs of distinct nodes.
 fn pairs_of(nodes: &[usize], pairs: &mut Vec<(usize, u32)>) {
     for &i in nodes {
         pairs.extend(nodes.iter().filter(|j| **j != i).map(|&j| (i, j as u32)));
     }
 }
 
-/// The largest first; of equal ones the first node.
+/// An entry of the queue: the largest correction first; among equal ones the first node.
 struct Next {
     size: f64,
     node: usize,

@@ -1,4 +1,5 @@
-//! Surfaces of boxes and balls that are requested to go through each other: how near they come is measured over all pairs of triangles.
+//! Surfaces of boxes and balls that are requested to pass through each other: how near they come is measured
+//! over all pairs of triangles.
 
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -11,7 +12,8 @@ use crate::geometry::vector::{add, cross, dot, norm, scale, sub, unit};
 
 type Triangles = Vec<[VertexId; 3]>;
 
-/// The surface of the cube from -1 to 1, each side in `n` by `n` squares of two triangles; outward.
+/// The surface of the cube from -1 to 1, each side divided into `n` by `n` squares of two triangles; facing
+/// outward.
 fn cube(n: i32) -> (Vec<Point>, Triangles) {
     let (mut points, mut ids, mut triangles) = (Vec::new(), HashMap::new(), Vec::new());
     let mut id = |key: [i32; 3]| {
@@ -37,26 +39,26 @@ fn cube(n: i32) -> (Vec<Point>, Triangles) {
     (points, triangles)
 }
 
-/// A box by its middle and half its sides.
+/// A box, by its centre and half its side lengths.
 fn block(n: i32, middle: Point, half: Point) -> (Vec<Point>, Triangles) {
     let (points, triangles) = cube(n);
     let place = |p: Point| [0, 1, 2].map(|k| middle[k] + half[k] * p[k]);
     (points.into_iter().map(place).collect(), triangles)
 }
 
-/// A ball by its middle and radius.
+/// A ball, by its centre and radius.
 fn ball(n: i32, middle: Point, radius: f64) -> (Vec<Point>, Triangles) {
     let (points, triangles) = cube(n);
-    // Evenly by angles.
+    // Evenly spaced in angle.
     let place = |p: Point| add(middle, scale(unit(p.map(|x| (x * PI / 4.0).tan())).unwrap(), radius));
     (points.into_iter().map(place).collect(), triangles)
 }
 
-/// Walls over one list of nodes.
+/// Walls that share one list of nodes.
 struct Scene {
     places: Vec<Point>,
     bodies: Vec<Triangles>,
-    /// Of each node, which wall it is of.
+    /// The wall of each node.
     of: Vec<usize>,
 }
 
@@ -73,13 +75,14 @@ impl Scene {
         scene
     }
 
-    /// The scene with each point put where `place` says.
+    /// The scene with each point moved by `place`.
     fn placed(mut self, place: impl Fn(Point) -> Point) -> Self {
         self.places.iter_mut().for_each(|p| *p = place(*p));
         self
     }
 
-    /// Where the nodes are when each wall is requested to follow its motion, and how many were stopped.
+    /// The positions of the nodes when each wall is requested to follow its motion, and how many were
+    /// stopped.
     fn held(&self, hold: f64, motion: impl Fn(usize, Point) -> Point) -> (Vec<Point>, usize) {
         let threads = Threads::single();
         let mut hold = Hold::between(hold, &self.places, &self.bodies, &threads).unwrap();
@@ -90,7 +93,7 @@ impl Scene {
         (self.places.iter().zip(held.displacement).map(|(&p, d)| add(p, d)).collect(), held.n_nodes)
     }
 
-    /// Where the nodes are after each of some steps.
+    /// The positions of the nodes after each of `n` steps.
     fn steps(&self, hold: f64, n: usize, motion: impl Fn(usize, usize, Point) -> Point) -> Vec<Vec<Point>> {
         let threads = Threads::single();
         let mut hold = Hold::between(hold, &self.places, &self.bodies, &threads).unwrap();
@@ -104,7 +107,7 @@ impl Scene {
         (1..=n).map(step).collect()
     }
 
-    /// The least distance of two walls, over all pairs of triangles.
+    /// The least distance between any two walls, over all pairs of triangles.
     fn gap(&self, at: &[Point]) -> f64 {
         let corners = |t: &[VertexId; 3]| t.map(|v| at[v.index()]);
         let mut least = f64::INFINITY;
@@ -117,7 +120,7 @@ impl Scene {
         least
     }
 
-    /// Whether a wall is as it was but for how far it went: no triangle turned over, none lost, none through another.
+    /// Asserts that every wall is sound: no triangle turned over or lost, and none through another.
     fn assert_sound(&self, at: &[Point], what: &str) {
         for body in &self.bodies {
             for t in body {
@@ -142,10 +145,10 @@ impl Scene {
     }
 }
 
-/// Where a point of a scene is put.
+/// Where a point of a scene is placed.
 type Placing = fn(Point) -> Point;
 
-/// Turned about an axis, shifted and in another unit of length.
+/// Rotated about an axis, shifted, and in another unit of length.
 fn elsewhere(p: Point) -> Point {
     let axis = unit([1.0, -0.4, 0.7]).unwrap();
     let (sine, cosine) = 0.9f64.sin_cos();
@@ -157,7 +160,8 @@ fn small_and_far(p: Point) -> Point {
     scale(add(p, [30.0, -70.0, 20.0]), 1e-3)
 }
 
-/// The first wall is above the second by 0.8, and requested to go down by a part of that; 0.2 is held.
+/// The first wall is 0.8 above the second and is requested to go down by a fraction of that; a distance of
+/// 0.2 is kept.
 fn pressed(name: &str, surfaces: impl Fn() -> Vec<(Vec<Point>, Triangles)>) {
     for part in [0.5, 0.75, 0.9, 1.0, 1.25, 1.5, 3.0, 5.0] {
         let placed: [(Placing, f64); 3] = [(|p| p, 1.0), (elsewhere, 7.0), (small_and_far, 1e-3)];
@@ -168,7 +172,7 @@ fn pressed(name: &str, surfaces: impl Fn() -> Vec<(Vec<Point>, Triangles)>) {
             let (gap, what) =
                 (scene.gap(&at) / unit, format!("{name}, {part} of the way, in units of {unit}"));
             let expected = (0.8 * (1.0 - part)).max(0.2);
-            // Where they go less far, places are rounded as coordinates are.
+            // Until walls are stopped, positions are as exact as rounded coordinates.
             assert!(gap >= expected * (1.0 - 1e-9), "{what}: {gap}");
             assert!(gap <= expected * (1.0 + 1e-4), "{what}: {gap}");
             assert_eq!(n > 0, part > 0.75, "{what}: {n}");
@@ -208,7 +212,7 @@ fn balls_and_boxes_stop_in_front_of_each_other() {
     });
 }
 
-/// A ball within a room, requested to go into a corner of it and beyond.
+/// A ball inside a room, requested to go into a corner of it and beyond.
 #[test]
 fn a_ball_stops_in_a_corner_of_its_room_and_in_a_hollow_one() {
     for far in [1.5, 2.0, 3.0, 9.0] {
@@ -226,7 +230,7 @@ fn a_ball_stops_in_a_corner_of_its_room_and_in_a_hollow_one() {
     }
 }
 
-/// A ball comes down into the corner that two walls make: a floor, and a block beside it.
+/// A ball that comes down into the corner between two walls: a floor, and a block beside it.
 #[test]
 fn what_gives_way_to_two_walls_keeps_its_distance_from_both() {
     for far in [0.2, 1.0, 2.0, 6.0] {
@@ -244,7 +248,7 @@ fn what_gives_way_to_two_walls_keeps_its_distance_from_both() {
     }
 }
 
-/// A square sheet in 2 n n triangles, its rim open.
+/// A square sheet of 2 n n triangles with an open rim.
 fn sheet(n: usize, middle: Point, half: f64) -> (Vec<Point>, Triangles) {
     let x = |i: usize| half * (2.0 * i as f64 / n as f64 - 1.0);
     let points = (0..=n).flat_map(|i| (0..=n).map(move |j| add(middle, [x(i), 0.0, x(j)]))).collect();
@@ -296,7 +300,7 @@ fn what_goes_round_in_steps_goes_round() {
 
 #[test]
 fn what_is_pressed_on_for_long_stays_and_what_comes_back_is_where_it_was() {
-    // Off the middle, so that the ball could slip.
+    // Off centre, so that the ball could slip.
     let scene = Scene::of(vec![ball(4, [0.3, 1.4, 0.1], 1.0), ball(4, [0.0, -1.4, 0.0], 1.0)]);
     let pressed = scene.steps(0.2, 20, |_, k, p| if k == 0 { add(p, [0.0, -2.0, 0.0]) } else { p });
     for at in &pressed {
@@ -330,7 +334,7 @@ fn walls_without_room_are_told_and_so_is_how_far_a_node_was_stopped() {
     let held = hold.stop(&scene.places, &to([-5.0, 0.0, 0.0]), &threads);
     let stopped = held.farthest.unwrap();
     assert!(held.cramped.is_none() && stopped.wall == 0 && (stopped.short - 4.7).abs() < 1e-3, "{stopped:?}");
-    // The two blocks come as near to each other as they may: no room is left for a ball.
+    // The two blocks come as near to each other as allowed: no space is left for the ball.
     let held = hold.stop(&scene.places, &to([0.0, 0.0, -3.0]), &threads);
     assert_eq!(held.cramped, Some(0));
     for too_small in [0.0, -1.0, 1e-13, f64::NAN, f64::INFINITY] {
@@ -341,18 +345,18 @@ fn walls_without_room_are_told_and_so_is_how_far_a_node_was_stopped() {
 #[test]
 fn walls_that_both_move_stop_by_how_they_move_to_each_other() {
     let scene = || Scene::of(vec![ball(4, [0.0, 1.4, 0.0], 1.0), ball(4, [0.0, -1.4, 0.0], 1.0)]);
-    // Each goes half of the way: the second is where it was requested to be.
+    // Each goes half of the way: the second reaches its requested place.
     let (at, n) = scene().held(0.2, |k, p| add(p, [0.0, if k == 0 { -0.6 } else { 0.6 }, 0.0]));
     assert!(n > 0 && (scene().gap(&at) - 0.2).abs() < 1e-4 * 0.2, "{}", scene().gap(&at));
-    // Both far away together, shifted and turned: nothing stops, to the bit.
+    // Both move far away together, shifted and rotated: nothing stops, to the bit.
     let both = |p: Point| elsewhere(scale(p, 1.0 / 7.0));
     let (at, n) = scene().held(0.2, |_, p| both(p));
     assert_eq!(n, 0);
     assert!((scene().gap(&at) - 0.8).abs() < 1e-12);
-    // And one of them nearer than it may.
+    // And one of them nearer than allowed.
     let (at, n) = scene().held(0.2, |k, p| both(if k == 0 { add(p, [0.0, -1.5, 0.0]) } else { p }));
     assert!(n > 0 && (scene().gap(&at) - 0.2).abs() < 1e-4 * 0.2, "{}", scene().gap(&at));
-    // The second grows until there is no more room.
+    // The second grows until there is no more space.
     let grown = |p: Point| add([0.0, -1.4, 0.0], scale(sub(p, [0.0, -1.4, 0.0]), 1.9));
     let (at, n) = scene().held(0.2, |k, p| if k == 1 { grown(p) } else { p });
     assert!(n > 0 && scene().gap(&at) >= 0.2 * (1.0 - 1e-3), "{}", scene().gap(&at));
@@ -360,7 +364,7 @@ fn walls_that_both_move_stop_by_how_they_move_to_each_other() {
 
 #[test]
 fn what_slides_along_far_goes_all_the_way() {
-    // Beside a long wall, just above the distance from it, and pressed onto it.
+    // Next to a long wall, just above the distance from it, and pressed onto it.
     let scene =
         || Scene::of(vec![ball(4, [0.0, 1.25, 0.0], 1.0), block(4, [50.0, -1.0, 0.0], [60.0, 1.0, 2.0])]);
     let (at, n) = scene().held(0.2, |k, p| if k == 0 { add(p, [90.0, 0.0, 0.0]) } else { p });
@@ -369,14 +373,14 @@ fn what_slides_along_far_goes_all_the_way() {
     let lowest =
         at[..scene().of.iter().filter(|k| **k == 0).count()].iter().map(|p| p[1]).fold(9.0, f64::min);
     assert!(n > 0 && (lowest - 0.2).abs() < 1e-9, "{lowest}");
-    // The most that friction holds it back by is how far it is pressed on.
+    // Friction holds it back by at most how far it is pressed on.
     let middle = at.iter().zip(&scene().of).filter(|(_, k)| **k == 0).map(|(p, _)| p[0]).fold(0.0, f64::max);
     assert!((90.7..=91.0).contains(&middle), "{middle}");
 }
 
 #[test]
 fn what_is_joined_to_a_wall_stays_as_near_as_it_was() {
-    // A strip that stands on a floor, its foot a part of it, bends down onto it.
+    // A strip that stands on a floor, joined to it at its foot, bends down onto it.
     let (mut points, mut floor, mut strip) = (Vec::new(), Vec::new(), Vec::new());
     let (n, width) = (12, 3);
     let id = |i: usize, j: usize| VertexId::new(i * (width + 1) + j);
@@ -398,7 +402,7 @@ fn what_is_joined_to_a_wall_stays_as_near_as_it_was() {
     let of = (0..points.len()).map(|i| usize::from(i < first)).collect();
     let scene = Scene { places: points, bodies: vec![strip, floor], of };
     for degrees in [45.0f64, 85.0, 100.0, 130.0] {
-        // The more the farther from the foot.
+        // Bent more, the farther from the foot.
         let bent = |p: Point| {
             let angle = degrees.to_radians() * (p[1] / n as f64).min(1.0);
             [p[1] * angle.sin(), p[1] * angle.cos(), p[2]]
