@@ -8,7 +8,7 @@ use crate::kernel::spare::{Side, sorted};
 /// A tet to be inserted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fill {
-    /// Its vertices; it must be positive.
+    /// The vertices of the tet, which must be positive.
     pub vertices: [VertexId; 4],
     /// The region of the tet.
     pub region: i32,

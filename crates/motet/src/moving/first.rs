@@ -29,7 +29,7 @@ const MOST_RETURNS: u32 = 3;
 /// Such a mesh is replaced if its mean EAS has fallen by this fraction of that of the first mesh. With 3 %, a
 /// flap kept for six cycles a mesh that had lost up to 2.4 %.
 const LOSS: f64 = 0.01;
-/// It is also replaced if its number of vertices is off by this fraction, after allowing for
+/// Such a mesh is also replaced if its number of vertices is off by this fraction, after allowing for
 /// `VERTICES_OFF_ALWAYS`: repair keeps the number no closer.
 const VERTICES_OFF: f64 = 0.01;
 const VERTICES_OFF_ALWAYS: usize = 5;

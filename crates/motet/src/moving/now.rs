@@ -24,7 +24,7 @@ pub(super) struct Now {
     /// The mesh with its points at their current positions, and the user's arrays.
     pub(super) mesh: Mesh,
     pub(super) tets: Tets,
-    /// Its reference is the mesh after the last change.
+    /// Moves the vertices; its reference is the mesh after the last change.
     pub(super) mover: Mover,
     /// Records of each vertex and cell.
     pub(super) known: Known,
@@ -37,7 +37,7 @@ pub(super) struct Now {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LeftBad {
     pub(super) cell: CellId,
-    /// Its EAS when it was left.
+    /// EAS of the tet when it was left.
     pub(super) eas: f64,
     /// Whether walls force it.
     pub(super) is_forced: bool,

@@ -63,11 +63,11 @@ impl Step {
 /// The worst tet of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WorstTet {
-    /// Its EAS.
+    /// EAS of the tet.
     pub eas: f64,
     /// Id of the cell.
     pub cell: CellId,
-    /// Its centroid.
+    /// Centroid of the tet.
     pub place: Point,
 }
 
@@ -177,9 +177,9 @@ pub struct Gaps {
 pub struct Stopped {
     /// The name of the patch that was stopped.
     pub patch: String,
-    /// How far it is from its requested place.
+    /// Distance of the node from its requested place.
     pub short: f64,
-    /// Its position.
+    /// Position of the node.
     pub place: Point,
 }
 

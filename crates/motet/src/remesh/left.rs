@@ -18,11 +18,11 @@ use crate::remesh::surface::Surface;
 pub struct Left {
     /// Id of the tet in the new mesh.
     pub tet: u32,
-    /// Its EAS.
+    /// EAS of the tet.
     pub eas: f64,
-    /// Its centroid.
+    /// Centroid of the tet.
     pub place: Point,
-    /// Its type: "I" to "IV", or "other".
+    /// Type of the tet: "I" to "IV", or "other".
     pub defect: &'static str,
     /// Why it is left.
     pub reason: Reason,

@@ -75,9 +75,9 @@ impl Counts {
 pub struct Worst {
     /// Id of the tet.
     pub tet: u32,
-    /// Its EAS.
+    /// EAS of the tet.
     pub eas: f64,
-    /// Its centroid.
+    /// Centroid of the tet.
     pub place: Point,
 }
 

@@ -22,7 +22,7 @@ use crate::remesh::surface::{Crease, Surface};
 pub struct Outcome {
     /// The new mesh, and where each of its vertices, tets and triangles came from.
     pub extract: Extract,
-    /// What was done.
+    /// The report of what was done.
     pub report: Report,
 }
 

@@ -97,9 +97,9 @@ pub(super) struct Held {
 pub(super) struct Stopped {
     /// Index of its wall among the watched patches.
     pub(super) wall: usize,
-    /// How far it is from its requested place.
+    /// Distance of the node from its requested place.
     pub(super) short: f64,
-    /// Its position.
+    /// Position of the node.
     pub(super) place: Point,
 }
 
