@@ -168,7 +168,8 @@ pub struct Gaps {
     pub farthest_held: Option<Stopped>,
     /// A patch that is nearer to another one than the distance to keep, because it has no space to give way.
     pub cramped: Option<String>,
-    /// The earliest time of contact at the velocities of this step; `None`: not within the horizon.
+    /// Time from now before which nothing touches, at the velocities of this step: a lower bound. `None`:
+    /// nothing touches within the horizon.
     pub touch_not_before: Option<f64>,
 }
 

@@ -24,8 +24,9 @@ pub(super) struct Element {
 }
 
 impl Elements {
-    /// The elements of a wall: its triangles between these nodes (in rising order), and the nodes whose
-    /// triangles came nearer than the distance. Elements that touch the obstacle at first are left out.
+    /// The elements of a wall: its triangles between these nodes (in rising order), and single nodes, namely
+    /// those without such a triangle or with one nearer than the distance at first. Elements that touch the
+    /// obstacle at first are left out.
     pub(super) fn new(
         triangles: &[[VertexId; 3]],
         nodes: &[VertexId],
