@@ -27,7 +27,7 @@ pub struct Options {
     pub floor: f64,
     /// Where a repair changes the mesh, tets below this EAS are improved as a whole, too: those near the
     /// change, and those that have deteriorated since the start. The number of free vertices is kept as well.
-    /// So the next steps make fewer tets bad, and a long motion preserves the mesh that it began with.
+    /// So the next steps make fewer tets bad, and a long motion ends with a mesh like the first.
     /// Default: 0.75; with 0 only bad tets are repaired.
     pub improve_below: f64,
     /// Whether the walls come back to their first position again and again. Then
