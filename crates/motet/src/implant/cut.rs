@@ -42,6 +42,6 @@ impl Cut {
         let (first, second): (Vec<_>, Vec<_>) =
             cut.pieces.into_iter().partition(|piece| (piece.1 as usize) < n_first);
         let second = second.into_iter().map(|(piece, t)| (piece, t - n_first as u32)).collect();
-        Ok(Self { points: cut.points, pieces: [first, second], names: cut.names })
+        Ok(Self { points: cut.points, pieces: [first, second], names: cut.vertex_to_kept })
     }
 }

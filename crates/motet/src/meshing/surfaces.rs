@@ -57,7 +57,8 @@ impl Surfaces {
 
     /// Merges surfaces that end at a common edge; a triangle that several of them contain stays in the first.
     fn join(&mut self) {
-        let part_of = preflight::joint(&self.points, &self.triangles, &self.surface_of, &self.roles);
+        let part_of =
+            preflight::joined_surfaces(&self.points, &self.triangles, &self.surface_of, &self.roles);
         if (0..).eq(part_of.iter().copied()) {
             return;
         }

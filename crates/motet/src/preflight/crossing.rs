@@ -79,7 +79,7 @@ fn cross(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool {
         // One of them is an edge or a vertex of the other.
         (0, _) | (_, 0) => false,
         (1, 1) if shared[0] != shared[1] => {
-            overlap_beside([at(shared[0]), at(shared[1])], at(rest_a[0]), at(rest_b[0]))
+            overlap_beyond_edge([at(shared[0]), at(shared[1])], at(rest_a[0]), at(rest_b[0]))
         }
         // With a single vertex left, the edge opposite is that vertex twice.
         _ => {
@@ -102,7 +102,7 @@ fn distinct(t: [VertexId; 3], wanted: impl Fn(VertexId) -> bool) -> ([VertexId; 
 }
 
 /// Whether the triangles formed by an edge with `p` and with `q` have more in common than the edge.
-fn overlap_beside(edge: [Point; 2], p: Point, q: Point) -> bool {
+fn overlap_beyond_edge(edge: [Point; 2], p: Point, q: Point) -> bool {
     let [u, v] = edge;
     if orient3d(u, v, p, q) != 0 {
         return false;

@@ -44,11 +44,11 @@ fn pinched(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
     }
     firsts.sort_unstable();
     let at_one_vertex = firsts.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)).filter(|same| same.len() > 1);
-    let tell = |same: &[(u32, VertexId, u32)]| {
+    let fault = |same: &[(u32, VertexId, u32)]| {
         let triangles = same.iter().map(|first| first.2).collect();
         let (surface, vertex, _) = same[0];
         let what = (FaultKind::NonManifoldVertex, false);
         Fault::new(what, surface, triangles, &[vertex], surfaces.points)
     };
-    at_one_vertex.map(tell).collect()
+    at_one_vertex.map(fault).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::crossing::own_crossings;
 use super::fault::{Fault, FaultKind, mean};
-use super::single::{Firsts, Shape};
+use super::single::{Duplicates, Shape};
 use super::surfaces::Surfaces;
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::distance::triangle_triangle;
@@ -14,17 +14,17 @@ use crate::geometry::vector::in_range;
 pub(super) fn faults(
     surfaces: &Surfaces,
     shapes: &[Shape],
-    firsts: &Firsts,
+    duplicates: &Duplicates,
     threads: &Threads,
 ) -> Vec<Fault> {
-    let counts = |t: &u32| shapes[*t as usize] == Shape::Sound && firsts.of_all[*t as usize] == *t;
+    let counts = |t: &u32| shapes[*t as usize] == Shape::Sound && duplicates.first_in_all[*t as usize] == *t;
     let ids: Vec<u32> = surfaces.ids().filter(counts).collect();
     let triangles: Vec<[VertexId; 3]> = ids.iter().map(|&t| surfaces.triangles[t as usize]).collect();
     let pairs = own_crossings(surfaces.points, &triangles, threads);
-    pairs.into_iter().map(|pair| tell(surfaces, pair.map(|t| ids[t as usize]))).collect()
+    pairs.into_iter().map(|pair| fault_of(surfaces, pair.map(|t| ids[t as usize]))).collect()
 }
 
-fn tell(surfaces: &Surfaces, [i, j]: [u32; 2]) -> Fault {
+fn fault_of(surfaces: &Surfaces, [i, j]: [u32; 2]) -> Fault {
     let [a, b] = [i, j].map(|t| surfaces.triangles[t as usize]);
     let shared: Vec<VertexId> = a.into_iter().filter(|v| b.contains(v)).collect();
     let at = match shared[..] {

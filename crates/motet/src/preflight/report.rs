@@ -10,7 +10,7 @@ use super::surfaces::Surfaces;
 use crate::base::Error;
 
 /// Number of rims that an error names.
-const TOLD_RIMS: usize = 4;
+const MAX_RIMS_IN_ERROR: usize = 4;
 
 /// The number of faults of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -70,10 +70,14 @@ impl Preflight {
     }
 
     /// The number of rims, and the longest ones, in words.
-    fn told_rims(&self) -> String {
+    fn describe_rims(&self) -> String {
         let n = self.rims.len();
-        let longest: Vec<String> = self.rims.iter().take(TOLD_RIMS).map(Rim::to_string).collect();
-        let more = if n > TOLD_RIMS { format!("; and {} more", n - TOLD_RIMS) } else { String::new() };
+        let longest: Vec<String> = self.rims.iter().take(MAX_RIMS_IN_ERROR).map(Rim::to_string).collect();
+        let more = if n > MAX_RIMS_IN_ERROR {
+            format!("; and {} more", n - MAX_RIMS_IN_ERROR)
+        } else {
+            String::new()
+        };
         format!("the open edges make {n} rim{}: {}{more}", if n == 1 { "" } else { "s" }, longest.join("; "))
     }
 
@@ -89,7 +93,7 @@ impl Preflight {
         let n = self.counts.iter().find(|count| count.kind == kind).map_or(1, |count| count.fatal);
         let mut what = format!("surfaces that can be meshed were expected, and here {}", kind.meaning());
         if kind == FaultKind::OpenEdge && !self.rims.is_empty() {
-            what = format!("{what}; {}", self.told_rims());
+            what = format!("{what}; {}", self.describe_rims());
         }
         let others = self.counts.iter().filter(|count| count.kind != kind && count.fatal > 0);
         let others: String = others.map(|count| format!(", {} {}", count.fatal, count.kind.name())).collect();

@@ -24,7 +24,7 @@ pub(super) struct RimEdge {
 #[derive(Debug, Default)]
 pub(super) struct Rims {
     pub(super) closed: Vec<Vec<RimEdge>>,
-    pub(super) torn: Vec<Vec<RimEdge>>,
+    pub(super) unclosed: Vec<Vec<RimEdge>>,
 }
 
 /// A closed chain of open edges of a surface that has to be closed.
@@ -78,7 +78,7 @@ pub(super) fn of_boundaries(surfaces: &Surfaces, sides: &[Side]) -> (Vec<Rim>, u
     let found = rims(surfaces.points.len(), sides, |surface| surfaces.role(surface) == Role::Boundary);
     let mut rims: Vec<Rim> = found.closed.iter().filter_map(|rim| Rim::of(surfaces.points, rim)).collect();
     rims.sort_by(|a, b| b.length.total_cmp(&a.length));
-    (rims, found.torn.iter().map(Vec::len).sum())
+    (rims, found.unclosed.iter().map(Vec::len).sum())
 }
 
 /// The rims of one surface: first the closed ones, with their vertices in the order in which a triangle in
@@ -91,13 +91,13 @@ pub fn open_rims(points: &[Point], triangles: &[[VertexId; 3]]) -> [Vec<Vec<Vert
     let surfaces = Surfaces::new(points, triangles, &surface_of, &[Role::Boundary]);
     let rims = rims(points.len(), &sorted_sides(&surfaces, |_| true), |_| true);
     let vertices = |rim: Vec<RimEdge>| rim.iter().map(|edge| edge.from).collect();
-    [rims.closed, rims.torn].map(|all| all.into_iter().map(vertices).collect())
+    [rims.closed, rims.unclosed].map(|all| all.into_iter().map(vertices).collect())
 }
 
-/// The rims of the surfaces for which `is_asked` is `true`.
-pub(super) fn rims(n_points: usize, sides: &[Side], is_asked: impl Fn(u32) -> bool) -> Rims {
+/// The rims of the surfaces for which `is_wanted` is `true`.
+pub(super) fn rims(n_points: usize, sides: &[Side], is_wanted: impl Fn(u32) -> bool) -> Rims {
     let mut open: Vec<RimEdge> = edges(sides)
-        .filter(|same| same.len() == 1 && is_asked(same[0].surface))
+        .filter(|same| same.len() == 1 && is_wanted(same[0].surface))
         .map(|same| {
             let Side { surface, edge: [low, high], triangle, is_forward, .. } = same[0];
             let (from, to) = if is_forward { (high, low) } else { (low, high) };
@@ -109,7 +109,7 @@ pub(super) fn rims(n_points: usize, sides: &[Side], is_asked: impl Fn(u32) -> bo
     let mut walk = Walk { open, is_used: vec![false; n], n_passed: vec![0; n], place: vec![None; n_points] };
     let mut rims = Rims::default();
     for start in 0..walk.open.len() {
-        walk.go(start, &mut rims);
+        walk.trace(start, &mut rims);
     }
     rims
 }
@@ -127,7 +127,7 @@ struct Walk {
 impl Walk {
     /// Walks from an edge until no unused edge leads on; whenever the path returns to itself, a closed rim is
     /// cut off.
-    fn go(&mut self, start: usize, rims: &mut Rims) {
+    fn trace(&mut self, start: usize, rims: &mut Rims) {
         if self.is_used[start] {
             return;
         }
@@ -143,16 +143,16 @@ impl Walk {
                 rim.iter().for_each(|edge| self.place[edge.from.index()] = None);
                 rims.closed.push(rim);
             }
-            next = if path.is_empty() { None } else { self.leading_on(edge) };
+            next = if path.is_empty() { None } else { self.next_edge(edge) };
         }
         path.iter().for_each(|edge| self.place[edge.from.index()] = None);
         if !path.is_empty() {
-            rims.torn.push(path);
+            rims.unclosed.push(path);
         }
     }
 
     /// The first unused edge that starts where this one ends.
-    fn leading_on(&mut self, edge: RimEdge) -> Option<usize> {
+    fn next_edge(&mut self, edge: RimEdge) -> Option<usize> {
         let key = (edge.surface, edge.to);
         let start = self.open.partition_point(|x| (x.surface, x.from) < key);
         let starts_there = |i: usize| self.open.get(i).is_some_and(|x| (x.surface, x.from) == key);

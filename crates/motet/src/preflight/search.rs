@@ -4,7 +4,7 @@ use super::fault::{Fault, FaultKind};
 use super::parts::Parts;
 use super::report::Preflight;
 use super::sides::sorted_sides;
-use super::single::{Firsts, shapes};
+use super::single::{Duplicates, shapes};
 use super::surfaces::{Role, Surfaces};
 use super::{edges, meeting, parts, rims, single};
 use crate::base::{Point, Threads, VertexId};
@@ -26,11 +26,11 @@ pub fn preflight(
 ) -> Preflight {
     let surfaces = Surfaces::new(points, triangles, surface_of, roles);
     let shapes = shapes(&surfaces, threads);
-    let firsts = Firsts::new(&surfaces);
-    let sides = sorted_sides(&surfaces, |t| firsts.stays[t as usize]);
+    let duplicates = Duplicates::new(&surfaces);
+    let sides = sorted_sides(&surfaces, |t| duplicates.remains[t as usize]);
     let mut faults = empty(&surfaces);
-    faults.extend(single::faults(&surfaces, &shapes, &firsts));
-    faults.extend(meeting::faults(&surfaces, &shapes, &firsts, threads));
+    faults.extend(single::faults(&surfaces, &shapes, &duplicates));
+    faults.extend(meeting::faults(&surfaces, &shapes, &duplicates, threads));
     faults.extend(edges::faults(&surfaces, &sides));
     faults.extend(parts::faults(&surfaces, &Parts::new(triangles.len(), &sides)));
     Preflight::new(&surfaces, faults, rims::of_boundaries(&surfaces, &sides))
@@ -40,6 +40,6 @@ pub fn preflight(
 fn empty(surfaces: &Surfaces) -> Vec<Fault> {
     let mut is_empty = vec![true; surfaces.roles.len()];
     surfaces.surface_of.iter().for_each(|&s| is_empty[s as usize] = false);
-    let tell = |s| Fault::new((FaultKind::EmptySurface, true), s, Vec::new(), &[], surfaces.points);
-    (0u32..).zip(&is_empty).filter(|(_, is_empty)| **is_empty).map(|(s, _)| tell(s)).collect()
+    let fault = |s| Fault::new((FaultKind::EmptySurface, true), s, Vec::new(), &[], surfaces.points);
+    (0u32..).zip(&is_empty).filter(|(_, is_empty)| **is_empty).map(|(s, _)| fault(s)).collect()
 }

@@ -35,19 +35,19 @@ pub(super) fn shapes(surfaces: &Surfaces, threads: &Threads) -> Vec<Shape> {
 
 /// The duplicates among triangles of three distinct vertices.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Firsts {
+pub(super) struct Duplicates {
     /// For each triangle, the first one of its surface with the same vertices; a triangle that names a vertex
     /// twice is its own first.
-    pub(super) of_surface: Vec<u32>,
+    pub(super) first_in_surface: Vec<u32>,
     /// For each triangle, the first one of all surfaces with the same vertices.
-    pub(super) of_all: Vec<u32>,
+    pub(super) first_in_all: Vec<u32>,
     /// Which triangles remain without duplicates in one surface: two that face opposite sides enclose nothing
     /// and cancel, and of those that face the same side one remains. `false` for triangles that name a vertex
     /// twice.
-    pub(super) stays: Vec<bool>,
+    pub(super) remains: Vec<bool>,
 }
 
-impl Firsts {
+impl Duplicates {
     pub(super) fn new(surfaces: &Surfaces) -> Self {
         let mut keyed: Vec<([VertexId; 3], u32, u32)> = surfaces
             .ids()
@@ -55,28 +55,28 @@ impl Firsts {
             .filter(|([a, b, c], ..)| a != b && b != c)
             .collect();
         keyed.sort_unstable();
-        let mut firsts = Self {
-            of_surface: surfaces.ids().collect(),
-            of_all: surfaces.ids().collect(),
-            stays: vec![false; surfaces.triangles.len()],
+        let mut duplicates = Self {
+            first_in_surface: surfaces.ids().collect(),
+            first_in_all: surfaces.ids().collect(),
+            remains: vec![false; surfaces.triangles.len()],
         };
         for same in keyed.chunk_by(|x, y| x.0 == y.0) {
             let first = same.iter().map(|&(.., t)| t).min().unwrap_or(0);
-            same.iter().for_each(|&(.., t)| firsts.of_all[t as usize] = first);
+            same.iter().for_each(|&(.., t)| duplicates.first_in_all[t as usize] = first);
             for of_one in same.chunk_by(|x, y| x.1 == y.1) {
-                of_one.iter().for_each(|&(.., t)| firsts.of_surface[t as usize] = of_one[0].2);
-                if let Some(t) = what_stays(surfaces, of_one.iter().map(|&(.., t)| t)) {
-                    firsts.stays[t as usize] = true;
+                of_one.iter().for_each(|&(.., t)| duplicates.first_in_surface[t as usize] = of_one[0].2);
+                if let Some(t) = majority_first(surfaces, of_one.iter().map(|&(.., t)| t)) {
+                    duplicates.remains[t as usize] = true;
                 }
             }
         }
-        firsts
+        duplicates
     }
 }
 
 /// Of triangles with the same vertices, the first that faces the side of the majority; `None` if as many face
 /// either side.
-fn what_stays(surfaces: &Surfaces, same: impl Iterator<Item = u32> + Clone) -> Option<u32> {
+fn majority_first(surfaces: &Surfaces, same: impl Iterator<Item = u32> + Clone) -> Option<u32> {
     let is_rising = |t: u32| {
         let [a, b, c] = surfaces.triangles[t as usize];
         // Rotating the corners does not change the number of rising steps: one, or two.
@@ -89,24 +89,24 @@ fn what_stays(surfaces: &Surfaces, same: impl Iterator<Item = u32> + Clone) -> O
 
 /// The faults of single triangles: points that are not finite, triangles without area, duplicates, and facets
 /// that surfaces share.
-pub(super) fn faults(surfaces: &Surfaces, shapes: &[Shape], firsts: &Firsts) -> Vec<Fault> {
+pub(super) fn faults(surfaces: &Surfaces, shapes: &[Shape], duplicates: &Duplicates) -> Vec<Fault> {
     let mut faults = not_finite(surfaces);
     for (t, &shape) in surfaces.ids().zip(shapes) {
-        let mut tell = |kind, is_fatal, triangles| {
+        let mut record = |kind, is_fatal, triangles| {
             let vertices = &surfaces.triangles[t as usize];
             let surface = surfaces.surface(t);
             faults.push(Fault::new((kind, is_fatal), surface, triangles, vertices, surfaces.points));
         };
         match shape {
-            Shape::Repeated => tell(FaultKind::RepeatedVertex, true, vec![t]),
-            Shape::Flat => tell(FaultKind::ZeroArea, true, vec![t]),
+            Shape::Repeated => record(FaultKind::RepeatedVertex, true, vec![t]),
+            Shape::Flat => record(FaultKind::ZeroArea, true, vec![t]),
             Shape::Sound | Shape::NotFinite => {}
         }
-        let (own, first) = (firsts.of_surface[t as usize], firsts.of_all[t as usize]);
+        let (own, first) = (duplicates.first_in_surface[t as usize], duplicates.first_in_all[t as usize]);
         if own != t {
-            tell(FaultKind::Duplicate, true, vec![own, t]);
+            record(FaultKind::Duplicate, true, vec![own, t]);
         } else if first != t {
-            tell(FaultKind::SharedFacet, false, vec![first, t]);
+            record(FaultKind::SharedFacet, false, vec![first, t]);
         }
     }
     faults

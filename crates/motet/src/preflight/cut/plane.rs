@@ -14,13 +14,13 @@ use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{cross, dot, norm, sub};
 
 /// A walk of more steps than this goes around in circles, or takes longer than testing all triangles.
-const MOST_STEPS: usize = 1000;
+const MAX_WALK_STEPS: usize = 1000;
 
 /// With more points than this, many edges are in the way of a segment.
 const MANY: usize = 64;
 
 /// After this many flips, they go around in circles.
-const MOST_FLIPS: usize = 10_000;
+const MAX_FLIPS: usize = 10_000;
 
 /// An edge is flipped if the cotangents of its opposite angles sum to less than this: slightly below 0, so
 /// that ties stay as they are.
@@ -125,7 +125,7 @@ impl<'a> Plane<'a> {
     /// the walk leaves the triangle or takes too many steps.
     fn walk_to(&self, p: usize) -> Option<[usize; 3]> {
         let (&[mut i, mut j], &(mut k)) = self.apex.range([self.last, 0]..).next()?;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_WALK_STEPS {
             let beyond = [[i, j], [j, k], [k, i]].into_iter().find(|&[u, v]| self.side([u, v, p]) < 0);
             let Some([u, v]) = beyond else { return Some([i, j, k]) };
             (i, j, k) = (v, u, *self.apex.get(&[v, u])?);
@@ -134,7 +134,7 @@ impl<'a> Plane<'a> {
     }
 
     /// Makes a segment an edge, or several if points lie on it. `None` if another segment is in the way.
-    pub(super) fn join(&mut self, [p, q]: [usize; 2]) -> Option<()> {
+    pub(super) fn insert_segment(&mut self, [p, q]: [usize; 2]) -> Option<()> {
         if self.on[p] & self.on[q] != 0 {
             return Some(());
         }
@@ -143,9 +143,9 @@ impl<'a> Plane<'a> {
             let is_there = |plane: &Self, to| {
                 plane.apex.contains_key(&[from, to]) || plane.apex.contains_key(&[to, from])
             };
-            let to = if is_there(self, q) { q } else { self.next_on_way(from, q)? };
+            let to = if is_there(self, q) { q } else { self.next_vertex_on_segment(from, q)? };
             if !is_there(self, to) {
-                self.free_way([from, to])?;
+                self.flip_crossing_edges([from, to])?;
             }
             self.fixed.extend([[from, to], [to, from]]);
             from = to;
@@ -153,17 +153,17 @@ impl<'a> Plane<'a> {
         Some(())
     }
 
-    /// The first vertex on the way from `p` to `q`: `q` itself if there is none between.
-    fn next_on_way(&self, p: usize, q: usize) -> Option<usize> {
+    /// The first vertex on the segment from `p` to `q`: `q` itself if there is none between.
+    fn next_vertex_on_segment(&self, p: usize, q: usize) -> Option<usize> {
         let is_between = |v: usize| {
             let [to_v, to_q] = [v, q].map(|v| sub(self.points[v], self.points[p]));
             let ahead = dot(to_v, to_q);
             ahead > 0.0 && ahead < dot(to_q, to_q)
         };
-        let on_way = (0..self.points.len()).filter(|&v| v != p && v != q && self.is_vertex(v));
-        let on_way = on_way.filter(|&v| self.side([p, q, v]) == 0 && is_between(v));
+        let on_segment = (0..self.points.len()).filter(|&v| v != p && v != q && self.is_vertex(v));
+        let on_segment = on_segment.filter(|&v| self.side([p, q, v]) == 0 && is_between(v));
         let off = |v: usize| norm(sub(self.points[v], self.points[p]));
-        on_way.min_by(|&v, &w| off(v).total_cmp(&off(w))).or(Some(q))
+        on_segment.min_by(|&v, &w| off(v).total_cmp(&off(w))).or(Some(q))
     }
 
     fn is_vertex(&self, v: usize) -> bool {
@@ -172,7 +172,7 @@ impl<'a> Plane<'a> {
 
     /// Flips the edges that cross the segment between two vertices, on which no other vertex lies. `None` if
     /// it does not become an edge.
-    fn free_way(&mut self, [p, q]: [usize; 2]) -> Option<()> {
+    fn flip_crossing_edges(&mut self, [p, q]: [usize; 2]) -> Option<()> {
         let crosses = |plane: &Self, [a, b]: [usize; 2]| {
             ![p, q].iter().any(|v| [a, b].contains(v))
                 && plane.side([p, q, a]) * plane.side([p, q, b]) < 0
@@ -183,7 +183,7 @@ impl<'a> Plane<'a> {
         let mut n_tried = 0;
         while let Some([a, b]) = todo.pop_front() {
             n_tried += 1;
-            if n_tried > MOST_FLIPS || self.fixed.contains(&[a, b]) {
+            if n_tried > MAX_FLIPS || self.fixed.contains(&[a, b]) {
                 return None;
             }
             match self.flip([a, b]) {
@@ -211,16 +211,16 @@ impl<'a> Plane<'a> {
 
     /// Flips edges that are not Delaunay if there are many points, so that few edges are in the way of
     /// segments.
-    pub(super) fn even_out_many(&mut self) {
+    pub(super) fn restore_delaunay_if_many(&mut self) {
         if self.points.len() > MANY {
-            self.even_out();
+            self.restore_delaunay();
         }
     }
 
     /// Flips edges that are not Delaunay and not fixed.
-    pub(super) fn even_out(&mut self) {
+    pub(super) fn restore_delaunay(&mut self) {
         let mut todo: VecDeque<[usize; 2]> = self.apex.keys().copied().filter(|[i, j]| i < j).collect();
-        for _ in 0..MOST_FLIPS.max(todo.len() * todo.len()) {
+        for _ in 0..MAX_FLIPS.max(todo.len() * todo.len()) {
             let Some([a, b]) = todo.pop_front() else { return };
             let (Some(&c), Some(&d)) = (self.apex.get(&[a, b]), self.apex.get(&[b, a])) else { continue };
             if self.fixed.contains(&[a, b]) || self.cotangent(c, a, b) + self.cotangent(d, a, b) >= FLAT {

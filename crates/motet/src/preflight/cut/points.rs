@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::Pair;
-use super::common::{Name, On};
+use super::common::{Location, PointKey};
 use super::plane::Plane;
 use crate::base::{Point, VertexId, rising};
 use crate::geometry::segment;
@@ -14,11 +14,11 @@ pub(super) struct Points<'a> {
     triangles: &'a [[VertexId; 3]],
     near: f64,
     points: Vec<Point>,
-    names: HashMap<Name, VertexId>,
+    ids: HashMap<PointKey, VertexId>,
     on_edge: BTreeMap<[VertexId; 2], Vec<VertexId>>,
     inside: BTreeMap<u32, BTreeSet<VertexId>>,
     /// The vertex that each point has been merged into.
-    same: Vec<VertexId>,
+    merged_into: Vec<VertexId>,
 }
 
 /// Triangles in pieces, and the points that they use.
@@ -28,7 +28,7 @@ pub(super) struct Divided {
     /// of the triangles.
     pub(super) pieces: Vec<([VertexId; 3], u32)>,
     /// The vertex that each point has become.
-    pub(super) same: Vec<VertexId>,
+    pub(super) merged_into: Vec<VertexId>,
 }
 
 impl<'a> Points<'a> {
@@ -38,16 +38,16 @@ impl<'a> Points<'a> {
             triangles,
             near,
             points: points.to_vec(),
-            names: HashMap::new(),
+            ids: HashMap::new(),
             on_edge: BTreeMap::new(),
             inside: BTreeMap::new(),
-            same: Vec::new(),
+            merged_into: Vec::new(),
         };
         for (numbers, common) in pairs {
             for shared in &common.points {
-                let id = match shared.name {
-                    Name::Vertex(v) => v,
-                    name => *found.names.entry(name).or_insert_with(|| {
+                let id = match shared.key {
+                    PointKey::Vertex(v) => v,
+                    key => *found.ids.entry(key).or_insert_with(|| {
                         found.points.push(shared.at);
                         VertexId::new(found.points.len() - 1)
                     }),
@@ -55,20 +55,20 @@ impl<'a> Points<'a> {
                 (0..2).for_each(|s| found.put(id, numbers[s], shared.on[s]));
             }
         }
-        found.same = (0..found.points.len()).map(VertexId::new).collect();
+        found.merged_into = (0..found.points.len()).map(VertexId::new).collect();
         found.merge();
         found
     }
 
     /// Assigns a point to the edge or the inside of a triangle that it lies on.
-    fn put(&mut self, id: VertexId, triangle: u32, on: On) {
+    fn put(&mut self, id: VertexId, triangle: u32, on: Location) {
         let vertices = self.triangles[triangle as usize];
         match on {
-            On::Corner(_) => {}
-            On::Edge(k) => {
+            Location::Corner(_) => {}
+            Location::Edge(k) => {
                 self.on_edge.entry(rising([vertices[k], vertices[(k + 1) % 3]])).or_default().push(id);
             }
-            On::Inside => {
+            Location::Inside => {
                 self.inside.entry(triangle).or_default().insert(id);
             }
         }
@@ -84,16 +84,16 @@ impl<'a> Points<'a> {
     }
 
     fn id(&self, mut v: VertexId) -> VertexId {
-        while self.same[v.index()] != v {
-            v = self.same[v.index()];
+        while self.merged_into[v.index()] != v {
+            v = self.merged_into[v.index()];
         }
         v
     }
 
-    fn id_of(&self, name: Name) -> VertexId {
-        match name {
-            Name::Vertex(v) => self.id(v),
-            name => self.id(self.names[&name]),
+    fn id_of(&self, key: PointKey) -> VertexId {
+        match key {
+            PointKey::Vertex(v) => self.id(v),
+            key => self.id(self.ids[&key]),
         }
     }
 
@@ -132,7 +132,7 @@ impl<'a> Points<'a> {
     fn unite(&mut self, v: VertexId, w: VertexId) {
         let [v, w] = rising([self.id(v), self.id(w)]);
         if v != w && distance(self.at(v), self.at(w)) <= self.near {
-            self.same[w.index()] = v;
+            self.merged_into[w.index()] = v;
         }
     }
 
@@ -143,7 +143,7 @@ impl<'a> Points<'a> {
         let mut flat: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (i, (numbers, common)) in pairs.iter().enumerate() {
             for number in *numbers {
-                let ends = common.segments.iter().map(|ends| ends.map(|i| self.id_of(common.points[i].name)));
+                let ends = common.segments.iter().map(|ends| ends.map(|i| self.id_of(common.points[i].key)));
                 segments.entry(number).or_default().extend(ends.filter(|[v, w]| v != w).map(rising));
             }
             if common.is_flat {
@@ -154,7 +154,7 @@ impl<'a> Points<'a> {
         for t in (0..self.triangles.len() as u32).rev() {
             let mut own = segments.remove(&t).unwrap_or_default();
             for (numbers, common) in flat.get(&t).into_iter().flatten().map(|&i| &pairs[i]) {
-                let shared: BTreeSet<VertexId> = common.points.iter().map(|p| self.id_of(p.name)).collect();
+                let shared: BTreeSet<VertexId> = common.points.iter().map(|p| self.id_of(p.key)).collect();
                 let edges = pieces[&numbers[1]].iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
                 own.extend(edges.filter(|edge| edge.iter().all(|v| shared.contains(v))).map(rising));
             }
@@ -163,8 +163,8 @@ impl<'a> Points<'a> {
         let pieces =
             pieces.into_iter().flat_map(|(t, pieces)| pieces.into_iter().map(move |piece| (piece, t)));
         let pieces = pieces.collect();
-        let same = (0..self.points.len()).map(|v| self.id(VertexId::new(v))).collect();
-        Some(Divided { points: self.points, pieces, same })
+        let merged_into = (0..self.points.len()).map(|v| self.id(VertexId::new(v))).collect();
+        Some(Divided { points: self.points, pieces, merged_into })
     }
 
     /// The pieces of one triangle: an empty list if merged points have left it without area, `None` if
@@ -205,19 +205,19 @@ impl<'a> Points<'a> {
         for p in n_on_edges..ids.len() {
             plane.insert(p)?;
         }
-        plane.even_out_many();
+        plane.restore_delaunay_if_many();
         let local: HashMap<VertexId, usize> = ids.iter().copied().zip(0..).collect();
         let places = segments.iter().filter_map(|[v, w]| Some([*local.get(v)?, *local.get(w)?]));
-        for segment in places.flat_map(|ends| self.parted(&points, ends)) {
+        for segment in places.flat_map(|ends| self.split_segment(&points, ends)) {
             // A segment that another one blocks is divided in the next round.
-            let _ = plane.join(segment);
+            let _ = plane.insert_segment(segment);
         }
-        plane.even_out();
+        plane.restore_delaunay();
         Some(plane.triangles().into_iter().map(|t| t.map(|i| ids[i])).collect())
     }
 
     /// A segment between two points, divided at the points that lie on it.
-    fn parted(&self, points: &[Point], [p, q]: [usize; 2]) -> Vec<[usize; 2]> {
+    fn split_segment(&self, points: &[Point], [p, q]: [usize; 2]) -> Vec<[usize; 2]> {
         let ends = [points[p], points[q]];
         let place = |i: usize| segment::closest(ends, points[i]);
         let is_on = |i: &usize| {
@@ -225,9 +225,9 @@ impl<'a> Points<'a> {
             let at = add(ends[0], scale(sub(ends[1], ends[0]), t));
             *i != p && *i != q && t > 0.0 && t < 1.0 && distance(at, points[*i]) <= self.near
         };
-        let mut way: Vec<usize> = (0..points.len()).filter(is_on).collect();
-        way.sort_by(|&i, &j| place(i).total_cmp(&place(j)).then(i.cmp(&j)));
-        let way: Vec<usize> = [p].into_iter().chain(way).chain([q]).collect();
-        way.windows(2).map(|pair| [pair[0], pair[1]]).collect()
+        let mut along: Vec<usize> = (0..points.len()).filter(is_on).collect();
+        along.sort_by(|&i, &j| place(i).total_cmp(&place(j)).then(i.cmp(&j)));
+        let along: Vec<usize> = [p].into_iter().chain(along).chain([q]).collect();
+        along.windows(2).map(|pair| [pair[0], pair[1]]).collect()
     }
 }

@@ -22,19 +22,19 @@ pub(super) fn drop_all(work: &mut Work, threads: &Threads) {
             break;
         }
     }
-    tell_left(work, threads);
+    record_left(work, threads);
 }
 
 /// Removes triangles without area as long as no triangle is changed twice. Returns whether any was removed.
 fn round(work: &mut Work, shapes: &[Shape]) -> bool {
     let edges = Edges::new(&work.pieces);
-    let mut is_gone = vec![false; work.pieces.len()];
-    let mut is_touched = is_gone.clone();
+    let mut is_removed = vec![false; work.pieces.len()];
+    let mut is_touched = is_removed.clone();
     let mut parts: Vec<Piece> = Vec::new();
     for t in (0..shapes.len()).filter(|&t| shapes[t] == Shape::Repeated) {
-        (is_gone[t], is_touched[t]) = (true, true);
+        (is_removed[t], is_touched[t]) = (true, true);
         let (old, vertices) = (work.old(t as u32), work.pieces[t].vertices.to_vec());
-        work.tell(RepairKind::DroppedRepeated, vec![old], vertices);
+        work.record(RepairKind::DroppedRepeated, vec![old], vertices);
     }
     for t in (0..shapes.len()).filter(|&t| shapes[t] == Shape::Flat) {
         let Some([from, middle, to]) = along_line(work, t) else { continue };
@@ -44,18 +44,18 @@ fn round(work: &mut Work, shapes: &[Shape]) -> bool {
         }
         let mut concerned = vec![work.old(t as u32)];
         for other in around() {
-            (is_gone[other], is_touched[other]) = (true, true);
+            (is_removed[other], is_touched[other]) = (true, true);
             if other != t {
                 parts.extend(divided(&work.pieces[other], [from, to], middle));
                 concerned.push(work.old(other as u32));
             }
         }
-        work.tell(RepairKind::DroppedFlat, concerned, vec![from, middle, to]);
+        work.record(RepairKind::DroppedFlat, concerned, vec![from, middle, to]);
     }
     let mut ids = 0..;
-    work.pieces.retain(|_| ids.next().is_some_and(|t: usize| !is_gone[t]));
+    work.pieces.retain(|_| ids.next().is_some_and(|t: usize| !is_removed[t]));
     work.pieces.extend(parts);
-    is_gone.contains(&true)
+    is_removed.contains(&true)
 }
 
 /// The corners in their order along the line; `None` if two are at one place.
@@ -101,11 +101,11 @@ impl Edges {
 }
 
 /// Records the triangles that are left with their corners on a line.
-fn tell_left(work: &mut Work, threads: &Threads) {
+fn record_left(work: &mut Work, threads: &Threads) {
     let lists = work.lists();
     let shapes = shapes(&lists.surfaces(work), threads);
     for t in (0..shapes.len()).filter(|&t| shapes[t] == Shape::Flat) {
         let (old, vertices) = (work.old(t as u32), work.pieces[t].vertices.to_vec());
-        work.tell(RepairKind::LeftFlat, vec![old], vertices);
+        work.record(RepairKind::LeftFlat, vec![old], vertices);
     }
 }

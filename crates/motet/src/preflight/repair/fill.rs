@@ -9,12 +9,12 @@ use crate::geometry::predicates::collinear;
 use crate::geometry::triangle::area;
 
 /// The triangles of the fill, by the indices of their corners in the ring, oriented like the ring, the
-/// smallest index first. `is_taken` returns whether a chord cannot be a new edge. `None` if there is no fill
-/// without such chords and without triangles that have no area.
+/// smallest index first. `is_forbidden` returns whether a chord cannot be a new edge. `None` if there is no
+/// fill without such chords and without triangles that have no area.
 pub(super) fn fill(
     points: &[Point],
     ring: &[VertexId],
-    is_taken: impl Fn(VertexId, VertexId) -> bool,
+    is_forbidden: impl Fn(VertexId, VertexId) -> bool,
 ) -> Option<Vec<[usize; 3]>> {
     let n = ring.len();
     let at = |i: usize| points[ring[i].index()];
@@ -22,7 +22,7 @@ pub(super) fn fill(
     for span in 2..n {
         for i in 0..n - span {
             let j = i + span;
-            if span + 1 < n && is_taken(ring[i], ring[j]) {
+            if span + 1 < n && is_forbidden(ring[i], ring[j]) {
                 continue;
             }
             for m in i + 1..j {

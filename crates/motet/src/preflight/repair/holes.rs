@@ -18,30 +18,30 @@ pub(super) fn close(work: &mut Work, longest: usize, threads: &Threads) {
     let lists = work.lists();
     let sides = work.sides(&lists);
     let rims = rims(work.points.len(), &sides, |surface| work.roles[surface as usize] == Role::Boundary);
-    rims.torn.iter().for_each(|rim| tell(work, RepairKind::LeftTorn, rim));
+    rims.unclosed.iter().for_each(|rim| record(work, RepairKind::LeftTorn, rim));
     let mut fills: Vec<(&[RimEdge], Vec<Piece>)> = Vec::new();
     for rim in &rims.closed {
         if rim.len() > longest.min(LONGEST) {
-            tell(work, RepairKind::LeftLong, rim);
+            record(work, RepairKind::LeftLong, rim);
             continue;
         }
         match filled(work, &sides, rim) {
             Some(pieces) => fills.push((rim, pieces)),
-            None => tell(work, RepairKind::LeftOpen, rim),
+            None => record(work, RepairKind::LeftOpen, rim),
         }
     }
     let touches = touching(work, &fills, threads);
     for ((rim, pieces), touches) in fills.into_iter().zip(touches) {
-        tell(work, if touches { RepairKind::LeftOpen } else { RepairKind::ClosedHole }, rim);
+        record(work, if touches { RepairKind::LeftOpen } else { RepairKind::ClosedHole }, rim);
         if !touches {
             work.pieces.extend(pieces);
         }
     }
 }
 
-fn tell(work: &mut Work, kind: RepairKind, rim: &[RimEdge]) {
+fn record(work: &mut Work, kind: RepairKind, rim: &[RimEdge]) {
     let triangles = rim.iter().map(|edge| work.old(edge.triangle)).collect();
-    work.tell(kind, triangles, rim.iter().map(|edge| edge.from).collect());
+    work.record(kind, triangles, rim.iter().map(|edge| edge.from).collect());
 }
 
 /// The triangles that fill a rim; `None` if it cannot be filled. Each takes its labels from the triangle
@@ -52,7 +52,7 @@ fn filled(work: &Work, sides: &[Side], rim: &[RimEdge]) -> Option<Vec<Piece>> {
         return None;
     }
     let surface = rim[0].surface;
-    let is_taken = |u: VertexId, v: VertexId| {
+    let is_forbidden = |u: VertexId, v: VertexId| {
         let edge = (surface, [u.min(v), u.max(v)]);
         sides.binary_search_by_key(&edge, |side| (side.surface, side.edge)).is_ok()
     };
@@ -61,9 +61,9 @@ fn filled(work: &Work, sides: &[Side], rim: &[RimEdge]) -> Option<Vec<Piece>> {
         surface,
         takes_after: work.old(rim[places[0]].triangle),
         is_new: true,
-        is_turned: false,
+        is_reversed: false,
     };
-    Some(fill(work.points, &ring, is_taken)?.into_iter().map(piece).collect())
+    Some(fill(work.points, &ring, is_forbidden)?.into_iter().map(piece).collect())
 }
 
 /// For each fill, whether its triangles meet others, of the surfaces or of any fill, in more than they share.

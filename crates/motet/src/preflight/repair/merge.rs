@@ -13,7 +13,7 @@ pub(super) fn merge(work: &mut Work, within: f64) -> Vec<VertexId> {
     work.pieces.iter().flat_map(|piece| piece.vertices).for_each(|v| is_used[v.index()] = true);
     let kept = if within > 0.0 { near(work, &is_used, within) } else { at_one_place(work, &is_used) };
     for v in (0..kept.len()).map(VertexId::new).filter(|v| kept[v.index()] != *v) {
-        work.tell(RepairKind::MergedVertex, Vec::new(), vec![v, kept[v.index()]]);
+        work.record(RepairKind::MergedVertex, Vec::new(), vec![v, kept[v.index()]]);
     }
     work.pieces.iter_mut().for_each(|piece| piece.vertices = piece.vertices.map(|v| kept[v.index()]));
     kept

@@ -1,9 +1,9 @@
 //! Repairs of surfaces, requested one by one, each reported with ids and place.
 
 mod degenerate;
+mod divide;
 mod fill;
 mod holes;
-mod joints;
 mod merge;
 mod orient;
 mod report;
@@ -96,14 +96,13 @@ pub fn repair(
     if repairs.drop_degenerate {
         degenerate::drop_all(&mut work, threads);
     }
-    let wants_joints = repairs.imprint || repairs.cut;
-    let Some(divided) = wants_joints.then(|| joints::divide(&mut work, repairs.cut, threads)).flatten()
-    else {
+    let is_dividing = repairs.imprint || repairs.cut;
+    let Some(divided) = is_dividing.then(|| divide::divide(&mut work, repairs.cut, threads)).flatten() else {
         finish(&mut work, repairs, threads);
         return Ok(work.finish(vertex_to_kept, Vec::new()));
     };
-    let names = vertex_to_kept.iter().map(|v| divided.names[v.index()]);
-    let vertex_to_kept = names.chain((points.len()..divided.points.len()).map(VertexId::new)).collect();
+    let kept = vertex_to_kept.iter().map(|v| divided.vertex_to_kept[v.index()]);
+    let vertex_to_kept = kept.chain((points.len()..divided.points.len()).map(VertexId::new)).collect();
     let mut work = Work { points: &divided.points, pieces: divided.pieces, ..work };
     if repairs.drop_degenerate {
         degenerate::drop_all(&mut work, threads);

@@ -1,12 +1,14 @@
 //! Triangles under repair: where each comes from, and what has been done so far.
 
-use super::joints::Origin;
 use super::report::{Repair, RepairKind, Repaired};
 use crate::base::{Point, VertexId};
 use crate::preflight::fault::mean;
 use crate::preflight::sides::{Side, sorted_sides};
-use crate::preflight::single::Firsts;
+use crate::preflight::single::Duplicates;
 use crate::preflight::surfaces::{Role, Surfaces};
+
+/// The origin of a new point: the vertices of the triangle that it lies in, and their weights.
+pub(super) type Origin = ([VertexId; 3], [f64; 3]);
 
 /// A triangle, with its surface and where it comes from.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +19,7 @@ pub(super) struct Piece {
     pub(super) takes_after: u32,
     /// Whether it fills a hole.
     pub(super) is_new: bool,
-    pub(super) is_turned: bool,
+    pub(super) is_reversed: bool,
 }
 
 pub(super) struct Work<'a> {
@@ -51,7 +53,7 @@ impl<'a> Work<'a> {
             surface: surfaces.surface(t),
             takes_after: t,
             is_new: false,
-            is_turned: false,
+            is_reversed: false,
         };
         let pieces = surfaces.ids().map(piece).collect();
         Self { points: surfaces.points, roles: surfaces.roles, pieces, done: Vec::new() }
@@ -72,12 +74,12 @@ impl<'a> Work<'a> {
             surface_of: &lists.surface_of,
             roles: self.roles,
         };
-        let firsts = Firsts::new(&surfaces);
-        sorted_sides(&surfaces, |t| firsts.stays[t as usize])
+        let duplicates = Duplicates::new(&surfaces);
+        sorted_sides(&surfaces, |t| duplicates.remains[t as usize])
     }
 
     /// Records a repair, located at the mean of the vertices.
-    pub(super) fn tell(&mut self, kind: RepairKind, triangles: Vec<u32>, vertices: Vec<VertexId>) {
+    pub(super) fn record(&mut self, kind: RepairKind, triangles: Vec<u32>, vertices: Vec<VertexId>) {
         let at = mean(&vertices, self.points);
         self.done.push(Repair { kind, triangles, vertices, at });
     }
@@ -87,31 +89,35 @@ impl<'a> Work<'a> {
         self.pieces[piece as usize].takes_after
     }
 
-    pub(super) fn turn(&mut self, piece: u32) {
+    pub(super) fn reverse(&mut self, piece: u32) {
         let piece = &mut self.pieces[piece as usize];
         piece.vertices.swap(1, 2);
-        piece.is_turned = !piece.is_turned;
+        piece.is_reversed = !piece.is_reversed;
     }
 
     /// Removes duplicate triangles of the same surface.
     pub(super) fn drop_duplicates(&mut self) {
         let lists = self.lists();
-        let stays = Firsts::new(&lists.surfaces(self)).stays;
-        let names_one_twice = |[a, b, c]: [VertexId; 3]| a == b || b == c || c == a;
-        let goes: Vec<bool> =
-            self.pieces.iter().zip(stays).map(|(p, stays)| !stays && !names_one_twice(p.vertices)).collect();
-        for t in (0..goes.len()).filter(|&t| goes[t]) {
+        let remains = Duplicates::new(&lists.surfaces(self)).remains;
+        let has_repeated_vertex = |[a, b, c]: [VertexId; 3]| a == b || b == c || c == a;
+        let is_removed: Vec<bool> = self
+            .pieces
+            .iter()
+            .zip(remains)
+            .map(|(p, remains)| !remains && !has_repeated_vertex(p.vertices))
+            .collect();
+        for t in (0..is_removed.len()).filter(|&t| is_removed[t]) {
             let (old, vertices) = (self.old(t as u32), self.pieces[t].vertices.to_vec());
-            self.tell(RepairKind::DroppedDuplicate, vec![old], vertices);
+            self.record(RepairKind::DroppedDuplicate, vec![old], vertices);
         }
-        let mut goes = goes.into_iter();
-        self.pieces.retain(|_| goes.next() != Some(true));
+        let mut is_removed = is_removed.into_iter();
+        self.pieces.retain(|_| is_removed.next() != Some(true));
     }
 
     /// The result of the repair. `new_points` gives the place of each new point in the given surfaces.
     pub(super) fn finish(mut self, vertex_to_kept: Vec<VertexId>, new_points: Vec<Origin>) -> Repaired {
-        for piece in self.pieces.clone().iter().filter(|piece| piece.is_turned && !piece.is_new) {
-            self.tell(RepairKind::Turned, vec![piece.takes_after], piece.vertices.to_vec());
+        for piece in self.pieces.clone().iter().filter(|piece| piece.is_reversed && !piece.is_new) {
+            self.record(RepairKind::Turned, vec![piece.takes_after], piece.vertices.to_vec());
         }
         let lists = self.lists();
         Repaired {

@@ -6,7 +6,7 @@ use crate::base::{Point, VertexId};
 
 /// How triangles met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum MetKind {
+pub(crate) enum MeetingKind {
     /// A given vertex lies on an edge of which it is not an end.
     VertexOnEdge,
     /// Two triangles overlap in one plane.
@@ -17,8 +17,8 @@ pub(crate) enum MetKind {
 
 /// One place where triangles met.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Met {
-    pub(crate) kind: MetKind,
+pub(crate) struct Meeting {
+    pub(crate) kind: MeetingKind,
     /// The given triangles; none for a vertex on an edge.
     pub(crate) triangles: Vec<u32>,
     /// The vertex on an edge, and the ends of the edge; none for a pair of triangles.
@@ -27,16 +27,16 @@ pub(crate) struct Met {
 }
 
 /// The pairs of different given triangles that overlap or cross.
-pub(super) fn of_pairs(pairs: &[Pair], origin: impl Fn(u32) -> u32) -> Vec<Met> {
+pub(super) fn of_pairs(pairs: &[Pair], origin: impl Fn(u32) -> u32) -> Vec<Meeting> {
     let met = |(numbers, common): &Pair| {
         let kind = match () {
-            () if common.is_overlap() => MetKind::Overlap,
-            () if common.is_crossing() => MetKind::Crossing,
+            () if common.is_overlap() => MeetingKind::Overlap,
+            () if common.is_crossing() => MeetingKind::Crossing,
             () => return None,
         };
         let triangles = numbers.map(&origin);
         let are_apart = triangles[0] != triangles[1];
-        are_apart.then(|| Met {
+        are_apart.then(|| Meeting {
             kind,
             triangles: triangles.to_vec(),
             vertices: Vec::new(),
@@ -47,12 +47,12 @@ pub(super) fn of_pairs(pairs: &[Pair], origin: impl Fn(u32) -> u32) -> Vec<Met> 
 }
 
 /// The given vertices that lie on edges between given vertices.
-pub(super) fn of_edges(found: &Points, n_given: usize, points: &[Point]) -> Vec<Met> {
+pub(super) fn of_edges(found: &Points, n_given: usize, points: &[Point]) -> Vec<Meeting> {
     let is_given = |v: &VertexId| v.index() < n_given;
     let edges = found.on_edges().filter(|(ends, _)| ends.iter().all(is_given));
     let met = |(ends, list): ([VertexId; 2], &[VertexId])| {
-        let of = |v: &VertexId| Met {
-            kind: MetKind::VertexOnEdge,
+        let of = |v: &VertexId| Meeting {
+            kind: MeetingKind::VertexOnEdge,
             triangles: Vec::new(),
             vertices: vec![*v, ends[0], ends[1]],
             at: points[v.index()],
@@ -63,11 +63,11 @@ pub(super) fn of_edges(found: &Points, n_given: usize, points: &[Point]) -> Vec<
 }
 
 /// Sorts the records, and leaves each pair and each vertex on an edge once, whichever rounds found it.
-pub(super) fn sort(met: &mut Vec<Met>) {
-    met.sort_by(|x, y| key(x).cmp(&key(y)));
-    met.dedup_by(|x, y| key(x) == key(y));
+pub(super) fn sort(meetings: &mut Vec<Meeting>) {
+    meetings.sort_by(|x, y| key(x).cmp(&key(y)));
+    meetings.dedup_by(|x, y| key(x) == key(y));
 }
 
-fn key(met: &Met) -> (MetKind, &[u32], &[VertexId]) {
-    (met.kind, &met.triangles, &met.vertices)
+fn key(meeting: &Meeting) -> (MeetingKind, &[u32], &[VertexId]) {
+    (meeting.kind, &meeting.triangles, &meeting.vertices)
 }

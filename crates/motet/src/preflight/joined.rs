@@ -2,13 +2,13 @@
 //! modelling programs write them.
 
 use super::sides::{edges, sorted_sides};
-use super::single::Firsts;
+use super::single::Duplicates;
 use super::surfaces::{Role, Surfaces};
 use crate::base::{Point, Sets, VertexId};
 
-/// For each surface, the joint surface that it is part of: its own number or a lower one. Only boundaries are
-/// joined, since a membrane may end anywhere.
-pub(crate) fn joint(
+/// For each surface, the joined surface that it is part of: its own number or a lower one. Only
+/// boundaries are joined, since a membrane may end anywhere.
+pub(crate) fn joined_surfaces(
     points: &[Point],
     triangles: &[[VertexId; 3]],
     surface_of: &[u32],
@@ -17,9 +17,9 @@ pub(crate) fn joint(
     let mut sets = Sets::new(roles.len());
     if roles.len() > 1 {
         let surfaces = Surfaces::new(points, triangles, surface_of, roles);
-        let firsts = Firsts::new(&surfaces);
+        let duplicates = Duplicates::new(&surfaces);
         let sides = sorted_sides(&surfaces, |t| {
-            firsts.stays[t as usize] && surfaces.role(surfaces.surface(t)) == Role::Boundary
+            duplicates.remains[t as usize] && surfaces.role(surfaces.surface(t)) == Role::Boundary
         });
         let open = edges(&sides).filter(|same| same.len() == 1).map(|same| (same[0].edge, same[0].surface));
         let mut open: Vec<_> = open.collect();
@@ -32,7 +32,7 @@ pub(crate) fn joint(
 
 #[cfg(test)]
 mod tests {
-    use super::joint;
+    use super::joined_surfaces;
     use crate::base::{Point, VertexId};
     use crate::preflight::Role::{self, Boundary, Membrane};
 
@@ -43,7 +43,7 @@ mod tests {
     fn joined(triangles: &[[VertexId; 3]], surface_of: &[u32], roles: &[Role]) -> Vec<u32> {
         let points: Vec<Point> =
             (0..6).map(|i| [f64::from(i), f64::from(i * i), f64::from(i * i * i)]).collect();
-        joint(&points, triangles, surface_of, roles)
+        joined_surfaces(&points, triangles, surface_of, roles)
     }
 
     #[test]

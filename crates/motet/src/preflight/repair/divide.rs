@@ -9,32 +9,29 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::report::{Repair, RepairKind};
-use super::work::{Piece, Work};
+use super::work::{Origin, Piece, Work};
 use crate::base::{Point, Sets, Threads, VertexId, rising, runs_alike};
 use crate::geometry::triangle::{self, centroid};
 use crate::geometry::vector::{add, distance, in_range, scale, sub};
 use crate::geometry::{rounding, segment};
 use crate::preflight::crossing::own_crossings;
-use crate::preflight::cut::{Cut, Met, MetKind, Rule};
+use crate::preflight::cut::{Cut, Meeting, MeetingKind, Rule};
 use crate::preflight::single::{Shape, shapes};
 use crate::preflight::surfaces::Role;
 use crate::spatial::{BoxTree, WindingNumber, around};
 
-/// The origin of a new point: the vertices of the triangle that it lies in, and their weights.
-pub(super) type Origin = ([VertexId; 3], [f64; 3]);
-
 /// The result of dividing: all points, the origins of the new ones, the vertex that each given one has
 /// become, and the pieces.
-pub(super) struct Joints {
+pub(super) struct DividedSurfaces {
     pub(super) points: Vec<Point>,
     pub(super) origins: Vec<Origin>,
-    pub(super) names: Vec<VertexId>,
+    pub(super) vertex_to_kept: Vec<VertexId>,
     pub(super) pieces: Vec<Piece>,
 }
 
 /// Divides triangles that touch or overlap and, if `crossings`, those that cross. `None` if nothing has to be
 /// divided, or if dividing fails, which is reported.
-pub(super) fn divide(work: &mut Work, crossings: bool, threads: &Threads) -> Option<Joints> {
+pub(super) fn divide(work: &mut Work, crossings: bool, threads: &Threads) -> Option<DividedSurfaces> {
     let lists = work.lists();
     let shapes = shapes(&lists.surfaces(work), threads);
     let sound: Vec<u32> =
@@ -50,19 +47,23 @@ pub(super) fn divide(work: &mut Work, crossings: bool, threads: &Threads) -> Opt
     let admits = |p: u32, q: u32| p != q || parts.is_faulty[p as usize];
     let rule = Rule { group_of: &parts.part_of, admits: &admits, near, crossings };
     let Some(cut) = Cut::new(work.points, &triangles, &rule, threads) else {
-        work.tell(RepairKind::LeftMeeting, Vec::new(), Vec::new());
+        work.record(RepairKind::LeftMeeting, Vec::new(), Vec::new());
         return None;
     };
     let is_changed = cut.pieces.len() != triangles.len()
         || cut.pieces.iter().zip(&triangles).any(|(piece, t)| piece.0 != *t);
     if is_changed {
-        tell(work, &cut, &sound);
+        record_meetings(work, &cut, &sound);
     }
     let origins = origins(work, &cut, &sound);
-    let mut joints =
-        Joints { pieces: pieces(work, &cut, &sound), points: cut.points, origins, names: cut.names };
-    let is_shared = share(work, &mut joints);
-    (is_changed || is_shared).then_some(joints)
+    let mut divided = DividedSurfaces {
+        pieces: pieces(work, &cut, &sound),
+        points: cut.points,
+        origins,
+        vertex_to_kept: cut.vertex_to_kept,
+    };
+    let has_duplicates = drop_duplicate_pieces(work, &mut divided);
+    (is_changed || has_duplicates).then_some(divided)
 }
 
 /// The parts connected by edges, across all surfaces.
@@ -134,8 +135,8 @@ fn pieces(work: &Work, cut: &Cut, sound: &[u32]) -> Vec<Piece> {
     let mut is_sound = vec![false; work.pieces.len()];
     sound.iter().for_each(|&t| is_sound[t as usize] = true);
     let others = (0..work.pieces.len()).filter(|&t| !is_sound[t]);
-    let renamed = |t: usize| work.pieces[t].vertices.map(|v| cut.names[v.index()]);
-    let mut all: Vec<(usize, [VertexId; 3])> = others.map(|t| (t, renamed(t))).collect();
+    let renumbered = |t: usize| work.pieces[t].vertices.map(|v| cut.vertex_to_kept[v.index()]);
+    let mut all: Vec<(usize, [VertexId; 3])> = others.map(|t| (t, renumbered(t))).collect();
     all.extend(cut.pieces.iter().map(|&(vertices, i)| (sound[i as usize] as usize, vertices)));
     all.sort_by_key(|piece| piece.0);
     all.into_iter().map(|(t, vertices)| Piece { vertices, ..work.pieces[t] }).collect()
@@ -156,15 +157,15 @@ fn origins(work: &Work, cut: &Cut, sound: &[u32]) -> Vec<Origin> {
 }
 
 /// Records what was found where triangles met.
-fn tell(work: &mut Work, cut: &Cut, sound: &[u32]) {
-    for (v, &name) in cut.names.iter().enumerate().filter(|(v, name)| name.index() != *v) {
-        work.tell(RepairKind::MergedVertex, Vec::new(), vec![VertexId::new(v), name]);
+fn record_meetings(work: &mut Work, cut: &Cut, sound: &[u32]) {
+    for (v, &kept) in cut.vertex_to_kept.iter().enumerate().filter(|(v, kept)| kept.index() != *v) {
+        work.record(RepairKind::MergedVertex, Vec::new(), vec![VertexId::new(v), kept]);
     }
-    for Met { kind, triangles, vertices, at } in &cut.met {
+    for Meeting { kind, triangles, vertices, at } in &cut.meetings {
         let kind = match kind {
-            MetKind::VertexOnEdge => RepairKind::TJunction,
-            MetKind::Overlap => RepairKind::Imprinted,
-            MetKind::Crossing => RepairKind::CutCrossing,
+            MeetingKind::VertexOnEdge => RepairKind::TJunction,
+            MeetingKind::Overlap => RepairKind::Imprinted,
+            MeetingKind::Crossing => RepairKind::CutCrossing,
         };
         let triangles = triangles.iter().map(|&i| work.old(sound[i as usize])).collect();
         work.done.push(Repair { kind, triangles, vertices: vertices.clone(), at: Some(*at) });
@@ -174,60 +175,70 @@ fn tell(work: &mut Work, cut: &Cut, sound: &[u32]) {
 /// Leaves one of the pieces of a surface with the same vertices. If as many face either side, it remains only
 /// if it lies inside the rest of the surface, where it separates two bodies; otherwise none remains. Returns
 /// whether there were any such pieces.
-fn share(work: &mut Work, joints: &mut Joints) -> bool {
+fn drop_duplicate_pieces(work: &mut Work, divided: &mut DividedSurfaces) -> bool {
     let mut same: BTreeMap<(u32, [VertexId; 3]), Vec<usize>> = BTreeMap::new();
-    for (i, piece) in joints.pieces.iter().enumerate() {
+    for (i, piece) in divided.pieces.iter().enumerate() {
         let [a, b, c] = rising(piece.vertices);
         if a != b && b != c {
             same.entry((piece.surface, [a, b, c])).or_default().push(i);
         }
     }
     same.retain(|_, list| list.len() > 1);
-    let mut goes = vec![false; joints.pieces.len()];
+    let mut is_removed = vec![false; divided.pieces.len()];
     let mut even = Vec::new();
     for (&(surface, _), list) in &same {
-        list.iter().for_each(|&i| goes[i] = true);
-        let first = joints.pieces[list[0]].vertices;
-        let faces_as_first = |i: &&usize| runs_alike(joints.pieces[**i].vertices, first);
+        list.iter().for_each(|&i| is_removed[i] = true);
+        let first = divided.pieces[list[0]].vertices;
+        let faces_as_first = |i: &&usize| runs_alike(divided.pieces[**i].vertices, first);
         let n_alike = list.iter().filter(faces_as_first).count();
         if 2 * n_alike == list.len() {
             even.push((surface, list));
             continue;
         }
         let of_more = list.iter().find(|i| faces_as_first(i) == (2 * n_alike > list.len()));
-        of_more.iter().for_each(|&&i| goes[i] = false);
-        tell_shared(work, joints, list, &goes, RepairKind::DroppedDuplicate);
+        of_more.iter().for_each(|&&i| is_removed[i] = false);
+        record_shared(work, divided, list, &is_removed, RepairKind::DroppedDuplicate);
     }
     let surfaces: BTreeSet<u32> = even.iter().map(|of| of.0).collect();
     let rests: BTreeMap<u32, WindingNumber> =
-        surfaces.into_iter().map(|surface| (surface, rest_of(joints, &goes, surface))).collect();
+        surfaces.into_iter().map(|surface| (surface, rest_of(divided, &is_removed, surface))).collect();
     for (surface, list) in even {
-        let at = middle(joints, list[0]);
+        let at = middle(divided, list[0]);
         let is_wall = work.roles[surface as usize] == Role::Boundary && rests[&surface].at(at).abs() > 0.5;
-        goes[list[0]] = !is_wall;
+        is_removed[list[0]] = !is_wall;
         let kind = if is_wall { RepairKind::KeptWall } else { RepairKind::DroppedDuplicate };
-        tell_shared(work, joints, list, &goes, kind);
+        record_shared(work, divided, list, &is_removed, kind);
     }
-    let mut goes = goes.into_iter();
-    joints.pieces.retain(|_| goes.next() != Some(true));
+    let mut is_removed = is_removed.into_iter();
+    divided.pieces.retain(|_| is_removed.next() != Some(true));
     !same.is_empty()
 }
 
-fn middle(joints: &Joints, piece: usize) -> Point {
-    centroid(joints.pieces[piece].vertices.map(|v| joints.points[v.index()]))
+fn middle(divided: &DividedSurfaces, piece: usize) -> Point {
+    centroid(divided.pieces[piece].vertices.map(|v| divided.points[v.index()]))
 }
 
 /// Records pieces with the same vertices, of which some are removed.
-fn tell_shared(work: &mut Work, joints: &Joints, list: &[usize], goes: &[bool], kind: RepairKind) {
-    let triangles = list.iter().filter(|&&i| goes[i]).map(|&i| joints.pieces[i].takes_after).collect();
-    let (vertices, at) = (joints.pieces[list[0]].vertices.to_vec(), middle(joints, list[0]));
+fn record_shared(
+    work: &mut Work,
+    divided: &DividedSurfaces,
+    list: &[usize],
+    is_removed: &[bool],
+    kind: RepairKind,
+) {
+    let triangles = list.iter().filter(|&&i| is_removed[i]).map(|&i| divided.pieces[i].takes_after).collect();
+    let (vertices, at) = (divided.pieces[list[0]].vertices.to_vec(), middle(divided, list[0]));
     work.done.push(Repair { kind, triangles, vertices, at: in_range(at).then_some(at) });
 }
 
 /// The winding number of the pieces of a surface that remain and whose corners are finite.
-fn rest_of(joints: &Joints, goes: &[bool], surface: u32) -> WindingNumber {
-    let own = joints.pieces.iter().zip(goes).filter(|(piece, goes)| piece.surface == surface && !**goes);
-    let is_finite = |t: &[VertexId; 3]| t.iter().all(|v| in_range(joints.points[v.index()]));
+fn rest_of(divided: &DividedSurfaces, is_removed: &[bool], surface: u32) -> WindingNumber {
+    let own = divided
+        .pieces
+        .iter()
+        .zip(is_removed)
+        .filter(|(piece, is_removed)| piece.surface == surface && !**is_removed);
+    let is_finite = |t: &[VertexId; 3]| t.iter().all(|v| in_range(divided.points[v.index()]));
     let rest: Vec<_> = own.map(|(piece, _)| piece.vertices).filter(is_finite).collect();
-    WindingNumber::new(&joints.points, &rest)
+    WindingNumber::new(&divided.points, &rest)
 }
