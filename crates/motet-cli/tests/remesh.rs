@@ -261,7 +261,7 @@ fn arrays_are_carried_as_the_call_says() {
     assert!(new.point_field("linear").is_none() && new.point_field("constant").is_some());
     let written = new.cell_field("eas").unwrap().values.to_f64().unwrap();
     assert!(qualities(&new).into_iter().all(|(cell, q)| written[cell.index()] == q));
-    for (word, part) in [("nothing=drop", "no array nothing"), ("number=mean", "no mean")] {
+    for (word, part) in [("nothing=drop", "no array `nothing`"), ("number=mean", "no mean")] {
         let call = folder.motet(["remesh", "shaken.vtu", "-o", "new.vtu", "--carry", word]).assert().code(2);
         assert!(stderr(&call).contains(part), "{}", stderr(&call));
     }

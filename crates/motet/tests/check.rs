@@ -236,7 +236,7 @@ fn parts_are_counted_and_the_display_names_places() {
     assert_eq!(found(&two), [(DefectKind::SeparatePart, 2)]);
     assert_eq!(
         defects[0].to_string(),
-        "2 separate_part (cells that hang together with no others): cell 0 at (0.500000, 0.500000, 0.500000); \
+        "2 separate_part (a part of the mesh that is not connected to the rest): cell 0 at (0.500000, 0.500000, 0.500000); \
          cell 1 at (10.500000, 10.500000, 10.500000)"
     );
 }

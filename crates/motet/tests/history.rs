@@ -411,7 +411,7 @@ fn all_arrays_of_a_mesh_are_carried_by_their_rules() {
     let unknown = Rules { cells: BTreeMap::from([("presure".into(), Rule::Drop)]), ..Rules::default() };
     let error = history.transfer(&old, &mut new, &unknown).unwrap_err().to_string();
     assert!(
-        error.starts_with("cell array presure: a rule names it, but the mesh has region, patch"),
+        error.starts_with("cell array presure: a rule names this array, but the mesh has only region, patch"),
         "{error}"
     );
 }
@@ -465,10 +465,10 @@ fn what_does_not_fit_is_refused_with_its_name_and_counts() {
     assert!(error.starts_with("cell array v: has 9 values, but 2 cells of 3 component(s) need 6"), "{error}");
     let ids = Field::scalars("id", vec![1, 2, 3]);
     for (rule, text) in [
-        (Rule::Conserve, "point array id: cannot be asked to Conserve"),
+        (Rule::Conserve, "point array id: cannot be transferred by the rule Conserve"),
         (
             Rule::Interpolate,
-            "point array id: is asked to Interpolate, but whole numbers and texts have no mean",
+            "point array id: cannot be transferred by the rule Interpolate, since whole numbers and texts have no mean",
         ),
     ] {
         let error = history.transfer_points_by(&ids, rule).unwrap_err().to_string();
@@ -476,7 +476,7 @@ fn what_does_not_fit_is_refused_with_its_name_and_counts() {
     }
     assert_eq!(history.transfer_points_by(&ids, Rule::Drop).unwrap(), None);
     let error = history.transfer(&Mesh::default(), &mut Mesh::default(), &Rules::default()).unwrap_err();
-    assert!(error.to_string().starts_with("old mesh: has 0 points, but the history is of one with 3"));
+    assert!(error.to_string().starts_with("old mesh: has 0 points, but the history is of a mesh with 3"));
 
     // Regions do not mix, so a new region has no source.
     let (old, mut new) = (two_regions(81, 4), two_regions(82, 4));
@@ -503,7 +503,7 @@ fn origins_that_do_not_fit_are_refused() {
     assert_eq!((found.from, found.shares), ([VertexId(0), VertexId(1)].as_slice(), [0.25, 0.75].as_slice()));
     assert_eq!(origins.of(VertexId(0)), Origin::Kept(VertexId(0)));
     let beyond = Origins::new(1, kept.clone(), fine.clone()).unwrap_err().to_string();
-    assert_eq!(beyond, "row of 1: names the old id 1, but there were 1");
+    assert_eq!(beyond, "row of 1: names the old id 1, but there were only 1");
     assert!(Origins::new(2, vec![VertexId(2), Id::NONE], fine.clone()).is_err());
     assert!(Origins::new(2, vec![VertexId(0), VertexId(1)], fine).is_err());
     assert!(Origins::new(2, vec![Id::NONE, VertexId(1)], row(&[])).is_err());

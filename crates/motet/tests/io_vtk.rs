@@ -327,7 +327,7 @@ fn counts_that_lie_are_refused() {
 fn cells_that_do_not_fit_are_refused() {
     assert_refused(">0 1 2 3<", ">0 1 2 4<", "cell 0", "names point 4");
     assert_refused(">0 1 2 3<", ">0 1 2 -3<", "line 12, array connectivity", "-3 is no id");
-    assert_refused(">0 1 2 3<", ">0 1 2<", "line 11, Cells", "do not rise");
+    assert_refused(">0 1 2 3<", ">0 1 2<", "line 11, Cells", "must rise");
     assert_refused(">4<", ">-4<", "line 13, array offsets", "-4 is no id");
     assert_refused(">4<", ">99999999999<", "line 13, array offsets", "no whole number");
     assert_refused(">10<", ">12<", "cell 0", "a hexahedron has 8 vertices, this one 4");
@@ -342,7 +342,7 @@ fn offsets_that_go_backwards_are_refused() {
         .replace(">4<", ">4 2 4<")
         .replace(">10<", ">10 3 3<");
     let error = read(".vtu", two.as_bytes()).unwrap_err().to_string();
-    assert!(error.contains("do not rise"), "{error}");
+    assert!(error.contains("must rise"), "{error}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::base::{CellId, Csr, Point, VertexId};
 use crate::mesh::adjacency::{FacetUse, Facets};
 use crate::mesh::facets::facet_shapes;
-use crate::mesh::lone::lone_facets;
+use crate::mesh::unshared::unshared_facets;
 use crate::mesh::{CellKind, Cells, cell_volume};
 
 /// The facets that exactly one volume cell uses, whatever its kind.
@@ -29,7 +29,7 @@ impl Boundary {
         let facets = Facets::of(cells);
         let alone =
             match cells.counts().iter().all(|(kind, _)| *kind == CellKind::TETRA || kind.dim() != Some(3)) {
-                true => lone_facets(cells),
+                true => unshared_facets(cells),
                 false => used_once(&facets),
             };
         let mut boundary = Self { n_unknown: count_unknown(cells), ..Self::default() };
@@ -60,7 +60,7 @@ impl Boundary {
         for i in 0..self.len() {
             if cell_volume(&facets, self.cells[i], points) < 0.0 {
                 let n_corners = corners(self.kinds[i], self.facets.list(i)).len();
-                turn(self.facets.list_mut(i), n_corners);
+                reverse_facet(self.facets.list_mut(i), n_corners);
             }
         }
     }
@@ -94,7 +94,7 @@ pub(crate) fn corners(kind: CellKind, vertices: &[VertexId]) -> &[VertexId] {
 
 /// Reverses a facet: the ring of its corners, and its middle nodes along with their edges. The first corner
 /// stays in place, except in quads with two middle nodes.
-fn turn(facet: &mut [VertexId], n_corners: usize) {
+fn reverse_facet(facet: &mut [VertexId], n_corners: usize) {
     let (corners, middles) = facet.split_at_mut(n_corners);
     corners[1..].reverse();
     match middles.len() {

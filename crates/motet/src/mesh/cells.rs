@@ -28,7 +28,7 @@ impl Cells {
         let n = kind.n_vertices().filter(|&n| n > 0);
         let Some(n) = n.filter(|n| vertices.len().is_multiple_of(*n)) else {
             return Err(Error::input(format!(
-                "{} vertex ids do not make cells of kind {}",
+                "{} vertex ids are not a whole number of cells of kind {}",
                 vertices.len(),
                 kind.label()
             )));
@@ -57,13 +57,13 @@ impl Cells {
         let n_vertices = vertices.len();
         let vertices = Csr::new(offsets, vertices).ok_or_else(|| {
             Error::input(format!(
-                "the cell offsets do not rise from 0 to the {n_vertices} vertex ids of the connectivity"
+                "the cell offsets must rise from 0 to {n_vertices}, the number of vertex ids in the connectivity"
             ))
         })?;
         for (i, kind) in kinds.iter().enumerate() {
             let n = vertices.list(i).len();
             if *kind == CellKind::POLYHEDRON {
-                return Err(Error::input("a polyhedron without its faces").at(format!("cell {i}")));
+                return Err(Error::input("a polyhedron must be given with its faces").at(format!("cell {i}")));
             }
             if let Some(expected) = kind.n_vertices().filter(|&e| e != n) {
                 return Err(Error::input(format!(
@@ -195,7 +195,7 @@ impl Cells {
             n_points.saturating_sub(1)
         ))
         .at(format!("cell {cell}"))
-        .remedy("the file is damaged or its ids start at another base: write it again"))
+        .remedy("the file is damaged, or its ids start at the wrong number: write it again"))
     }
 }
 

@@ -83,8 +83,8 @@ impl Values {
         })
     }
 
-    /// Sets value `i` to `x`. Returns `false` and changes nothing for texts, and if an integer type cannot
-    /// represent `x`.
+    /// Sets value `i` to `x`. Returns `false` and changes nothing for texts, if an integer type cannot
+    /// represent `x`, and if `x` is finite but beyond the range of single precision.
     ///
     /// Panics if there is no such value.
     pub fn set_f64(&mut self, i: usize, x: f64) -> bool {
@@ -109,8 +109,11 @@ impl Values {
             Self::I64(v) => whole!(v, i64),
             Self::U64(v) => whole!(v, u64),
             Self::F32(v) => {
-                v[i] = x as f32;
-                true
+                let fits = (x as f32).is_finite() || !x.is_finite();
+                if fits {
+                    v[i] = x as f32;
+                }
+                fits
             }
             Self::F64(v) => {
                 v[i] = x;
@@ -127,10 +130,12 @@ impl Values {
 
     /// All values as whole numbers; `None` for texts, and if any value is not whole or does not fit.
     pub fn to_i64(&self) -> Option<Vec<i64>> {
+        // At 2^63, to which the maximum rounds, the saturated value converts back; hence the second test.
+        let whole = |x: f64| ((x as i64) as f64 == x && x < i64::MAX as f64).then_some(x as i64);
         match self {
             Self::I64(v) => Some(v.clone()),
             Self::U64(v) => v.iter().map(|&x| i64::try_from(x).ok()).collect(),
-            _ => self.to_f64()?.into_iter().map(|x| ((x as i64) as f64 == x).then_some(x as i64)).collect(),
+            _ => self.to_f64()?.into_iter().map(whole).collect(),
         }
     }
 }
@@ -181,5 +186,32 @@ impl Field {
                 .at(format!("array {}", self.name))
         })?;
         Ok(flat.as_chunks::<3>().0.to_vec())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn floats_from_2_to_the_63_are_no_whole_numbers_of_64_bits() {
+        let limit = 2.0f64.powi(63);
+        assert_eq!(Values::F64(vec![limit]).to_i64(), None);
+        assert_eq!(Values::F32(vec![limit as f32]).to_i64(), None);
+        assert_eq!(Values::F64(vec![f64::INFINITY]).to_i64(), None);
+        let below = limit - 1024.0;
+        assert_eq!(Values::F64(vec![-limit, below]).to_i64(), Some(vec![i64::MIN, below as i64]));
+    }
+
+    #[test]
+    fn a_finite_number_does_not_become_infinite_in_single_precision() {
+        let mut values = Values::F32(vec![1.0]);
+        assert!(!values.set_f64(0, 1e39) && !values.set_f64(0, -1e39));
+        assert_eq!(values, Values::F32(vec![1.0]));
+        assert!(values.set_f64(0, f64::from(f32::MAX)));
+        assert_eq!(values, Values::F32(vec![f32::MAX]));
+        assert!(values.set_f64(0, f64::NEG_INFINITY));
+        assert_eq!(values, Values::F32(vec![f32::NEG_INFINITY]));
+        assert!(values.set_f64(0, f64::NAN) && values.get_f64(0).unwrap().is_nan());
     }
 }

@@ -17,18 +17,18 @@ use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot, norm, scale, sub};
 
 /// A column's edges are shorter than this fraction of the mean length of the wall edges at its foot.
-const SHORT: f64 = 0.6;
+const MAX_EDGE_RATIO: f64 = 0.6;
 /// Cosine of 35 degrees: a column leans by less from the normal of the wall, and each edge of it from the one
 /// below.
-const UPRIGHT: f64 = 0.82;
+const MIN_COS_LEAN: f64 = 0.82;
 /// An edge of a column is at most this many times as long as the edge below it.
 const GROWTH: f64 = 3.0;
 /// Layers are looked for only if at least this fraction of the sampled wall vertices has a column.
-const ENOUGH: f64 = 0.4;
+const MIN_COLUMN_FRACTION: f64 = 0.4;
 /// Largest number of wall vertices that are sampled for this test.
 const SAMPLE: usize = 256;
 /// Columns have fewer levels than this.
-const MOST_LEVELS: u32 = 64;
+const MAX_LEVELS: u32 = 64;
 
 /// For each tet in `low` (indices into `tets`), whether it belongs to a boundary layer; all `false` if fewer
 /// than half of them do. `low` lists the tets whose EAS is below `min_eas`, `tets` are oriented, and `walls`
@@ -41,7 +41,8 @@ pub(crate) fn are_layers(
     min_eas: f64,
 ) -> Vec<bool> {
     let layers = if low.is_empty() { None } else { Layers::of(points, tets, walls) };
-    let is_thin = |&t: &usize| layers.as_ref().is_some_and(|layers| layers.holds(points, tets[t], min_eas));
+    let is_thin =
+        |&t: &usize| layers.as_ref().is_some_and(|layers| layers.is_layer_tet(points, tets[t], min_eas));
     let are_thin: Vec<bool> = low.iter().map(is_thin).collect();
     let n_thin = are_thin.iter().filter(|is| **is).count();
     if 2 * n_thin < low.len() { vec![false; low.len()] } else { are_thin }
@@ -53,7 +54,7 @@ struct Layers {
     /// [`NO_COLUMN`] if it stands in none.
     columns: Vec<(VertexId, u32)>,
     /// For each foot, the unit direction in which its column rises; zero elsewhere.
-    ways: Vec<Point>,
+    directions: Vec<Point>,
 }
 
 const NO_COLUMN: (VertexId, u32) = (VertexId(u32::MAX), 0);
@@ -86,22 +87,22 @@ impl Layers {
         let climber = Climber { points, tets, vertex_to_tets, normals, vertex_to_walls };
         let has_column = |v: &&VertexId| climber.first(**v, &at_walls[v.index()]).is_some();
         let n_columns = sample.iter().filter(has_column).count();
-        if (n_columns as f64) < ENOUGH * sample.len() as f64 || feet.is_empty() {
+        if (n_columns as f64) < MIN_COLUMN_FRACTION * sample.len() as f64 || feet.is_empty() {
             return None;
         }
         let climber = Climber { vertex_to_tets: stars(n, tets, |_| true), ..climber };
         let mut columns = vec![NO_COLUMN; n];
         feet.iter().for_each(|&v| columns[v.index()] = (v, 0));
-        let mut ways = vec![[0.0; 3]; n];
+        let mut directions = vec![[0.0; 3]; n];
         for &foot in &feet {
-            ways[foot.index()] = climber.climb(foot, &at_walls[foot.index()], &mut columns);
+            directions[foot.index()] = climber.climb(foot, &at_walls[foot.index()], &mut columns);
         }
-        Some(Self { columns, ways })
+        Some(Self { columns, directions })
     }
 
     /// Whether a tet belongs to a layer and is well shaped there: its EAS is at least `min_eas` after it has
     /// been stretched along the normal until it is as high as it is wide.
-    fn holds(&self, points: &[Point], vertices: [VertexId; 4], min_eas: f64) -> bool {
+    fn is_layer_tet(&self, points: &[Point], vertices: [VertexId; 4], min_eas: f64) -> bool {
         let columns = vertices.map(|v| self.columns.get(v.index()).copied().unwrap_or(NO_COLUMN));
         let levels = columns.map(|c| c.1);
         let mut feet: Vec<VertexId> = columns.iter().map(|c| c.0).collect();
@@ -112,8 +113,8 @@ impl Layers {
             return false;
         }
         let corners = vertices.map(|v| points[v.index()]);
-        let way = feet.iter().fold([0.0; 3], |sum, foot| add(sum, self.ways[foot.index()]));
-        eas(corners) > 0.0 && stretched_eas(corners, scale(way, 1.0 / norm(way))) >= min_eas
+        let normal = feet.iter().fold([0.0; 3], |sum, foot| add(sum, self.directions[foot.index()]));
+        eas(corners) > 0.0 && stretched_eas(corners, scale(normal, 1.0 / norm(normal))) >= min_eas
     }
 }
 
@@ -156,7 +157,7 @@ struct Foot {
 
 impl Foot {
     fn limit(&self) -> f64 {
-        SHORT * self.width / f64::from(self.n_edges)
+        MAX_EDGE_RATIO * self.width / f64::from(self.n_edges)
     }
 }
 
@@ -182,22 +183,22 @@ impl Climber<'_> {
         let mut best: Option<(f64, VertexId, Point)> = None;
         let star = self.vertex_to_tets.list(from.index());
         for v in star.iter().flat_map(|&t| self.tets[t as usize]).filter(|&v| v != from) {
-            let way = sub(self.points[v.index()], start);
-            let length = norm(way);
+            let edge = sub(self.points[v.index()], start);
+            let length = norm(edge);
             let is_shorter = best.is_none_or(|b| (length, v) < (b.0, b.1));
-            if length < limit && is_shorter && is_upright(way, length) {
-                best = Some((length, v, way));
+            if length < limit && is_shorter && is_upright(edge, length) {
+                best = Some((length, v, edge));
             }
         }
-        best.map(|(_, v, way)| (v, way))
+        best.map(|(_, v, edge)| (v, edge))
     }
 
     /// The first vertex above a foot: upright on one of the wall facets there. It may itself lie on another
     /// wall, such as an inlet.
     fn first(&self, foot: VertexId, wall: &Foot) -> Option<(VertexId, Point)> {
-        self.above(foot, wall.limit(), |way, length| {
+        self.above(foot, wall.limit(), |edge, length| {
             let walls = self.vertex_to_walls.list(foot.index());
-            walls.iter().any(|&wall| dot(way, self.normals[wall as usize]).abs() > UPRIGHT * length)
+            walls.iter().any(|&wall| dot(edge, self.normals[wall as usize]).abs() > MIN_COS_LEAN * length)
         })
     }
 
@@ -205,8 +206,8 @@ impl Climber<'_> {
     /// its vertices in `columns`. Returns the unit direction of its first edge; zero if there is none.
     fn climb(&self, foot: VertexId, wall: &Foot, columns: &mut [(VertexId, u32)]) -> Point {
         let mut next = self.first(foot, wall);
-        let first = next.map_or([0.0; 3], |(_, way)| scale(way, 1.0 / norm(way)));
-        for level in 1..MOST_LEVELS {
+        let first = next.map_or([0.0; 3], |(_, edge)| scale(edge, 1.0 / norm(edge)));
+        for level in 1..MAX_LEVELS {
             let Some((vertex, up)) = next else { break };
             let column = &mut columns[vertex.index()];
             if *column != NO_COLUMN && *column != (vertex, 0) {
@@ -214,8 +215,8 @@ impl Climber<'_> {
             }
             *column = (foot, level);
             let step = norm(up);
-            next = self.above(vertex, (GROWTH * step).min(wall.limit()), |way, length| {
-                dot(way, up) > UPRIGHT * length * step
+            next = self.above(vertex, (GROWTH * step).min(wall.limit()), |edge, length| {
+                dot(edge, up) > MIN_COS_LEAN * length * step
             });
         }
         first

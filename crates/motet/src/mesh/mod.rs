@@ -15,7 +15,6 @@ mod field;
 pub mod history;
 mod labels;
 mod layers;
-mod lone;
 pub mod marks;
 mod measure;
 pub(crate) mod orientation;
@@ -29,6 +28,7 @@ pub mod tet_facets;
 mod tet_mesh;
 mod tet_part;
 mod triangulate;
+mod unshared;
 mod volume;
 
 pub use boundary::Boundary;

@@ -25,7 +25,7 @@ pub(crate) fn orient(
     across: impl Across,
     points: &[Point],
 ) -> Result<Vec<bool>, TetId> {
-    let mut is_turned = vec![false; tets.len()];
+    let mut is_reversed = vec![false; tets.len()];
     let mut is_seen = vec![false; tets.len()];
     let mut part = Vec::new();
     for start in 0..tets.len() {
@@ -42,26 +42,26 @@ pub(crate) fn orient(
             i += 1;
             let signed = volume_6(tets[t].map(|v| points[v.index()]));
             if signed.is_finite() {
-                volume += if is_turned[t] { -signed } else { signed };
+                volume += if is_reversed[t] { -signed } else { signed };
             }
             for (f, (o, of_other)) in (0..4).filter_map(|f| Some((f, across(t, f)?))) {
                 let agree = see_from_opposite_sides(facet(&tets[t], f), facet(&tets[o], of_other));
-                let turned = is_turned[t] == agree;
+                let reversed = is_reversed[t] == agree;
                 if !is_seen[o] {
                     is_seen[o] = true;
-                    is_turned[o] = turned;
+                    is_reversed[o] = reversed;
                     part.push(o);
-                } else if is_turned[o] != turned {
+                } else if is_reversed[o] != reversed {
                     return Err(TetId::new(o));
                 }
             }
         }
         if volume < 0.0 {
-            part.iter().for_each(|&t| is_turned[t] = !is_turned[t]);
+            part.iter().for_each(|&t| is_reversed[t] = !is_reversed[t]);
         }
     }
-    tets.iter_mut().zip(&is_turned).filter(|(_, turned)| **turned).for_each(|(tet, _)| tet.swap(2, 3));
-    Ok(is_turned)
+    tets.iter_mut().zip(&is_reversed).filter(|(_, reversed)| **reversed).for_each(|(tet, _)| tet.swap(2, 3));
+    Ok(is_reversed)
 }
 
 /// The tets that are folded over others, in rising order: as numbered in the file, they were positive like a
@@ -72,7 +72,7 @@ pub(crate) fn orient(
 pub(crate) fn folded(
     tets: &[[VertexId; 4]],
     points: &[Point],
-    is_turned: &[bool],
+    is_reversed: &[bool],
     across: impl Across,
 ) -> Vec<TetId> {
     let is_positive = |t: usize| {
@@ -82,7 +82,7 @@ pub(crate) fn folded(
     let neighbors = |t: usize| [0, 1, 2, 3].map(|f| across(t, f)).into_iter().flatten().map(|(o, _)| o);
     let (mut is_folded, mut found) = (vec![false; tets.len()], Vec::new());
     for t in 0..tets.len() {
-        for o in neighbors(t).filter(|&o| is_turned[o] != is_turned[t]) {
+        for o in neighbors(t).filter(|&o| is_reversed[o] != is_reversed[t]) {
             match (is_positive(t), is_positive(o)) {
                 (true, true) => return Vec::new(),
                 (false, true) if !is_folded[t] => {
@@ -98,7 +98,7 @@ pub(crate) fn folded(
     while let Some(&t) = found.get(next) {
         next += 1;
         for o in neighbors(t) {
-            if !is_folded[o] && is_turned[o] == is_turned[t] && !is_positive(o) {
+            if !is_folded[o] && is_reversed[o] == is_reversed[t] && !is_positive(o) {
                 is_folded[o] = true;
                 found.push(o);
             }

@@ -19,7 +19,7 @@ use crate::mesh::{CellKind, Field, Mesh, TetMesh};
 
 /// Facets are numbered only below this number of tets and triangles; more tets keep the orientation of the
 /// file.
-const MOST: usize = 1 << 29;
+const MAX_TETS_AND_TRIANGLES: usize = 1 << 29;
 
 /// The tets of a mesh, oriented by their neighbours, and the facets that bound them.
 #[derive(Clone, Debug, Default)]
@@ -111,10 +111,10 @@ impl OrientedTets {
     }
 
     /// For each of `n_cells` cells, whether it is a tet that the file numbers the other way around.
-    pub(crate) fn are_turned(&self, n_cells: usize) -> Vec<bool> {
-        let mut are_turned = vec![false; n_cells];
-        self.turned.iter().for_each(|&tet| are_turned[self.cells[tet].index()] = true);
-        are_turned
+    pub(crate) fn are_reversed(&self, n_cells: usize) -> Vec<bool> {
+        let mut are_reversed = vec![false; n_cells];
+        self.turned.iter().for_each(|&tet| are_reversed[self.cells[tet].index()] = true);
+        are_reversed
     }
 
     /// Divides `low`, the tets whose EAS is below `min_eas`, into bad tets and tets of boundary layers.
@@ -127,7 +127,7 @@ impl OrientedTets {
     }
 
     fn orient(&mut self, points: &[Point], regions: &[i32], triangles: &[[VertexId; 3]]) {
-        if self.tets.len() + triangles.len() >= MOST {
+        if self.tets.len() + triangles.len() >= MAX_TETS_AND_TRIANGLES {
             return;
         }
         let (tets, walls) = (&self.tets, &mut self.walls);
@@ -151,8 +151,8 @@ impl OrientedTets {
                 Some(((half >> 2) as usize, (half & 3) as usize))
             };
             // A mesh that cannot be oriented keeps the numbering of the file.
-            let is_turned = orient(&mut self.tets, behind, points).unwrap_or_default();
-            self.turned = (0..is_turned.len()).filter(|&t| is_turned[t]).collect();
+            let is_reversed = orient(&mut self.tets, behind, points).unwrap_or_default();
+            self.turned = (0..is_reversed.len()).filter(|&t| is_reversed[t]).collect();
         }
     }
 }

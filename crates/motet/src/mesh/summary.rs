@@ -195,10 +195,10 @@ impl Summary {
 /// The volume of each cell, for tets as oriented; 0 where it is not finite.
 fn finite_volumes(mesh: &Mesh, tets: &OrientedTets) -> Vec<f64> {
     let facets = Facets::of(&mesh.cells);
-    let are_turned = tets.are_turned(mesh.cells.len());
+    let are_reversed = tets.are_reversed(mesh.cells.len());
     let volume = |i| {
         let volume = cell_volume(&facets, CellId::new(i), &mesh.points);
-        if are_turned[i] { -volume } else { volume }
+        if are_reversed[i] { -volume } else { volume }
     };
     (0..mesh.cells.len()).map(|i| Some(volume(i)).filter(|v| v.is_finite()).unwrap_or(0.0)).collect()
 }

@@ -84,14 +84,14 @@ impl Buckets {
         let all_ids = tets.as_flattened().iter().chain(triangles.as_flattened());
         let n_vertices = all_ids.map(|v| v.index() + 1).max().unwrap_or(0);
         let mut offsets = vec![0u32; n_vertices + 1];
-        each(tets, triangles, |first, _, _| offsets[first as usize + 1] += 1);
+        for_each_keyed_facet(tets, triangles, |first, _, _| offsets[first as usize + 1] += 1);
         for i in 0..n_vertices {
             offsets[i + 1] += offsets[i];
         }
         let n = offsets[n_vertices] as usize;
         let mut next = offsets.clone();
         let (mut keys, mut ids) = (vec![0u64; n], vec![0u32; n]);
-        each(tets, triangles, |first, key, id| {
+        for_each_keyed_facet(tets, triangles, |first, key, id| {
             let place = &mut next[first as usize];
             keys[*place as usize] = key;
             ids[*place as usize] = id;
@@ -195,7 +195,11 @@ fn hash(key: u64) -> usize {
 /// Calls `see` with the lowest vertex, the key and the id of each facet, leaving out those that name a vertex
 /// twice.
 #[inline(always)]
-fn each(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]], mut see: impl FnMut(u32, u64, u32)) {
+fn for_each_keyed_facet(
+    tets: &[[VertexId; 4]],
+    triangles: &[[VertexId; 3]],
+    mut see: impl FnMut(u32, u64, u32),
+) {
     for (t, tet) in (0u32..).zip(tets) {
         let [a, b, c, d] = sorted(*tet);
         let vertices = [a, b, c, d].map(|packed| (packed >> 2) as u32);

@@ -71,7 +71,7 @@ impl TetMesh {
         match rows.iter().position(is_off) {
             None => Ok(()),
             Some(i) => Err(Error::input(format!(
-                "names the points {:?}, but there are {n} points, and a {what} needs {N} different ones",
+                "names the points {:?}, but there are {n} points and a {what} needs {N} distinct ones",
                 rows[i].map(|v| v.0)
             ))
             .at(format!("{what} {i}"))
@@ -86,7 +86,7 @@ impl TetMesh {
         }
         match self.tets.iter().position(is_off) {
             None => Ok(()),
-            Some(i) => Err(Error::input("has a vertex whose coordinates are no numbers")
+            Some(i) => Err(Error::input("has a vertex whose coordinates are not finite numbers")
                 .at(format!("tet {i}"))
                 .remedy("`motet info` lists what is wrong with a mesh")),
         }

@@ -50,15 +50,15 @@ impl TetPart {
                     part.mesh.lines.push([a, b]);
                     part.line_to_cell.push(cell);
                 }
-                _ => part.hold(vertices),
+                _ => part.fix(vertices),
             }
         }
         part.mesh.line_labels = line_labels(mesh, &part.line_to_cell);
         if part.mesh.tets.is_empty() {
             return Err(no_tets(mesh));
         }
-        part.hold_polyhedra(mesh);
-        part.hold_loose_triangles();
+        part.fix_polyhedra(mesh);
+        part.fix_loose_triangles();
         Ok(part)
     }
 
@@ -67,7 +67,7 @@ impl TetPart {
     #[must_use]
     pub fn with_lines_held(mut self) -> Self {
         let lines = std::mem::take(&mut self.mesh.lines);
-        lines.iter().for_each(|line| self.hold(line));
+        lines.iter().for_each(|line| self.fix(line));
         self.mesh.line_labels.clear();
         self.line_to_cell.clear();
         self
@@ -87,15 +87,15 @@ impl TetPart {
             to_cell.get(id.parse::<usize>().ok()?)
         });
         let Some(cell) = cell else { return error };
-        let told = Error::new(error.kind(), error.what()).at(format!("cell {cell}"));
+        let located = Error::new(error.kind(), error.what()).at(format!("cell {cell}"));
         match error.remedy_text() {
-            Some(remedy) => told.remedy(remedy),
-            None => told,
+            Some(remedy) => located.remedy(remedy),
+            None => located,
         }
     }
 
     /// Fixes the vertices of a cell of another kind, and every edge between two of them.
-    fn hold(&mut self, vertices: &[VertexId]) {
+    fn fix(&mut self, vertices: &[VertexId]) {
         let fixed = &mut self.mesh;
         fixed.fixed_vertices.extend_from_slice(vertices);
         for (i, &a) in vertices.iter().enumerate() {
@@ -105,15 +105,15 @@ impl TetPart {
     }
 
     /// Fixes the faces of polyhedra, which may name vertices that the polyhedra do not.
-    fn hold_polyhedra(&mut self, mesh: &Mesh) {
+    fn fix_polyhedra(&mut self, mesh: &Mesh) {
         for face in mesh.cells.polyhedron_faces().iter().flat_map(|faces| faces.iter()) {
-            self.hold(face);
+            self.fix(face);
         }
     }
 
     /// Fixes the triangles that are not a facet of any tet, and all but the first of several with the same
     /// vertices.
-    fn hold_loose_triangles(&mut self) {
+    fn fix_loose_triangles(&mut self) {
         let fixed = &self.mesh;
         let sorted = |mut triangle: [VertexId; 3]| {
             triangle.sort_unstable();
@@ -137,7 +137,7 @@ impl TetPart {
             }
         }
         for i in (0..is_loose.len()).filter(|&i| is_loose[i]) {
-            self.hold(&self.mesh.triangles[i].clone());
+            self.fix(&self.mesh.triangles[i].clone());
         }
     }
 }
@@ -169,8 +169,10 @@ fn line_labels(mesh: &Mesh, lines: &[CellId]) -> Vec<i32> {
 
 fn no_tets(mesh: &Mesh) -> Error {
     let kinds: Vec<_> = mesh.cells.counts().iter().map(|(kind, n)| format!("{n} {}", kind.label())).collect();
-    let error =
-        Error::input(format!("has no linear tetrahedra, which remeshing works on, but {}", kinds.join(", ")));
+    let error = Error::input(format!(
+        "has no linear tetrahedra, which remeshing requires; it has {}",
+        kinds.join(", ")
+    ));
     match mesh.cells.dim() {
         Some(3) => error.remedy("divide the cells into linear tetrahedra first"),
         _ => error.remedy("give a volume mesh"),

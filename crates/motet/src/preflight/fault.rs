@@ -41,28 +41,28 @@ macro_rules! fault_kinds {
 fault_kinds! {
     EmptySurface = "empty_surface", "the surface has no triangles",
         "give it some, or leave it out";
-    NonFinitePoint = "non_finite_point", "a coordinate is infinite, beyond 1e60 or no number",
-        "give the point a place, or remove it with its triangles";
+    NonFinitePoint = "non_finite_point", "a coordinate is infinite, beyond 1e60 or not a number",
+        "give the point finite coordinates, or remove it with its triangles";
     RepeatedVertex = "repeated_vertex", "the triangle names a vertex twice",
-        "ask for triangles without area to be dropped";
+        "request that triangles without area be removed";
     ZeroArea = "zero_area", "the corners of the triangle lie on a line",
-        "ask for triangles without area to be dropped";
+        "request that triangles without area be removed";
     Duplicate = "duplicate_triangle", "triangles of one surface with the same vertices",
-        "ask for duplicates to be dropped";
+        "request that duplicates be removed";
     Crossing = "crossing", "triangles meet in more than the vertices and edges that they share",
-        "`--repair` divides edges at vertices on them and faces that lie on each other, `--cut` also what goes through each other; or move the surfaces apart";
+        "`--repair` divides edges at vertices on them and faces that overlap, `--cut` also triangles that cross; or move the surfaces apart";
     OpenEdge = "open_edge", "the surface ends at the edge",
-        "`motet cap SURFACE -o CLOSED` closes open ends, `--repair` small holes (`--hole-edges`); a surface that may be open is a `--membrane`";
+        "`motet cap SURFACE -o CLOSED` closes open ends, `--repair` small holes (`--hole-edges`); give a surface that may be open as a `--membrane`";
     NonManifoldEdge = "non_manifold_edge", "more than two triangles of one surface meet at the edge",
         "remove the triangles that do not belong there, or give inner walls as a surface of their own";
     NonManifoldVertex = "non_manifold_vertex", "the surface touches itself at the vertex",
-        "give each sheet a vertex of its own if they should not hang together";
+        "give each sheet a vertex of its own if they should not be connected";
     MisorientedEdge = "misoriented_edge", "the two triangles at the edge face opposite sides",
-        "ask for triangles to be oriented";
+        "request that triangles be oriented";
     InwardPart = "inward_part", "a closed part of the surface faces inward",
-        "ask for triangles to be oriented";
+        "request that triangles be oriented";
     SharedFacet = "shared_facet", "surfaces have a triangle in common",
-        "nothing has to be done: it is meshed as one facet";
+        "nothing needs to be done: it is meshed as one facet";
 }
 
 impl FaultKind {

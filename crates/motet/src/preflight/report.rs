@@ -78,7 +78,7 @@ impl Preflight {
         } else {
             String::new()
         };
-        format!("the open edges make {n} rim{}: {}{more}", if n == 1 { "" } else { "s" }, longest.join("; "))
+        format!("the open edges form {n} rim{}: {}{more}", if n == 1 { "" } else { "s" }, longest.join("; "))
     }
 
     /// Number of faults of this kind, notes included.
@@ -91,14 +91,14 @@ impl Preflight {
         let fault = self.faults.iter().find(|fault| fault.is_fatal)?;
         let kind = fault.kind;
         let n = self.counts.iter().find(|count| count.kind == kind).map_or(1, |count| count.fatal);
-        let mut what = format!("surfaces that can be meshed were expected, and here {}", kind.meaning());
+        let mut what = format!("the surfaces cannot be meshed: {}", kind.meaning());
         if kind == FaultKind::OpenEdge && !self.rims.is_empty() {
             what = format!("{what}; {}", self.describe_rims());
         }
         let others = self.counts.iter().filter(|count| count.kind != kind && count.fatal > 0);
         let others: String = others.map(|count| format!(", {} {}", count.fatal, count.kind.name())).collect();
         Some(
-            Error::input(format!("{what} (in all {n} {}{others})", kind.name()))
+            Error::input(format!("{what} (in total {n} {}{others})", kind.name()))
                 .at(fault.to_string())
                 .remedy(kind.remedy()),
         )

@@ -12,34 +12,34 @@ use crate::mesh::curved::{Jacobian, is_curved_kind, is_upright};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{Boundary, CellKind, Mesh, cell_volume};
 
-/// The defects of single cells. `are_turned` states for each cell whether the sign of its volume is reversed:
-/// see [`OrientedTets`](crate::mesh::OrientedTets).
-pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, are_turned: &[bool]) -> Vec<Defect> {
+/// The defects of single cells. `are_reversed` states for each cell whether the sign of its volume is
+/// reversed: see [`OrientedTets`](crate::mesh::OrientedTets).
+pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, are_reversed: &[bool]) -> Vec<Defect> {
     let facets = Facets::of(&mesh.cells);
-    let mut repeated = Defect::none(DefectKind::RepeatedVertex);
-    let mut inverted = Defect::none(DefectKind::InvertedCell);
-    let mut flat = Defect::none(DefectKind::FlatCell);
-    let mut folded = Defect::none(DefectKind::FoldedCell);
-    let mut zero_area = Defect::none(DefectKind::ZeroAreaCell);
-    let mut unknown = Defect::none(DefectKind::UnknownKind);
+    let mut repeated = Defect::empty(DefectKind::RepeatedVertex);
+    let mut inverted = Defect::empty(DefectKind::InvertedCell);
+    let mut flat = Defect::empty(DefectKind::FlatCell);
+    let mut folded = Defect::empty(DefectKind::FoldedCell);
+    let mut zero_area = Defect::empty(DefectKind::ZeroAreaCell);
+    let mut unknown = Defect::empty(DefectKind::UnknownKind);
     for (cell, kind, vertices) in mesh.cells.iter() {
         let example = || Example::new(&[cell], vertices, &mesh.points);
-        if kind.dim() >= Some(2) && names_one_twice(vertices) {
+        if kind.dim() >= Some(2) && has_repeated_vertex(vertices) {
             repeated.add(example);
         }
         if boundary.n_unknown > 0 && is_unknown(kind) {
             unknown.add(example);
         }
         if is_curved_kind(kind) {
-            match curved(kind, vertices, &mesh.points, are_turned[cell.index()]) {
-                Curved::Sound => {}
-                Curved::Inverted => inverted.add(example),
-                Curved::Flat => flat.add(example),
-                Curved::Folded(at) => folded.add(|| Example { at: Some(at), ..example() }),
+            match curved(kind, vertices, &mesh.points, are_reversed[cell.index()]) {
+                CurvedState::Sound => {}
+                CurvedState::Inverted => inverted.add(example),
+                CurvedState::Flat => flat.add(example),
+                CurvedState::Folded(at) => folded.add(|| Example { at: Some(at), ..example() }),
             }
             continue;
         }
-        let as_oriented = |sign: Ordering| if are_turned[cell.index()] { sign.reverse() } else { sign };
+        let as_oriented = |sign: Ordering| if are_reversed[cell.index()] { sign.reverse() } else { sign };
         let measure = measure(&facets, cell, kind, vertices, &mesh.points);
         match measure.map(|(dim, sign)| (dim, as_oriented(sign))) {
             Some((3, Ordering::Less)) => inverted.add(example),
@@ -52,7 +52,7 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, are_turned: &[bool]) -> 
 }
 
 /// The sign of the Jacobian determinant of a quadratic cell.
-enum Curved {
+enum CurvedState {
     /// Positive everywhere, or undetermined since a point is not finite.
     Sound,
     /// Negative everywhere.
@@ -63,23 +63,23 @@ enum Curved {
     Folded(Point),
 }
 
-/// Judges a quadratic cell; if `is_turned`, the determinant counts with the opposite sign.
-fn curved(kind: CellKind, vertices: &[VertexId], points: &[Point], is_turned: bool) -> Curved {
+/// Judges a quadratic cell; if `is_reversed`, the determinant counts with the opposite sign.
+fn curved(kind: CellKind, vertices: &[VertexId], points: &[Point], is_reversed: bool) -> CurvedState {
     let nodes: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
-    if !nodes.iter().all(|&p| in_range(p)) || is_upright(kind, &nodes, is_turned) {
-        return Curved::Sound;
+    if !nodes.iter().all(|&p| in_range(p)) || is_upright(kind, &nodes, is_reversed) {
+        return CurvedState::Sound;
     }
-    if is_upright(kind, &nodes, !is_turned) {
-        return Curved::Inverted;
+    if is_upright(kind, &nodes, !is_reversed) {
+        return CurvedState::Inverted;
     }
     match Jacobian::of(kind, &nodes) {
-        None => Curved::Sound,
-        Some(jacobian) if jacobian.is_zero() => Curved::Flat,
-        Some(jacobian) => Curved::Folded(jacobian.least().place),
+        None => CurvedState::Sound,
+        Some(jacobian) if jacobian.is_zero() => CurvedState::Flat,
+        Some(jacobian) => CurvedState::Folded(jacobian.least().place),
     }
 }
 
-fn names_one_twice(vertices: &[VertexId]) -> bool {
+fn has_repeated_vertex(vertices: &[VertexId]) -> bool {
     if vertices.len() > 32 {
         let mut sorted = vertices.to_vec();
         sorted.sort_unstable();

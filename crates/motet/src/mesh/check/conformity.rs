@@ -9,12 +9,12 @@ use crate::mesh::adjacency::Facets;
 use crate::mesh::boundary::corners;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 use crate::mesh::check::hanging;
-use crate::mesh::check::points::Canonical;
+use crate::mesh::check::points::CoincidentVertices;
 use crate::mesh::{Boundary, CellKind, Mesh};
 
-pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -> Vec<Defect> {
-    let mut overshared = Defect::none(DefectKind::OversharedFacet);
-    let mut folded = Defect::none(DefectKind::FoldedFacet);
+pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, coincident: &CoincidentVertices) -> Vec<Defect> {
+    let mut overshared = Defect::empty(DefectKind::OversharedFacet);
+    let mut folded = Defect::empty(DefectKind::FoldedFacet);
     let mut twins: BTreeSet<(CellId, CellId)> = BTreeSet::new();
     let facets = Facets::of(&mesh.cells);
     facets.for_each_shared(|uses| {
@@ -37,12 +37,18 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -
             _ => twins.extend(pairs(uses.iter().map(|u| by_vertices(mesh, u.cell)).collect())),
         }
     });
-    let mut duplicate = Defect::none(DefectKind::DuplicateCell);
+    let mut duplicate = Defect::empty(DefectKind::DuplicateCell);
     twins.extend(surface_twins(mesh));
     for (x, y) in twins {
         duplicate.add(|| Example::new(&[x, y], mesh.cells.vertices(x), &mesh.points));
     }
-    vec![duplicate, overshared, folded, unmerged(mesh, boundary, canonical), hanging::defects(mesh, boundary)]
+    vec![
+        duplicate,
+        overshared,
+        folded,
+        unmerged(mesh, boundary, coincident),
+        hanging::defects(mesh, boundary),
+    ]
 }
 
 /// Whether two tets that share a facet lie on the same side of it, although their volumes have the same sign.
@@ -89,12 +95,12 @@ fn pairs<T: Ord + Copy>(mut keyed: Vec<(Vec<VertexId>, T)>) -> Vec<(T, T)> {
 }
 
 /// Boundary facets whose corners are at the same places as those of another: a crack.
-fn unmerged(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -> Defect {
-    let mut defect = Defect::none(DefectKind::UnmergedFacet);
+fn unmerged(mesh: &Mesh, boundary: &Boundary, coincident: &CoincidentVertices) -> Defect {
+    let mut defect = Defect::empty(DefectKind::UnmergedFacet);
     let ring = |i: usize| corners(boundary.kinds[i], boundary.facets.list(i));
-    let on_a_double = |i: &usize| ring(*i).iter().any(|&v| canonical.is_doubled(v));
+    let on_a_double = |i: &usize| ring(*i).iter().any(|&v| coincident.is_duplicated(v));
     let candidates = (0..boundary.len()).filter(on_a_double);
-    let places = |i: usize| ring(i).iter().map(|&v| canonical.first(v)).collect::<Vec<_>>();
+    let places = |i: usize| ring(i).iter().map(|&v| coincident.first(v)).collect::<Vec<_>>();
     let keyed = candidates.map(|i| (rising_list(&places(i)), i)).collect();
     for (i, j) in pairs(keyed) {
         defect.add(|| Example::new(&[boundary.cells[i], boundary.cells[j]], ring(i), &mesh.points));

@@ -30,25 +30,25 @@ macro_rules! defect_kinds {
 }
 
 defect_kinds! {
-    NonFinitePoint = "non_finite_point", "a coordinate is infinite, beyond 1e60 or no number";
+    NonFinitePoint = "non_finite_point", "a coordinate is infinite, beyond 1e60 or not a number";
     OrphanPoint = "orphan_point", "no cell uses the point";
     DuplicatePoint = "duplicate_point", "points at exactly the same place";
-    UnknownKind = "unknown_kind", "volume cells of a kind that motet cannot look into";
+    UnknownKind = "unknown_kind", "volume cells of a kind that motet does not support";
     RepeatedVertex = "repeated_vertex", "the cell names a vertex twice";
     InvertedCell = "inverted_cell", "the volume is negative";
     FlatCell = "flat_cell", "the volume is exactly zero";
     FoldedCell = "folded_cell", "the Jacobian determinant of the quadratic cell is zero or negative somewhere in it, positive elsewhere";
     ZeroAreaCell = "zero_area_cell", "the surface cell has no area";
-    DuplicateCell = "duplicate_cell", "cells of the same vertices";
+    DuplicateCell = "duplicate_cell", "cells with the same vertices";
     OversharedFacet = "overshared_facet", "more than two volume cells use the facet";
     FoldedFacet = "folded_facet", "two tets lie on the same side of the facet, one over the other";
     UnmergedFacet = "unmerged_facet", "boundary facets at exactly the same place, their vertices not shared";
-    HangingVertex = "hanging_vertex", "the vertex lies on a boundary facet of which it is no corner";
+    HangingVertex = "hanging_vertex", "the vertex lies on a boundary facet of which it is not a corner";
     NonManifoldEdge = "non_manifold_edge", "more than two surface facets meet at the edge";
     NonManifoldVertex = "non_manifold_vertex", "the surface touches itself at the vertex";
     OpenEdge = "open_edge", "the surface ends at the edge";
     MisorientedEdge = "misoriented_edge", "the two facets at the edge face opposite sides";
-    SeparatePart = "separate_part", "cells that hang together with no others";
+    SeparatePart = "separate_part", "a part of the mesh that is not connected to the rest";
 }
 
 /// Number of examples of a defect that are kept.
@@ -81,7 +81,7 @@ pub struct Defect {
 
 impl Defect {
     /// A defect of this kind without occurrences yet.
-    pub(super) fn none(kind: DefectKind) -> Self {
+    pub(super) fn empty(kind: DefectKind) -> Self {
         Self { kind, count: 0, examples: Vec::new() }
     }
 

@@ -47,9 +47,9 @@ pub fn is_closed<'a>(rings: impl Iterator<Item = &'a [VertexId]>) -> bool {
 }
 
 pub(super) fn defects(mesh: &Mesh, facets: &SurfaceFacets) -> Vec<Defect> {
-    let mut open = Defect::none(DefectKind::OpenEdge);
-    let mut non_manifold = Defect::none(DefectKind::NonManifoldEdge);
-    let mut misoriented = Defect::none(DefectKind::MisorientedEdge);
+    let mut open = Defect::empty(DefectKind::OpenEdge);
+    let mut non_manifold = Defect::empty(DefectKind::NonManifoldEdge);
+    let mut misoriented = Defect::empty(DefectKind::MisorientedEdge);
     // Corners at one vertex are connected if their facets share an edge there.
     let mut corners = Sets::new(facets.rings.items().len());
     let sides = sorted_sides(facets);
@@ -75,7 +75,7 @@ pub(super) fn defects(mesh: &Mesh, facets: &SurfaceFacets) -> Vec<Defect> {
 
 /// Vertices whose corners form more than one connected set.
 fn pinched(mesh: &Mesh, facets: &SurfaceFacets, corners: &mut Sets) -> Defect {
-    let mut defect = Defect::none(DefectKind::NonManifoldVertex);
+    let mut defect = Defect::empty(DefectKind::NonManifoldVertex);
     let mut fan_of = vec![u32::MAX; mesh.points.len()];
     let mut reported = vec![false; mesh.points.len()];
     for (corner, &v) in facets.rings.items().iter().enumerate() {

@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-12;
 /// The search stops after this many pairs and grid cells, plus the second number per facet. Only a tangle of
 /// facets each as large as the mesh needs more, and it has other defects to report.
 const BUDGET: usize = 20_000_000;
-const BUDGET_A_FACET: usize = 200;
+const BUDGET_PER_FACET: usize = 200;
 
 /// A boundary vertex that lies on a boundary facet of which it is not a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +46,7 @@ impl HangingVertex {
 }
 
 pub(super) fn defects(mesh: &Mesh, boundary: &Boundary) -> Defect {
-    let mut defect = Defect::none(DefectKind::HangingVertex);
+    let mut defect = Defect::empty(DefectKind::HangingVertex);
     for HangingVertex { vertex, facet, .. } in hanging_vertices(mesh, boundary) {
         defect.add(|| Example::new(&[boundary.cells[facet]], &[vertex], &mesh.points));
     }
@@ -57,7 +57,7 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary) -> Defect {
 pub fn hanging_vertices(mesh: &Mesh, boundary: &Boundary) -> Vec<HangingVertex> {
     let mut found: Vec<HangingVertex> = Vec::new();
     let Some(grid) = Grid::of(&boundary.vertices, &mesh.points) else { return found };
-    let mut budget = BUDGET + BUDGET_A_FACET * boundary.len();
+    let mut budget = BUDGET + BUDGET_PER_FACET * boundary.len();
     for (i, facet) in boundary.facets.iter().enumerate() {
         triangulate(boundary.kinds[i], facet, &mesh.points, &mut |corners| {
             let at = corners.map(|v| mesh.points[v.index()]);
@@ -66,7 +66,7 @@ pub fn hanging_vertices(mesh: &Mesh, boundary: &Boundary) -> Vec<HangingVertex> 
                     if facet.contains(&v) {
                         return;
                     }
-                    if let Some(weights) = lies_on(at, mesh.points[v.index()]) {
+                    if let Some(weights) = weights_on_triangle(at, mesh.points[v.index()]) {
                         found.push(HangingVertex { vertex: v, facet: i, triangle: corners, weights });
                     }
                 });
@@ -80,7 +80,7 @@ pub fn hanging_vertices(mesh: &Mesh, boundary: &Boundary) -> Vec<HangingVertex> 
 
 /// The barycentric weights of a point on the triangle; `None` if it is off the triangle, or at a corner,
 /// since two vertices at one place are another defect.
-fn lies_on(corners: [Point; 3], p: Point) -> Option<[f64; 3]> {
+fn weights_on_triangle(corners: [Point; 3], p: Point) -> Option<[f64; 3]> {
     let longest = (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max);
     let near = |q: Point| distance(p, q) <= TOLERANCE * longest;
     let weights = triangle::closest(corners, p);

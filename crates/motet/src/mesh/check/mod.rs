@@ -37,10 +37,10 @@ pub fn check(mesh: &Mesh) -> Vec<Defect> {
 /// Every defect of a mesh, as found by [`check`], for a caller that already has the boundary and the oriented
 /// tets.
 pub fn check_with(mesh: &Mesh, boundary: &Boundary, tets: &OrientedTets) -> Vec<Defect> {
-    let canonical = points::Canonical::of(mesh);
-    let mut defects = points::defects(mesh, &canonical);
-    defects.extend(cells::defects(mesh, boundary, &tets.are_turned(mesh.cells.len())));
-    defects.extend(conformity::defects(mesh, boundary, &canonical));
+    let coincident = points::CoincidentVertices::of(mesh);
+    let mut defects = points::defects(mesh, &coincident);
+    defects.extend(cells::defects(mesh, boundary, &tets.are_reversed(mesh.cells.len())));
+    defects.extend(conformity::defects(mesh, boundary, &coincident));
     defects.extend(edges::defects(mesh, &SurfaceFacets::of(mesh, boundary)));
     defects.extend(parts::defects(mesh));
     defects.retain(|defect| defect.count > 0);

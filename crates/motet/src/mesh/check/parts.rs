@@ -7,7 +7,7 @@ use crate::mesh::check::defect::{Defect, DefectKind, Example};
 /// One example per part, its first cell, if there is more than one part. Cells that share a vertex are
 /// connected; only cells of the highest dimension count.
 pub(super) fn defects(mesh: &Mesh) -> Vec<Defect> {
-    let mut defect = Defect::none(DefectKind::SeparatePart);
+    let mut defect = Defect::empty(DefectKind::SeparatePart);
     let Some(dim) = mesh.cells.dim() else { return vec![defect] };
     let cells = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(dim));
     let mut vertices = Sets::new(mesh.points.len());

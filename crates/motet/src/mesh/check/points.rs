@@ -7,19 +7,19 @@ use crate::mesh::check::defect::{Defect, DefectKind, Example};
 use crate::mesh::coincident::firsts_at_place;
 
 /// For each vertex, the first vertex at exactly the same place.
-pub(super) struct Canonical {
+pub(super) struct CoincidentVertices {
     firsts: Vec<VertexId>,
-    doubled: Vec<bool>,
+    duplicated: Vec<bool>,
 }
 
-impl Canonical {
+impl CoincidentVertices {
     pub(super) fn of(mesh: &Mesh) -> Self {
         let firsts = firsts_at_place(&mesh.points);
-        let mut doubled = vec![false; firsts.len()];
+        let mut duplicated = vec![false; firsts.len()];
         for (v, first) in firsts.iter().enumerate().filter(|(v, first)| first.index() != *v) {
-            (doubled[v], doubled[first.index()]) = (true, true);
+            (duplicated[v], duplicated[first.index()]) = (true, true);
         }
-        Self { firsts, doubled }
+        Self { firsts, duplicated }
     }
 
     /// The first vertex at the place of `v`.
@@ -28,16 +28,16 @@ impl Canonical {
     }
 
     /// Whether another vertex lies at the place of `v`.
-    pub(super) fn is_doubled(&self, v: VertexId) -> bool {
-        self.doubled[v.index()]
+    pub(super) fn is_duplicated(&self, v: VertexId) -> bool {
+        self.duplicated[v.index()]
     }
 }
 
-pub(super) fn defects(mesh: &Mesh, canonical: &Canonical) -> Vec<Defect> {
+pub(super) fn defects(mesh: &Mesh, coincident: &CoincidentVertices) -> Vec<Defect> {
     let used = used(mesh);
-    let mut non_finite = Defect::none(DefectKind::NonFinitePoint);
-    let mut orphan = Defect::none(DefectKind::OrphanPoint);
-    let mut duplicate = Defect::none(DefectKind::DuplicatePoint);
+    let mut non_finite = Defect::empty(DefectKind::NonFinitePoint);
+    let mut orphan = Defect::empty(DefectKind::OrphanPoint);
+    let mut duplicate = Defect::empty(DefectKind::DuplicatePoint);
     for (i, point) in mesh.points.iter().enumerate() {
         let v = VertexId::new(i);
         if !in_range(*point) {
@@ -46,8 +46,8 @@ pub(super) fn defects(mesh: &Mesh, canonical: &Canonical) -> Vec<Defect> {
         if !used[i] {
             orphan.add(|| Example::new(&[], &[v], &mesh.points));
         }
-        if canonical.first(v) != v {
-            duplicate.add(|| Example::new(&[], &[canonical.first(v), v], &mesh.points));
+        if coincident.first(v) != v {
+            duplicate.add(|| Example::new(&[], &[coincident.first(v), v], &mesh.points));
         }
     }
     vec![non_finite, orphan, duplicate]

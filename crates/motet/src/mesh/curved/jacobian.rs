@@ -38,15 +38,15 @@ pub struct LeastJacobian {
 }
 
 /// Positive values of `det J` up to this fraction of its largest coefficient are not distinguished from 0.
-const LEAST_SHARE: f64 = 1e-9;
+const ZERO_TOLERANCE: f64 = 1e-9;
 /// The least value is found to within this fraction of the largest coefficient.
-const SHARP: f64 = 1e-6;
+const LEAST_TOLERANCE: f64 = 1e-6;
 /// Bound on the rounding error of a coefficient, in units of the product of the longest columns: a few sums
 /// of a few hundred terms, each off by 2^-53.
 const ROUNDING: f64 = 1e-14;
 /// A middle node counts as in the middle if rounding alone displaces it: by at most this many times the
 /// largest coordinate.
-const MIDDLE: f64 = 8.0 * f64::EPSILON;
+const MIDDLE_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 
 impl Jacobian {
     /// `det J` of a cell with these nodes, in VTK's order, positive if the cell is numbered by VTK's
@@ -88,7 +88,7 @@ impl Jacobian {
     /// Whether `det J` is positive everywhere. A least value that cannot be distinguished from 0 (within
     /// rounding, or within 1e-9 of the largest coefficient) does not count as positive.
     pub fn is_positive(&self) -> bool {
-        let (rounding, close) = (self.rounding, LEAST_SHARE * self.largest());
+        let (rounding, close) = (self.rounding, ZERO_TOLERANCE * self.largest());
         let found = least(&self.tables.domain, &self.coefficients, |bound, value| {
             bound > rounding || value <= rounding || value - bound <= close
         });
@@ -107,7 +107,7 @@ impl Jacobian {
 
     /// The least `det J`, to within 1e-6 of the largest coefficient, and where it is attained.
     pub fn least(&self) -> LeastJacobian {
-        let close = SHARP * self.largest();
+        let close = LEAST_TOLERANCE * self.largest();
         let Least { value, at, .. } =
             least(&self.tables.domain, &self.coefficients, |bound, value| value - bound <= close);
         LeastJacobian { scaled: value / self.scale(), determinant: value, place: self.place(&at) }
@@ -194,6 +194,6 @@ fn is_straight(kind: CellKind, nodes: &[Point]) -> bool {
         let corners = middle.corners.iter().map(|&c| nodes[c]);
         let mean = scale(corners.clone().fold([0.0; 3], add), 1.0 / middle.corners.len() as f64);
         let largest = corners.flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
-        sub(nodes[middle.node], mean).iter().all(|x| x.abs() <= MIDDLE * largest)
+        sub(nodes[middle.node], mean).iter().all(|x| x.abs() <= MIDDLE_TOLERANCE * largest)
     })
 }

@@ -1,7 +1,7 @@
 //! Transfers fields across a change: bit for bit to what was kept, by a rule to the rest.
 
 use super::origins::{Origin, Origins};
-use super::rule::has_mean;
+use super::rule::is_averageable;
 use super::{History, Row, Rows, Rule, Rules};
 use crate::base::{Error, Id, Result};
 use crate::mesh::exchange::check_rows;
@@ -91,7 +91,7 @@ fn missing<'a>(old: &'a [Field], new: &'a [Field]) -> impl Iterator<Item = &'a F
 }
 
 fn check(field: &Field, n_old: usize, what: &str) -> Result<()> {
-    let remedy = "give the array that lies on the mesh from before the change";
+    let remedy = "give the array of the mesh before the change";
     check_rows(std::slice::from_ref(field), n_old, what).map_err(|e| e.remedy(remedy))
 }
 
@@ -99,11 +99,15 @@ fn check_rule(field: &Field, rule: Rule, means: &[Rule], what: &str) -> Result<(
     let known: Vec<String> = means.iter().map(|mean| format!("{mean:?}")).collect();
     let error = match rule {
         Rule::Inherit | Rule::Drop => return Ok(()),
-        rule if !means.contains(&rule) => Error::options(format!("cannot be asked to {rule:?}"))
-            .remedy(format!("{what} arrays take {}, Inherit or Drop", known.join(", "))),
-        _ if has_mean(field) => return Ok(()),
-        _ => Error::options(format!("is asked to {rule:?}, but whole numbers and texts have no mean"))
-            .remedy("Inherit it, or store it as floats"),
+        rule if !means.contains(&rule) => {
+            Error::options(format!("cannot be transferred by the rule {rule:?}"))
+                .remedy(format!("{what} arrays take {}, Inherit or Drop", known.join(", ")))
+        }
+        _ if is_averageable(field) => return Ok(()),
+        _ => Error::options(format!(
+            "cannot be transferred by the rule {rule:?}, since whole numbers and texts have no mean"
+        ))
+        .remedy("use Inherit, or store it as floats"),
     };
     Err(error.at(format!("{what} array {}", field.name)))
 }
@@ -112,8 +116,8 @@ fn check_count(mesh: &str, what: &str, expected: usize, got: usize) -> Result<()
     if expected == got {
         return Ok(());
     }
-    let text = format!("has {got} {what}, but the history is of one with {expected}");
-    Err(Error::input(text).at(mesh).remedy("give the two meshes that the history came with"))
+    let text = format!("has {got} {what}, but the history is of a mesh with {expected}");
+    Err(Error::input(text).at(mesh).remedy("give the two meshes that the history belongs to"))
 }
 
 fn check_names<'a>(fields: &[Field], mut names: impl Iterator<Item = &'a String>, what: &str) -> Result<()> {
@@ -121,7 +125,7 @@ fn check_names<'a>(fields: &[Field], mut names: impl Iterator<Item = &'a String>
         return Ok(());
     };
     let known: Vec<&str> = fields.iter().map(|f| f.name.as_str()).collect();
-    Err(Error::options(format!("a rule names it, but the mesh has {}", known.join(", ")))
+    Err(Error::options(format!("a rule names this array, but the mesh has only {}", known.join(", ")))
         .at(format!("{what} array {name}")))
 }
 

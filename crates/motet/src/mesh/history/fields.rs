@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::rule::has_mean;
+use super::rule::is_averageable;
 use super::{Rule, Rules};
 use crate::base::VertexId;
 use crate::geometry::tet;
@@ -97,7 +97,7 @@ pub fn field_ledger(before: &Mesh, after: &Mesh, rules: &Rules) -> Vec<FieldLedg
 }
 
 fn is_carried(old: &Field, new: &Field) -> bool {
-    old.name == new.name && old.components == new.components && has_mean(old) && has_mean(new)
+    old.name == new.name && old.components == new.components && is_averageable(old) && is_averageable(new)
 }
 
 /// The tets of a mesh, with what integration needs.
@@ -187,8 +187,8 @@ impl Sum {
     #[inline]
     fn add(&mut self, x: f64) {
         let sum = self.sum + x;
-        let came = sum - self.sum;
-        self.rest += (self.sum - (sum - came)) + (x - came);
+        let added = sum - self.sum;
+        self.rest += (self.sum - (sum - added)) + (x - added);
         self.sum = sum;
     }
 

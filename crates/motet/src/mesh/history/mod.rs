@@ -25,7 +25,7 @@ pub use fields::{FieldIntegral, FieldLedger, On, field_ledger};
 pub use ledger::{Ledger, RegionLedger};
 pub(crate) use numbers::numbers_cells;
 pub use numbers::{REFINE_ROOT, number_anew};
-pub(crate) use origins::merge;
+pub(crate) use origins::merge_parts;
 pub use origins::{Origin, Origins};
 pub use row::{Row, Rows};
 pub use rule::{Carry, Rule, Rules};

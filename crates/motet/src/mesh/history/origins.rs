@@ -7,7 +7,7 @@ use crate::base::{Error, Id, Result};
 
 /// Rows for quadratic fields that are longer than this are dropped when changes are joined, since each change
 /// makes them longer.
-const LONGEST: usize = 400;
+const MAX_ROW_LENGTH: usize = 400;
 
 /// For each entity of the new mesh, a vertex or a cell, the old entity that it is, or a row of old entities
 /// with shares.
@@ -63,14 +63,17 @@ impl<I: Id> Origins<I> {
     pub fn new(n_old: usize, kept: Vec<I>, changed: Rows<I>) -> Result<Self> {
         changed.check(n_old, Signs::Positive)?;
         if let Some(new) = kept.iter().position(|&old| old != I::NONE && old.place() >= n_old) {
-            return Err(Error::input(format!("was {}, but there were {n_old}", kept[new]))
-                .at(format!("origin of {new}")));
+            return Err(Error::input(format!(
+                "refers to the old id {}, but there were only {n_old}",
+                kept[new]
+            ))
+            .at(format!("origin of {new}")));
         }
         let without = || kept.iter().enumerate().filter(|(_, old)| **old == I::NONE).map(|(new, _)| new);
         if !without().eq(changed.ids().iter().map(|id| id.place())) {
             let n_without = without().count();
             return Err(Error::input(format!(
-                "{n_without} things without an old id need as many rows, but there are {} rows, or they are of others",
+                "{n_without} entities without an old id need one row each, but there are {} rows, or rows for other ids",
                 changed.len()
             )));
         }
@@ -169,13 +172,13 @@ impl<I: Id> Origins<I> {
             }
             let (id, main) = (I::of(id), self.of(origin.main()).main());
             kept.push(I::NONE);
-            joined(&origin, |middle| self.of(middle), &mut parts);
+            compose(&origin, |middle| self.of(middle), &mut parts);
             changed.push(id, &parts, main);
             let is_wide = |&middle: &I| self.quadratic.of(middle).is_some();
             let wide = later.of_quadratic(id);
             if wide != origin || wide.parts().0.iter().any(is_wide) {
-                joined(&wide, |middle| self.of_quadratic(middle), &mut parts);
-                if parts.len() <= LONGEST {
+                compose(&wide, |middle| self.of_quadratic(middle), &mut parts);
+                if parts.len() <= MAX_ROW_LENGTH {
                     quadratic.push_signed(id, &parts, main);
                 }
             }
@@ -191,7 +194,7 @@ impl<I: Id> Origins<I> {
 
 /// Puts into `parts` the parts of an origin, each replaced by the parts of its own origin; one entry for each
 /// old entity, by rising id.
-fn joined<'a, I: Id + 'a>(
+fn compose<'a, I: Id + 'a>(
     origin: &Origin<'_, I>,
     of: impl Fn(I) -> Origin<'a, I>,
     parts: &mut Vec<(I, f64)>,
@@ -203,7 +206,7 @@ fn joined<'a, I: Id + 'a>(
         let (from, shares) = middle.parts();
         parts.extend(from.iter().zip(shares).map(|(&old, &part)| (old, share * part)));
     }
-    merge(parts);
+    merge_parts(parts);
 }
 
 impl<I: Id> Origin<'_, I> {
@@ -225,7 +228,7 @@ impl<I: Id> Origin<'_, I> {
 }
 
 /// Sorts the parts by id, and adds up the shares of equal ids.
-pub(crate) fn merge<I: Id>(parts: &mut Vec<(I, f64)>) {
+pub(crate) fn merge_parts<I: Id>(parts: &mut Vec<(I, f64)>) {
     parts.sort_by_key(|p| p.0);
     parts.dedup_by(|later, first| {
         let same = later.0 == first.0;

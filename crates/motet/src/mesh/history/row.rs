@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::base::{Csr, Error, Id, Result};
 
 /// Tolerance on the sum of the shares of a row, which must be 1.
-const SUM: f64 = 1e-9;
+const SUM_TOLERANCE: f64 = 1e-9;
 
 /// For each entity that changed, the old entities that it came from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,7 +39,7 @@ impl<I: Id> TryFrom<Parts<I>> for Rows<I> {
         let n = ids.len();
         if from.len() != n || main.len() != n || shares.len() != from.items().len() {
             return Err(Error::input(format!(
-                "{n} ids need as many rows, but there are {} rows with {} shares for {} old ids, and {} main ids",
+                "{n} ids need one row and one main id each, but there are {} rows with {} shares for {} old ids, and {} main ids",
                 from.len(),
                 shares.len(),
                 from.items().len(),
@@ -102,7 +102,7 @@ impl<I: Id> Rows<I> {
         let start = self.shares.len();
         self.from.push(parts.iter().map(|p| p.0));
         self.shares.extend(parts.iter().map(|p| p.1));
-        settle(&mut self.shares[start..]);
+        adjust_sum(&mut self.shares[start..]);
         self.ids.push(id);
         self.main.push(main);
     }
@@ -156,19 +156,20 @@ impl<I: Id> Row<'_, I> {
     fn fault(&self, n_old: usize, signs: Signs) -> Option<String> {
         let named = self.from.iter().chain([&self.main]);
         if let Some(beyond) = named.into_iter().find(|old| old.place() >= n_old) {
-            return Some(format!("names the old id {beyond}, but there were {n_old}"));
+            return Some(format!("names the old id {beyond}, but there were only {n_old}"));
         }
         let sum: f64 = self.shares.iter().sum();
         let fits = |share: f64| share > 0.0 || signs == Signs::Any;
         let must = if signs == Signs::Any { "sum to 1" } else { "be positive and sum to 1" };
-        let is_fault =
-            !self.shares.iter().all(|&share| fits(share)) || (sum - 1.0).abs() > SUM || sum.is_nan();
+        let is_fault = !self.shares.iter().all(|&share| fits(share))
+            || (sum - 1.0).abs() > SUM_TOLERANCE
+            || sum.is_nan();
         is_fault.then(|| format!("has shares {:?}, which must {must}", self.shares))
     }
 }
 
 /// Adjusts the largest share by what rounding left over, so that the sum is 1 to the last digit.
-fn settle(shares: &mut [f64]) {
+fn adjust_sum(shares: &mut [f64]) {
     let largest = (1..shares.len()).fold(0, |best, i| if shares[i] > shares[best] { i } else { best });
     let others: f64 = (0..shares.len()).filter(|&i| i != largest).map(|i| shares[i]).sum();
     shares[largest] = 1.0 - others;

@@ -35,13 +35,13 @@ impl Rule {
     /// The default rule for a point array: floats are interpolated; whole numbers, texts and directions are
     /// inherited.
     pub fn of_points(field: &Field) -> Self {
-        if has_mean(field) && !is_direction(field) { Self::Interpolate } else { Self::Inherit }
+        if is_averageable(field) && !is_direction(field) { Self::Interpolate } else { Self::Inherit }
     }
 
     /// The default rule for a cell array: floats are conserved; whole numbers, texts and directions are
     /// inherited.
     pub fn of_cells(field: &Field) -> Self {
-        if has_mean(field) && !is_direction(field) { Self::Conserve } else { Self::Inherit }
+        if is_averageable(field) && !is_direction(field) { Self::Conserve } else { Self::Inherit }
     }
 }
 
@@ -93,13 +93,13 @@ impl Rules {
         }
         let fields = mesh.point_data.iter().chain(&mesh.cell_data);
         let known: Vec<&str> = fields.map(|f| f.name.as_str()).collect();
-        Err(Error::options(format!("there is no array {name} to carry"))
+        Err(Error::options(format!("the mesh has no array `{name}` to transfer"))
             .remedy(format!("the mesh has these: {}", known.join(", "))))
     }
 }
 
 /// Whether a mean of values is meaningful: only for floats.
-pub(super) fn has_mean(field: &Field) -> bool {
+pub(super) fn is_averageable(field: &Field) -> bool {
     matches!(field.values, Values::F32(_) | Values::F64(_))
 }
 
@@ -107,7 +107,7 @@ pub(super) fn has_mean(field: &Field) -> bool {
 const DIRECTION_NAMES: &[&str] = &["fibre", "fiber", "sheet", "direction"];
 /// Tolerance on the squared length of a unit vector, which may be written in single precision or with five
 /// digits.
-const UNIT: f64 = 1e-4;
+const UNIT_TOLERANCE: f64 = 1e-4;
 
 /// Whether the rows are directions: by their name, or since all are vectors of length 1 (or 0, where there is
 /// no direction). A mean of directions is shorter than they are, and that of opposite ones is zero.
@@ -121,7 +121,7 @@ fn has_unit_rows(field: &Field) -> bool {
     let squared =
         |row: usize| (0..3).filter_map(|k| field.values.get_f64(3 * row + k)).map(|x| x * x).sum::<f64>();
     let mut lengths = (0..field.n_rows()).map(squared).filter(|&l| l != 0.0).peekable();
-    field.components == 3 && lengths.peek().is_some() && lengths.all(|l| (l - 1.0).abs() < UNIT)
+    field.components == 3 && lengths.peek().is_some() && lengths.all(|l| (l - 1.0).abs() < UNIT_TOLERANCE)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::mesh::shapes::check_count;
 use crate::mesh::shapes::even_out::{Implicit, smooth_minimum};
 use crate::mesh::shapes::junction::{Arm, junction};
-use crate::mesh::shapes::labelled::skins;
+use crate::mesh::shapes::labelled::patched_surface_mesh;
 
 /// The parameters of a vessel with an aneurysm: the middle of its bend is the origin, it lies in the plane of
 /// x and y, and the sac is where y is positive. All lengths are in one unit.
@@ -79,14 +79,14 @@ impl Aneurysm {
         let arms = [half(0.0, -curvature), sac, half(std::f64::consts::PI, curvature)];
         let function = |p: Point| {
             let sac = distance(p, [0.0, self.sac_height, 0.0]) - self.sac_radius;
-            smooth_minimum(from_axis(p, curvature) - self.radius, sac, self.blend)
+            smooth_minimum(distance_to_axis(p, curvature) - self.radius, sac, self.blend)
         };
         let size = self.radius.min(self.sac_radius);
         let made = junction(arms, &Implicit { function, size }, self.around.next_multiple_of(2))?;
         let [outlet, _, inlet] = &made.caps;
         let parts: [(&str, &[[VertexId; 3]]); 3] =
             [("wall", &made.wall), ("inlet", inlet), ("outlet", outlet)];
-        Ok(skins(made.points, &parts))
+        Ok(patched_surface_mesh(made.points, &parts))
     }
 
     fn check(&self) -> Result<()> {
@@ -94,24 +94,27 @@ impl Aneurysm {
         let sizes = [self.radius, self.length, self.sac_radius, self.sac_height, self.blend];
         if !sizes.iter().all(|&x| x > 0.0 && x.is_finite()) || self.around < 6 {
             return refuse(
-                "an aneurysm of no size, or of too few triangles",
+                "the lengths of an aneurysm must be positive, and it needs enough vertices around",
                 "give lengths larger than 0 and at least 6 vertices around",
             );
         }
         let turn = self.bend_deg.to_radians();
         if !(turn >= 0.0 && turn * self.radius < self.length && self.bend_deg < 300.0) {
-            return refuse("a vessel that meets itself", "bend it less, or make it longer");
+            return refuse("the vessel bends into itself", "bend it less, or make it longer");
         }
         let [low, high] = [-1.0, 1.0].map(|side| self.sac_height + side * self.sac_radius);
         if !(low > -0.5 * self.radius && low < self.radius && high > 1.2 * self.radius) {
-            return refuse("a sac that is not on the vessel", "give a height that fits its radius");
+            return refuse(
+                "the sac must start inside the vessel, not far beyond its axis, and rise above it",
+                "give a height that fits its radius",
+            );
         }
         Ok(())
     }
 }
 
 /// The distance of a point from the axis of the vessel: a circle through the origin, or the line along x.
-fn from_axis([x, y, z]: Point, curvature: f64) -> f64 {
+fn distance_to_axis([x, y, z]: Point, curvature: f64) -> f64 {
     if curvature == 0.0 {
         return y.hypot(z);
     }

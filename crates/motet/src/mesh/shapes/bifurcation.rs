@@ -5,7 +5,7 @@ use crate::geometry::vector::{dot, norm, scale, sub};
 use crate::mesh::Mesh;
 use crate::mesh::shapes::even_out::{Implicit, smooth_minimum};
 use crate::mesh::shapes::junction::{Arm, junction};
-use crate::mesh::shapes::labelled::skins;
+use crate::mesh::shapes::labelled::patched_surface_mesh;
 
 /// The parameters of a bifurcation: the vessel comes along x and branches at the origin, and its branches lie
 /// in the plane of x and y. All lengths are in one unit.
@@ -61,7 +61,7 @@ impl Bifurcation {
             straight(std::f64::consts::PI, self.length, self.radius),
         ];
         let function = |p: Point| {
-            let [a, b, c] = arms.map(|arm| from_ray(p, arm.heading) - arm.radius);
+            let [a, b, c] = arms.map(|arm| distance_to_ray(p, arm.heading) - arm.radius);
             smooth_minimum(smooth_minimum(a, b, self.blend), c, self.blend)
         };
         let size = arms.iter().fold(self.radius, |least, arm| least.min(arm.radius));
@@ -69,18 +69,20 @@ impl Bifurcation {
         let [outlet_2, outlet_1, inlet] = &made.caps;
         let parts: [(&str, &[[VertexId; 3]]); 4] =
             [("wall", &made.wall), ("inlet", inlet), ("outlet_1", outlet_1), ("outlet_2", outlet_2)];
-        Ok(skins(made.points, &parts))
+        Ok(patched_surface_mesh(made.points, &parts))
     }
 
     fn check(&self) -> Result<()> {
         let ([a, b], [c, d]) = (self.branch_radii, self.branch_lengths);
         let sizes = [self.radius, self.length, self.blend, a, b, c, d];
         if !sizes.iter().all(|&x| x > 0.0 && x.is_finite()) || self.around < 6 {
-            return Err(Error::options("a bifurcation of no size, or of too few triangles")
-                .remedy("give lengths larger than 0 and at least 6 vertices around"));
+            return Err(Error::options(
+                "the lengths of a bifurcation must be positive, and it needs enough vertices around",
+            )
+            .remedy("give lengths larger than 0 and at least 6 vertices around"));
         }
         if !self.branch_angles_deg.iter().all(|&deg| deg > 0.0 && deg < 150.0) {
-            return Err(Error::options("branches that lie in each other, or in the vessel")
+            return Err(Error::options("the branches overlap each other, or the vessel")
                 .remedy("give angles between 0 and 150 degrees"));
         }
         Ok(())
@@ -88,7 +90,7 @@ impl Bifurcation {
 }
 
 /// The distance of a point from a ray that starts at the origin.
-fn from_ray(p: Point, heading: f64) -> f64 {
+fn distance_to_ray(p: Point, heading: f64) -> f64 {
     let along = [heading.cos(), heading.sin(), 0.0];
     norm(sub(p, scale(along, dot(p, along).max(0.0))))
 }

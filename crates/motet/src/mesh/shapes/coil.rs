@@ -53,10 +53,10 @@ impl Coil {
         ];
         if !sizes.iter().all(|x| x.abs() <= LARGEST) || self.turns < 0.0 {
             return Err(Error::options(format!(
-                "{} turns of radius {} and pitch {}",
+                "a coil cannot have {} turns of radius {} and pitch {}",
                 self.turns, self.radius, self.pitch
             ))
-            .remedy("give finite numbers, and turns from 0 on"));
+            .remedy("give finite numbers, and 0 turns or more"));
         }
         check_count(n_points)?;
         let line = self.line(steps);

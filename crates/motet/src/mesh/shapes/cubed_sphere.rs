@@ -41,7 +41,7 @@ pub fn sphere_in_box(n: usize, layers: usize) -> Mesh {
     let mut points = Vec::with_capacity(n_vertices * (layers + 1));
     for s in 0..=layers {
         let fraction = (s as f64 / layers as f64).powf(GRADING);
-        points.extend(rays.iter().map(|ray| if s == layers { *ray } else { cut(*ray, fraction) }));
+        points.extend(rays.iter().map(|ray| if s == layers { *ray } else { point_on_ray(*ray, fraction) }));
     }
     let cells = to_tets(&shell.extruded(layers));
     labelled(points, cells, "fluid", &["sphere", "box"], |facet| {
@@ -50,7 +50,7 @@ pub fn sphere_in_box(n: usize, layers: usize) -> Mesh {
 }
 
 /// The point at `|ray|^fraction` along a ray from the origin.
-fn cut(ray: Point, fraction: f64) -> Point {
+fn point_on_ray(ray: Point, fraction: f64) -> Point {
     let length = norm(ray);
     scale(ray, length.powf(fraction) / length)
 }

@@ -33,7 +33,7 @@ impl<F: Fn(Point) -> f64> Implicit<F> {
 
     /// The point where the ray from the origin along a unit vector leaves the inside; the search ends at the
     /// distance `reach`.
-    pub(super) fn leave(&self, direction: Point, reach: f64) -> Point {
+    pub(super) fn exit_point(&self, direction: Point, reach: f64) -> Point {
         let is_outside = |s: f64| (self.function)(scale(direction, s)) > 0.0;
         let step = 0.05 * self.size;
         let n_steps = (reach / step) as usize;

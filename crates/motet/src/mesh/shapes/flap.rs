@@ -15,8 +15,8 @@ use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{add, cross, distance, norm, scale, sub};
 use crate::mesh::Mesh;
 use crate::mesh::disc::disc;
-use crate::mesh::shapes::labelled::skins;
-use crate::mesh::shapes::sleeve::{Sleeve, bend, cylinder, halves, turned};
+use crate::mesh::shapes::labelled::patched_surface_mesh;
+use crate::mesh::shapes::sleeve::{Sleeve, bend, cylinder, reversed, split_quad};
 
 /// The parameters of a vessel with a flap. It starts at the origin and runs along z. All lengths are in one
 /// unit.
@@ -75,7 +75,7 @@ impl Flap {
         self.check()?;
         let wall = Sleeve { first: 0, around: self.around };
         let mut points = cylinder(self.radius, self.length, self.around, self.slices);
-        let inlet = turned(disc(&mut points, &wall.ring(0)));
+        let inlet = reversed(disc(&mut points, &wall.ring(0)));
         let outlet = disc(&mut points, &wall.ring(self.slices));
         let flap = self.sheet(&mut points, wall);
         bend(&mut points, self.length, self.bend_deg);
@@ -85,7 +85,7 @@ impl Flap {
             ("outlet", &outlet),
             ("flap", &flap),
         ];
-        Ok(skins(points, &parts))
+        Ok(patched_surface_mesh(points, &parts))
     }
 
     /// The triangles of the flap. Those of its points that are not on the wall are added to `points`.
@@ -114,7 +114,9 @@ impl Flap {
             rows.push(row.collect::<Vec<_>>());
         }
         let quad = |r: usize, c: usize| [rows[r][c], rows[r + 1][c], rows[r + 1][c + 1], rows[r][c + 1]];
-        (0..last - first).flat_map(|r| (0..columns).flat_map(move |c| halves(quad(r, c), r + c))).collect()
+        (0..last - first)
+            .flat_map(|r| (0..columns).flat_map(move |c| split_quad(quad(r, c), r + c)))
+            .collect()
     }
 
     /// A point of the flap: on the chord between two points of the wall, displaced from it by the wave.
@@ -139,32 +141,47 @@ impl Flap {
     fn check(&self) -> Result<()> {
         let refuse = |what: &str, remedy: &str| Err(Error::options(what.to_owned()).remedy(remedy));
         if ![self.radius, self.length].iter().all(|&x| x > 0.0 && x.is_finite()) {
-            return refuse("a vessel of no size", "give a radius and a length larger than 0");
+            return refuse(
+                "the radius and the length of a vessel must be positive",
+                "give a radius and a length larger than 0",
+            );
         }
         if self.around < 4 || self.slices < 3 {
-            return refuse("a vessel of too few triangles", "give at least 4 vertices around and 3 slices");
+            return refuse(
+                "a vessel needs more vertices around it, or more slices",
+                "give at least 4 vertices around and 3 slices",
+            );
         }
         if !(self.radius * self.bend_deg.to_radians().abs() < self.length && self.bend_deg.abs() < 330.0) {
-            return refuse("a vessel that meets itself", "bend it less, or make it longer");
+            return refuse("the vessel bends into itself", "bend it less, or make it longer");
         }
         let ([from, to], [first, last]) = (self.lines(), self.ends());
         let apart = from.abs_diff(to).min(self.around - from.abs_diff(to));
         if apart < 2 || !self.lines_deg.iter().all(|deg| deg.is_finite()) {
-            return refuse("a flap along the wall", "put its lines farther apart");
+            return refuse(
+                "the lines of the flap are too close together, or not finite",
+                "put its lines farther apart",
+            );
         }
         if !(0 < first && first < last && last < self.slices) {
             return refuse(
-                "a flap that does not start and end inside",
+                "the flap does not start and end inside the vessel",
                 "give an extent within 0 to 1, or more slices",
             );
         }
         if !(self.reach > 0.0 && self.reach <= 1.0) {
-            return refuse("a flap without width, or beyond the wall", "give a reach above 0, at most 1");
+            return refuse(
+                "the reach of the flap must be above 0 and at most 1",
+                "give a reach above 0, at most 1",
+            );
         }
         // The distance from the middle of the chord to the nearer side of the wall.
         let room = 1.0 - (PI * apart as f64 / self.around as f64).cos().abs();
         if !(self.wave_height.abs() < 0.8 * room && self.waves.is_finite()) {
-            return refuse("waves that reach the wall", "give a smaller wave height, or move the lines");
+            return refuse(
+                "the waves of the flap reach the wall",
+                "give a smaller wave height, or move the lines",
+            );
         }
         Ok(())
     }

@@ -132,8 +132,11 @@ impl CenterLine {
 /// Checks that points can be a polyline.
 fn check_line(points: &[Point]) -> Result<()> {
     if points.len() < 2 {
-        return Err(Error::input(format!("a line needs two points, and there are {}", points.len()))
-            .remedy("give the centre line as a list of points"));
+        return Err(Error::input(format!(
+            "a line needs at least two points, but there are {}",
+            points.len()
+        ))
+        .remedy("give the centre line as a list of points"));
     }
     if let Some(i) = points.iter().position(|p| !in_range(*p)) {
         return Err(Error::input(format!("has the coordinates {:?}", points[i]))
@@ -142,8 +145,8 @@ fn check_line(points: &[Point]) -> Result<()> {
     }
     match points.windows(2).position(|pair| distance(pair[0], pair[1]) == 0.0) {
         None => Ok(()),
-        Some(i) => Err(Error::input("is where the one before it is")
+        Some(i) => Err(Error::input("coincides with the point before it")
             .at(format!("point {} of the line", i + 1))
-            .remedy("leave out points that are there twice")),
+            .remedy("leave out repeated points")),
     }
 }

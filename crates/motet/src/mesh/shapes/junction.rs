@@ -105,13 +105,13 @@ pub(super) fn junction<F: Fn(Point) -> f64>(
 /// The two poles, and the inner vertices of the three curves between them, each curve in `half` steps.
 fn middle<F: Fn(Point) -> f64>(arms: &[Arm; 3], surface: &Implicit<F>, half: usize) -> Vec<Point> {
     let reach = arms.iter().fold(0.0, |most: f64, arm| most.max(arm.length));
-    let mut points = vec![surface.leave(UP, reach), surface.leave(scale(UP, -1.0), reach)];
+    let mut points = vec![surface.exit_point(UP, reach), surface.exit_point(scale(UP, -1.0), reach)];
     for i in 0..3 {
         let (from, to) = (arms[i].heading, arms[(i + 1) % 3].heading);
         let between = from + 0.5 * (to - from).rem_euclid(TAU);
         points.extend((1..half).map(|step| {
             let (sin, cos) = (PI * step as f64 / half as f64).sin_cos();
-            surface.leave([sin * between.cos(), sin * between.sin(), cos], reach)
+            surface.exit_point([sin * between.cos(), sin * between.sin(), cos], reach)
         }));
     }
     points
@@ -163,7 +163,7 @@ fn check_circle<F: Fn(Point) -> f64>(
 ) -> Result<()> {
     let is_off = |v: &VertexId| (surface.function)(points[v.index()]).abs() > 1e-9 * surface.size;
     if rim.iter().any(is_off) {
-        return Err(Error::options("the end of a vessel is not round: another one is near")
+        return Err(Error::options("the end of a vessel is not round, since another vessel is too near")
             .remedy("make it longer, turn it away, or blend less"));
     }
     Ok(())

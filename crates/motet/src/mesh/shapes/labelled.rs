@@ -33,12 +33,12 @@ pub(super) fn labelled(
 }
 
 /// A surface mesh of triangles, all of one patch.
-pub(super) fn skin(points: Vec<Point>, triangles: &[[VertexId; 3]], patch: &str) -> Mesh {
-    skins(points, &[(patch, triangles)])
+pub(super) fn surface_mesh(points: Vec<Point>, triangles: &[[VertexId; 3]], patch: &str) -> Mesh {
+    patched_surface_mesh(points, &[(patch, triangles)])
 }
 
 /// A surface mesh of the triangles of several patches, which are labelled 1, 2, ...
-pub(super) fn skins(points: Vec<Point>, parts: &[(&str, &[[VertexId; 3]])]) -> Mesh {
+pub(super) fn patched_surface_mesh(points: Vec<Point>, parts: &[(&str, &[[VertexId; 3]])]) -> Mesh {
     let (mut cells, mut patches, mut names) = (Cells::new(), Vec::new(), BTreeMap::new());
     for (label, (name, triangles)) in (1..).zip(parts) {
         triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));

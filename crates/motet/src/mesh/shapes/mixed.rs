@@ -5,7 +5,7 @@ use crate::geometry::vector::{add, scale};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::shapes::boxes::{lattice, lattice_cell, lattice_points};
 use crate::mesh::shapes::labelled::labelled;
-use crate::mesh::shapes::split::fan;
+use crate::mesh::shapes::split::fan_triangles;
 use crate::mesh::{CellKind, Cells, Mesh};
 
 /// The box `[0, 3] x [0, 1] x [0, 1]` in cells of edge `1 / n`: hexahedra in `x < 1`, wedges up to `x < 2`,
@@ -41,7 +41,7 @@ fn push_pyramids(hexahedron: [VertexId; 8], points: &mut Vec<Point>, cells: &mut
     for facet in facet_shapes(CellKind::HEXAHEDRON).unwrap_or_default() {
         let ring: Vec<VertexId> = facet.corners().iter().map(|&i| hexahedron[i as usize]).collect();
         if on_boundary(&ring, points) {
-            fan(&ring).for_each(|[a, b, c]| cells.push(CellKind::TETRA, [a, c, b, apex]));
+            fan_triangles(&ring).for_each(|[a, b, c]| cells.push(CellKind::TETRA, [a, c, b, apex]));
         } else {
             // The base of a pyramid faces its apex.
             cells.push(CellKind::PYRAMID, ring.into_iter().rev().chain([apex]));

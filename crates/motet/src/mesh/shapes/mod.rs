@@ -61,16 +61,18 @@ pub use wire::{Chain, chains, wire};
 use crate::base::{Error, Result};
 
 /// Largest number of points of a shape: more are only requested by mistake, and few machines could hold them.
-const MOST_POINTS: f64 = (1u64 << 26) as f64;
+const MAX_POINTS: f64 = (1u64 << 26) as f64;
 
 /// Refuses a shape of too many points before memory is allocated.
 ///
 /// # Errors
 /// If `n_points` is too large, or NaN.
 pub fn check_count(n_points: f64) -> Result<()> {
-    if n_points <= MOST_POINTS {
+    if n_points <= MAX_POINTS {
         return Ok(());
     }
-    Err(Error::options(format!("a shape of {n_points:.3e} points, expected at most {MOST_POINTS:.0}"))
-        .remedy("ask for fewer"))
+    Err(Error::options(format!(
+        "a shape of {n_points:.3e} points is too large: at most {MAX_POINTS:.0} are supported"
+    ))
+    .remedy("ask for fewer"))
 }

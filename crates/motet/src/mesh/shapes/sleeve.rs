@@ -27,7 +27,10 @@ impl Sleeve {
         rings
             .flat_map(|ring| (0..self.around).map(move |i| (ring, i)))
             .flat_map(|(ring, i)| {
-                halves([(0, 0), (0, 1), (1, 1), (1, 0)].map(|(up, on)| self.at(ring + up, i + on)), ring + i)
+                split_quad(
+                    [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(up, on)| self.at(ring + up, i + on)),
+                    ring + i,
+                )
             })
             .collect()
     }
@@ -35,7 +38,7 @@ impl Sleeve {
 
 /// Divides a quad into two triangles; for odd `parity` along the other diagonal, so that no direction is
 /// preferred.
-pub(super) fn halves([a, b, c, d]: [VertexId; 4], parity: usize) -> [[VertexId; 3]; 2] {
+pub(super) fn split_quad([a, b, c, d]: [VertexId; 4], parity: usize) -> [[VertexId; 3]; 2] {
     if parity.is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
 }
 
@@ -63,6 +66,6 @@ pub(super) fn bend(points: &mut [Point], length: f64, bend_deg: f64) {
     }
 }
 
-pub(super) fn turned(triangles: Vec<[VertexId; 3]>) -> Vec<[VertexId; 3]> {
+pub(super) fn reversed(triangles: Vec<[VertexId; 3]>) -> Vec<[VertexId; 3]> {
     triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect()
 }

@@ -25,7 +25,7 @@ pub fn to_tets(cells: &Cells) -> Cells {
         let Some(&apex) = vertices.iter().min() else { continue };
         for local in 0..facets.count(cell) as u32 {
             let ring: Vec<VertexId> = facets.corners(FacetUse { cell, local }).collect();
-            for [a, b, c] in fan(&ring).filter(|_| !ring.contains(&apex)) {
+            for [a, b, c] in fan_triangles(&ring).filter(|_| !ring.contains(&apex)) {
                 // The ring faces outward, away from the apex.
                 tets.extend([a, c, b, apex]);
             }
@@ -39,7 +39,7 @@ pub fn to_tets(cells: &Cells) -> Cells {
 }
 
 /// The triangles of a ring, as a fan from its vertex of smallest id.
-pub(crate) fn fan(ring: &[VertexId]) -> impl Iterator<Item = [VertexId; 3]> + '_ {
+pub(crate) fn fan_triangles(ring: &[VertexId]) -> impl Iterator<Item = [VertexId; 3]> + '_ {
     let n = ring.len();
     let first = (0..n).min_by_key(|&i| ring[i]).unwrap_or(0);
     (1..n.saturating_sub(1)).map(move |i| [ring[first], ring[(first + i) % n], ring[(first + i + 1) % n]])

@@ -17,7 +17,7 @@ use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::LARGEST;
 use crate::mesh::Mesh;
 use crate::mesh::shapes::check_count;
-use crate::mesh::shapes::labelled::skin;
+use crate::mesh::shapes::labelled::surface_mesh;
 
 /// The parameters of a stent. It lies along z from 0; its radius is an argument of [`Self::points`].
 #[derive(Clone, Debug, PartialEq)]
@@ -107,7 +107,7 @@ impl Stent {
         self.check()?;
         if !(radius > self.thickness && radius <= LARGEST) {
             return Err(Error::options(format!(
-                "a radius of {radius} for a thickness of {}",
+                "the radius {radius} must be larger than the thickness {}, and at most {LARGEST:e}",
                 self.thickness
             ))
             .remedy("give an outer radius larger than the thickness"));
@@ -133,7 +133,7 @@ impl Stent {
     /// # Errors
     /// As for [`Stent::points`].
     pub fn mesh(&self, radius: f64) -> Result<Mesh> {
-        Ok(skin(self.points(radius)?, &self.triangles()?, "stent"))
+        Ok(surface_mesh(self.points(radius)?, &self.triangles()?, "stent"))
     }
 
     /// Number of links.
@@ -145,7 +145,7 @@ impl Stent {
     fn check(&self) -> Result<()> {
         let counts = [self.rings, self.crowns, self.link_every];
         if counts.contains(&0) || self.segments < 2 {
-            return Err(Error::options("a stent has rings, crowns and links, and two segments to a strut")
+            return Err(Error::options("a stent needs rings, crowns and links, and two segments per strut")
                 .remedy("give rings, crowns and link_every of at least 1 and segments of at least 2"));
         }
         // Counts beyond this are a mistake, and ids would not fit.
@@ -154,7 +154,7 @@ impl Stent {
         let lengths = [self.length, self.strut_width, self.thickness, self.link_length];
         if lengths.iter().any(|x| !(*x > 0.0 && *x <= LARGEST)) {
             return Err(Error::options(format!(
-                "{lengths:?} for length, strut width, thickness and link length"
+                "got {lengths:?} for length, strut width, thickness and link length"
             ))
             .remedy("give lengths larger than 0"));
         }

@@ -4,8 +4,8 @@ use crate::base::{Error, Result, VertexId};
 use crate::geometry::vector::{add, scale};
 use crate::mesh::Mesh;
 use crate::mesh::disc::disc;
-use crate::mesh::shapes::labelled::skins;
-use crate::mesh::shapes::sleeve::{Sleeve, bend, cylinder, halves, turned};
+use crate::mesh::shapes::labelled::patched_surface_mesh;
+use crate::mesh::shapes::sleeve::{Sleeve, bend, cylinder, reversed, split_quad};
 
 /// The parameters of a vessel with a thick wall. It starts at the origin and runs along z. All lengths are in
 /// one unit.
@@ -72,7 +72,7 @@ impl ThickTube {
                 within = without;
             }
         }
-        let lumen_inlet = turned(disc(&mut points, &lumen.ring(0)));
+        let lumen_inlet = reversed(disc(&mut points, &lumen.ring(0)));
         let lumen_outlet = disc(&mut points, &lumen.ring(slices));
         bend(&mut points, self.length, self.bend_deg);
         let parts: [(&str, &[[VertexId; 3]]); 6] = [
@@ -80,26 +80,29 @@ impl ThickTube {
             ("lumen_outlet", &lumen_outlet),
             ("interface", &lumen.triangles(0..slices)),
             ("outer", &outer.triangles(0..slices)),
-            ("wall_inlet", &turned(inlet)),
+            ("wall_inlet", &reversed(inlet)),
             ("wall_outlet", &outlet),
         ];
-        Ok(skins(points, &parts))
+        Ok(patched_surface_mesh(points, &parts))
     }
 
     fn check(&self) -> Result<()> {
         let refuse = |what: &str, remedy: &str| Err(Error::options(what.to_owned()).remedy(remedy));
         if ![self.radius, self.thickness, self.length].iter().all(|&x| x > 0.0 && x.is_finite()) {
-            return refuse("a thick tube of no size", "give radius, thickness and length larger than 0");
+            return refuse(
+                "radius, thickness and length of a thick tube must be positive",
+                "give radius, thickness and length larger than 0",
+            );
         }
         if self.around < 3 || self.slices == 0 || self.layers == 0 {
             return refuse(
-                "a thick tube of too few triangles",
+                "a thick tube needs more vertices around it, more slices or more layers",
                 "give at least 3 around, a slice and a layer",
             );
         }
         let widest = (self.radius + self.thickness) * self.bend_deg.to_radians().abs();
         if !(widest < self.length && self.bend_deg.abs() < 330.0) {
-            return refuse("a thick tube that meets itself", "bend it less, or make it longer");
+            return refuse("the thick tube bends into itself", "bend it less, or make it longer");
         }
         Ok(())
     }
@@ -109,5 +112,5 @@ impl ThickTube {
 fn annulus(within: &[VertexId], without: &[VertexId]) -> Vec<[VertexId; 3]> {
     let n = within.len();
     let quad = |i: usize| [within[i], without[i], without[(i + 1) % n], within[(i + 1) % n]];
-    (0..n).flat_map(|i| halves(quad(i), i)).collect()
+    (0..n).flat_map(|i| split_quad(quad(i), i)).collect()
 }

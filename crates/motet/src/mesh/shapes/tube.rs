@@ -15,7 +15,7 @@ use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{LARGEST, add, scale};
 use crate::mesh::shapes::check_count;
 use crate::mesh::shapes::labelled::labelled;
-use crate::mesh::shapes::split::{fan, to_tets};
+use crate::mesh::shapes::split::{fan_triangles, to_tets};
 use crate::mesh::{CellKind, Cells, Mesh};
 
 /// The kind of cells in the thin layers at the wall.
@@ -75,7 +75,7 @@ impl TubeOptions {
     pub fn check(&self) -> Result<()> {
         let Self { n, rings, slices, wall_layers, .. } = *self;
         if n == 0 || rings == 0 || slices == 0 {
-            return Err(Error::options(format!("{n} cells, {rings} rings and {slices} slices"))
+            return Err(Error::options(format!("got {n} cells, {rings} rings and {slices} slices"))
                 .remedy("give 1 or more of each"));
         }
         let section = (n as f64 + 1.0) * (n as f64 + 4.0 * (rings as f64 + wall_layers as f64 + 1.0));
@@ -83,12 +83,12 @@ impl TubeOptions {
         let lengths = [self.radius, self.length, self.first_layer, self.growth];
         if !lengths.iter().all(|x| *x > 0.0 && *x <= LARGEST) {
             return Err(Error::options(format!(
-                "{lengths:?} for radius, length, the first layer and its growth"
+                "got {lengths:?} for radius, length, the first layer and its growth"
             ))
             .remedy("give numbers above 0"));
         }
         if self.outer_radius() <= CORE {
-            return Err(Error::options(format!("{wall_layers} wall layers leave no room for the core"))
+            return Err(Error::options(format!("{wall_layers} wall layers leave no space for the core"))
                 .remedy("ask for fewer, or for thinner ones"));
         }
         Ok(())
@@ -266,7 +266,7 @@ impl Section {
                     } else {
                         hexahedra.push(
                             CellKind::HEXAHEDRON,
-                            turned(quad(ring)).into_iter().chain(turned(quad(ring + 1))),
+                            reversed(quad(ring)).into_iter().chain(reversed(quad(ring + 1))),
                         );
                     }
                 }
@@ -283,13 +283,13 @@ impl Section {
     }
 }
 
-fn turned([a, b, c, d]: [VertexId; 4]) -> [VertexId; 4] {
+fn reversed([a, b, c, d]: [VertexId; 4]) -> [VertexId; 4] {
     [a, d, c, b]
 }
 
 /// Two wedges between an outer quad, facing outward, and an inner one.
 fn push_wedges(outer: [VertexId; 4], inner: [VertexId; 4], cells: &mut Cells) {
-    for (base, top) in fan(&outer).zip(fan(&inner)) {
+    for (base, top) in fan_triangles(&outer).zip(fan_triangles(&inner)) {
         let [[a, b, c], [d, e, f]] = [base, top];
         cells.push(CellKind::WEDGE, [a, c, b, d, f, e]);
     }

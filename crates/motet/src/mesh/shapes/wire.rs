@@ -6,7 +6,7 @@ use crate::base::{Csr, Error, Point, Result, VertexId};
 use crate::geometry::vector::{LARGEST, add, distance, dot, in_range, norm, scale, sub};
 use crate::mesh::Mesh;
 use crate::mesh::shapes::frames::{directions, frames};
-use crate::mesh::shapes::labelled::skin;
+use crate::mesh::shapes::labelled::surface_mesh;
 
 /// The largest factor by which a ring is stretched where the wire bends.
 const LARGEST_STRETCH: f64 = 2.0;
@@ -106,7 +106,7 @@ pub fn wire(points: &[Point], segments: &[[VertexId; 2]], radius: f64, around: u
             }
         }
     }
-    Ok(skin(out, &triangles, "wire"))
+    Ok(surface_mesh(out, &triangles, "wire"))
 }
 
 /// A function that lengthens offsets in the plane of a bend by one over the cosine of half its angle, up to
@@ -125,7 +125,7 @@ fn stretch([before, after]: [Point; 2]) -> impl Fn(Point) -> Point {
 
 fn check(points: &[Point], segments: &[[VertexId; 2]], radius: f64, around: usize) -> Result<()> {
     if !(radius > 0.0 && radius <= LARGEST) || around < 3 {
-        return Err(Error::options(format!("a wire of radius {radius} with {around} sides"))
+        return Err(Error::options(format!("a wire cannot have radius {radius} with {around} sides"))
             .remedy("give a radius larger than 0 and at least three sides"));
     }
     if segments.is_empty() {
@@ -138,7 +138,7 @@ fn check(points: &[Point], segments: &[[VertexId; 2]], radius: f64, around: usiz
         }
         let [a, b] = segment.map(|v| points[v.index()]);
         if !in_range(a) || !in_range(b) {
-            return refuse("has an end whose coordinates are no numbers".into());
+            return refuse("has an end whose coordinates are not finite numbers".into());
         }
         if distance(a, b) == 0.0 {
             return refuse("has no length".into());

@@ -87,8 +87,8 @@ pub fn repair(
     let mut work = Work::new(&Surfaces::new(points, triangles, surface_of, roles));
     let vertex_to_kept = match repairs.merge {
         Some(distance) if !(0.0..=LARGEST).contains(&distance) => {
-            return Err(Error::options(format!("vertices nearer than {distance} cannot be merged"))
-                .remedy("give a distance that is 0 or more"));
+            return Err(Error::options(format!("the merge distance cannot be {distance}"))
+                .remedy("give a distance of 0 or more"));
         }
         Some(distance) => merge::merge(&mut work, distance),
         None => (0..points.len()).map(VertexId::new).collect(),

@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 use super::map;
 use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::vector::{dot, sub};
-use crate::mesh::history::{Rows, merge};
+use crate::mesh::history::{Rows, merge_parts};
 use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::mesh::{CellKind, Mesh};
 
@@ -90,7 +90,7 @@ fn widened(points: &[Point], linear: &[(VertexId, f64)], gradients: &[&Gradient]
     let with = |part: f64| {
         let scaled = term.iter().map(|&(v, share)| (v, part * share));
         let mut row = linear.iter().copied().chain(scaled).collect();
-        merge(&mut row);
+        merge_parts(&mut row);
         row
     };
     let row = with(1.0);

@@ -13,20 +13,20 @@ use crate::mesh::Cells;
 
 /// The facets that only one of the tets among `cells` has, in the order of the tets and of VTK's facets.
 /// Facets that name a vertex twice do not count.
-pub(super) fn lone_facets(cells: &Cells) -> Vec<FacetUse> {
+pub(super) fn unshared_facets(cells: &Cells) -> Vec<FacetUse> {
     let n_vertices = cells.connectivity().items().iter().map(|v| v.index() + 1).max().unwrap_or(0);
-    let lone = Keys::of(cells.tets().map(|(_, tet)| sorted(tet)), n_vertices).lone();
+    let unshared = Keys::of(cells.tets().map(|(_, tet)| sorted(tet)), n_vertices).unshared();
     let mut facets = Vec::new();
     for (cell, tet) in cells.tets() {
         let [a, b, _, _] = sorted(tet);
-        if lone.list(a).is_empty() && lone.list(b).is_empty() {
+        if unshared.list(a).is_empty() && unshared.list(b).is_empty() {
             continue;
         }
         for (local, facet) in (0..).zip(VTK_TET_FACETS) {
             let mut facet = facet.map(|i| tet[i].0);
             facet.sort_unstable();
             let [first, middle, last] = facet;
-            if lone.list(first).binary_search(&pack(middle, last)).is_ok() {
+            if unshared.list(first).binary_search(&pack(middle, last)).is_ok() {
                 facets.push(FacetUse { cell, local });
             }
         }
@@ -80,15 +80,15 @@ impl Keys {
     }
 
     /// Keeps the keys that occur once.
-    fn lone(mut self) -> Self {
+    fn unshared(mut self) -> Self {
         let (mut start, mut n) = (0, 0);
         for end in &mut self.offsets[1..] {
             let list = start..*end as usize;
             for i in list.clone() {
                 let key = self.keys[i];
-                let is_lone = (i == list.start || self.keys[i - 1] != key)
+                let is_unshared = (i == list.start || self.keys[i - 1] != key)
                     && (i + 1 == list.end || self.keys[i + 1] != key);
-                if is_lone {
+                if is_unshared {
                     self.keys[n] = key;
                     n += 1;
                 }
@@ -129,7 +129,7 @@ mod tests {
     proptest! {
         /// Few vertices, so that facets coincide twice, three times and with themselves, and tets collapse.
         #[test]
-        fn lone_facets_are_those_that_counting_finds(tets in prop::collection::vec(prop::array::uniform4(0u32..7), 0..40)) {
+        fn unshared_facets_are_those_that_counting_finds(tets in prop::collection::vec(prop::array::uniform4(0u32..7), 0..40)) {
             let mut cells = Cells::default();
             let mut counts: HashMap<[u32; 3], usize> = HashMap::new();
             let facets = |tet: [u32; 4]| VTK_TET_FACETS.map(|facet| {
@@ -149,7 +149,7 @@ mod tests {
                     }
                 }
             }
-            prop_assert_eq!(lone_facets(&cells), expected);
+            prop_assert_eq!(unshared_facets(&cells), expected);
         }
     }
 }
