@@ -57,7 +57,8 @@ impl Cells {
         let n_vertices = vertices.len();
         let vertices = Csr::new(offsets, vertices).ok_or_else(|| {
             Error::input(format!(
-                "the cell offsets must rise from 0 to {n_vertices}, the number of vertex ids in the connectivity"
+                "the cell offsets must rise from 0 to {n_vertices}, \
+                 the number of vertex ids in the connectivity"
             ))
         })?;
         for (i, kind) in kinds.iter().enumerate() {

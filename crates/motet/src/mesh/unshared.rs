@@ -129,7 +129,9 @@ mod tests {
     proptest! {
         /// Few vertices, so that facets coincide twice, three times and with themselves, and tets collapse.
         #[test]
-        fn unshared_facets_are_those_that_counting_finds(tets in prop::collection::vec(prop::array::uniform4(0u32..7), 0..40)) {
+        fn unshared_facets_are_those_that_counting_finds(
+            tets in prop::collection::vec(prop::array::uniform4(0u32..7), 0..40),
+        ) {
             let mut cells = Cells::default();
             let mut counts: HashMap<[u32; 3], usize> = HashMap::new();
             let facets = |tet: [u32; 4]| VTK_TET_FACETS.map(|facet| {

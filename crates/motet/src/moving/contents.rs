@@ -5,7 +5,7 @@ use crate::base::{CellId, Id, Point};
 use crate::geometry::tet;
 use crate::geometry::vector::distance;
 use crate::mesh::history::{History, Row};
-use crate::mesh::{CellKind, Field, Labels, Mesh};
+use crate::mesh::{CellKind, Field, Labels, Mesh, Values};
 
 /// Moves the vertices of a mesh to `points`. The cell arrays named in `contents` are densities of what stays
 /// in its cell.
@@ -21,7 +21,7 @@ pub(super) fn go_to(mesh: &mut Mesh, points: &[Point], contents: &[String]) {
             }
             for i in cell.index() * n..(cell.index() + 1) * n {
                 if let Some(value) = field.values.get_f64(i) {
-                    field.values.set_f64(i, value / grown);
+                    put(&mut field.values, i, value / grown);
                 }
             }
         }
@@ -47,17 +47,27 @@ pub(super) fn hand_over(before: &Mesh, after: &mut Mesh, history: &History, cont
             for (cell, row) in &heirs.rows {
                 let parts = row.from.iter().zip(row.shares).filter(|(old, _)| heirs.taken[old.index()] > 0.0);
                 let density = parts.map(|(&old, share)| held(old) * share / heirs.taken[old.index()]).sum();
-                new.values.set_f64(place(*cell), density);
+                put(&mut new.values, place(*cell), density);
             }
             for &(old, heir, volume) in &heirs.of_lost {
                 let density = new.values.get_f64(place(heir)).unwrap_or(0.0) + held(old) / volume;
-                new.values.set_f64(place(heir), density);
+                put(&mut new.values, place(heir), density);
             }
         }
     }
 }
 
-/// Which new cells inherit from which old ones in a change.
+/// Stores a density. One beyond the range of single precision becomes infinite there, so that it shows.
+fn put(values: &mut Values, i: usize, density: f64) {
+    let is_set = values.set_f64(i, density);
+    if let Values::F32(values) = values
+        && !is_set
+    {
+        values[i] = density as f32;
+    }
+}
+
+/// Who takes over from whom in a change.
 struct Heirs<'a> {
     /// The rows of the new tets.
     rows: Vec<(CellId, Row<'a, CellId>)>,

@@ -37,7 +37,8 @@ defect_kinds! {
     RepeatedVertex = "repeated_vertex", "the cell names a vertex twice";
     InvertedCell = "inverted_cell", "the volume is negative";
     FlatCell = "flat_cell", "the volume is exactly zero";
-    FoldedCell = "folded_cell", "the Jacobian determinant of the quadratic cell is zero or negative somewhere in it, positive elsewhere";
+    FoldedCell = "folded_cell", "the Jacobian determinant of the quadratic cell is zero or negative \
+        somewhere in it, positive elsewhere";
     ZeroAreaCell = "zero_area_cell", "the surface cell has no area";
     DuplicateCell = "duplicate_cell", "cells with the same vertices";
     OversharedFacet = "overshared_facet", "more than two volume cells use the facet";

@@ -73,7 +73,8 @@ impl<I: Id> Origins<I> {
         if !without().eq(changed.ids().iter().map(|id| id.place())) {
             let n_without = without().count();
             return Err(Error::input(format!(
-                "{n_without} entities without an old id need one row each, but there are {} rows, or rows for other ids",
+                "{n_without} entities without an old id need one row each, \
+                 but there are {} rows, or rows for other ids",
                 changed.len()
             )));
         }

@@ -39,7 +39,8 @@ impl<I: Id> TryFrom<Parts<I>> for Rows<I> {
         let n = ids.len();
         if from.len() != n || main.len() != n || shares.len() != from.items().len() {
             return Err(Error::input(format!(
-                "{n} ids need one row and one main id each, but there are {} rows with {} shares for {} old ids, and {} main ids",
+                "{n} ids need one row and one main id each, \
+                 but there are {} rows with {} shares for {} old ids, and {} main ids",
                 from.len(),
                 shares.len(),
                 from.items().len(),
