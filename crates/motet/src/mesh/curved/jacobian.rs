@@ -40,7 +40,7 @@ pub struct LeastJacobian {
 /// Positive values of `det J` up to this fraction of its largest coefficient are not distinguished from 0.
 const ZERO_TOLERANCE: f64 = 1e-9;
 /// The least value is found to within this fraction of the largest coefficient.
-const LEAST_TOLERANCE: f64 = 1e-6;
+const VALUE_TOLERANCE: f64 = 1e-6;
 /// Bound on the rounding error of a coefficient, in units of the product of the longest columns: a few sums
 /// of a few hundred terms, each off by 2^-53.
 const ROUNDING: f64 = 1e-14;
@@ -107,7 +107,7 @@ impl Jacobian {
 
     /// The least `det J`, to within 1e-6 of the largest coefficient, and where it is attained.
     pub fn least(&self) -> LeastJacobian {
-        let close = LEAST_TOLERANCE * self.largest();
+        let close = VALUE_TOLERANCE * self.largest();
         let Least { value, at, .. } =
             least(&self.tables.domain, &self.coefficients, |bound, value| value - bound <= close);
         LeastJacobian { scaled: value / self.scale(), determinant: value, place: self.place(&at) }
