@@ -174,7 +174,7 @@ fn what_cannot_be_is_refused_before_any_work() {
     refused(&["--where", "nothing>1"], 3, "nothing");
     refused(&["--where", "linear>1e9"], 3, "no tet is marked");
     refused(&["--ball", "9,9,9,1"], 3, "no tet is marked");
-    refused(&["--size", "1e-9"], 3, "ids suffice");
+    refused(&["--size", "1e-9"], 3, "there are ids for only");
     refused(&["--near", "absent.stl=1"], 3, "absent.stl");
     refused(&["--ball", "1,2,3"], 2, "--ball");
     refused(&["--region", "nowhere"], 2, "nowhere");

@@ -192,11 +192,12 @@ fn check_seed(names: &BTreeMap<u32, String>, body: u32, seed: &Seed) -> Result<(
     };
     match names.iter().find(|(other, name)| (**other == body) != (**name == seed.name)) {
         Some((other, name)) if *other == body => {
-            let what = format!("lies in the body that another seed names `{name}`, and this `{}`", seed.name);
-            at(what, "give one of them, or a surface between them")
+            let what =
+                format!("lies in a body that another seed names `{name}` and this one `{}`", seed.name);
+            at(what, "give only one of them, or a surface between them")
         }
         Some((_, name)) if *name == seed.name => {
-            at(format!("the name `{name}` is that of another body already"), "give each body its own name")
+            at(format!("the name `{name}` is already used for another body"), "give each body its own name")
         }
         _ => Ok(()),
     }
@@ -207,7 +208,7 @@ fn hole_at(tets: &Constrained, place: Point, names: &BTreeMap<u32, String>) -> R
     match names.get(&body) {
         None => Ok(body),
         Some(name) => {
-            let what = format!("the hole lies in the body that a seed names `{name}`");
+            let what = format!("the hole lies in a body that a seed names `{name}`");
             Err(Error::options(what).at(told_place(place)).remedy("give either the hole or the seed"))
         }
     }
@@ -216,7 +217,7 @@ fn hole_at(tets: &Constrained, place: Point, names: &BTreeMap<u32, String>) -> R
 /// Finds the body that contains a place.
 fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
     if !in_range(place) {
-        return Err(Error::options("a place needs finite numbers").at(told_place(place)));
+        return Err(Error::options("the coordinates of a place must be finite").at(told_place(place)));
     }
     let corners = |tet: &[VertexId; 4]| tet.map(|v| tets.points[v.index()]);
     let is_around = |tet: [Point; 4]| {
@@ -225,10 +226,10 @@ fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
     let holder = |tet: &[VertexId; 4]| is_around(corners(tet)) && holds(corners(tet), place);
     let Some(t) = tets.tets.iter().position(holder) else {
         let [low, high] = bounds(&tets.points).unwrap_or_default();
-        return Err(Error::input("the place lies outside of all that the surfaces enclose")
+        return Err(Error::input("the place lies outside of all enclosed bodies")
             .at(told_place(place))
             .remedy(format!(
-                "give one inside; the surfaces reach from {} to {}",
+                "give a place inside; the surfaces extend from {} to {}",
                 told_place(low),
                 told_place(high)
             )));
@@ -240,11 +241,9 @@ fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
     });
     match on.filter_map(|facet| wall(tets, facet)).next() {
         None => Ok(tets.bodies[t]),
-        Some(triangle) => {
-            Err(Error::input("the place lies on the surface, between two bodies or on the border of one")
-                .at(format!("{} on triangle {triangle}", told_place(place)))
-                .remedy("give one inside"))
-        }
+        Some(triangle) => Err(Error::input("the place lies on the surface, at the border of a body")
+            .at(format!("{} on triangle {triangle}", told_place(place)))
+            .remedy("give a place inside a body")),
     }
 }
 

@@ -122,7 +122,7 @@ impl Caps {
         };
         match self.triangles.iter().find(is_turned) {
             None => Ok((flat, planes)),
-            Some(t) => Err(Error::input("a triangle at the rim would turn over where the rim is made flat")
+            Some(t) => Err(Error::input("a triangle at the rim would turn over if the rim were flattened")
                 .at(format!("point {} at {:?}", t[0], frame.points[t[0].index()]))
                 .remedy("cut the vessel across, so that its rim is nearer to a plane; or cap it as it is")),
         }
@@ -132,7 +132,7 @@ impl Caps {
         match frame.points.len() == self.n_points {
             true => Ok(()),
             false => Err(Error::input(format!(
-                "has {} points, the first frame {}",
+                "has {} points, but the first frame has {}",
                 frame.points.len(),
                 self.n_points
             ))
@@ -187,9 +187,11 @@ impl Caps {
 fn rims(points: &[Point], triangles: &[[VertexId; 3]]) -> Result<Vec<Vec<VertexId>>> {
     let [closed, torn] = open_rims(points, triangles);
     if let Some(v) = torn.first().and_then(|rim| rim.first()) {
-        return Err(Error::input("open edges lead nowhere from here: triangles do not face the same side")
-            .at(format!("point {v}"))
-            .remedy("mend the surface first: `motet mesh --repair` names what is wrong"));
+        return Err(Error::input(
+            "open edges lead nowhere from here: triangles are not consistently oriented",
+        )
+        .at(format!("point {v}"))
+        .remedy("repair the surface first: `motet mesh --repair` reports what is wrong"));
     }
     match closed.is_empty() {
         true => Err(Error::input("has no open rim to cap")),

@@ -50,8 +50,8 @@ impl Dividing {
             "auto" => Ok(Self::Coarse),
             "divide" => Ok(Self::Always),
             "keep" => Ok(Self::Never),
-            _ => Err(Error::options(format!("there is no rule `{name}` for the surface"))
-                .remedy("give one of auto, divide, keep")),
+            _ => Err(Error::options(format!("unknown rule `{name}` for the surface"))
+                .remedy("use auto, divide or keep")),
         }
     }
 }
@@ -99,8 +99,8 @@ impl Options {
             (Dividing::Coarse, _) => Ok(coarse.map(|coarse| coarse.size)),
             (Dividing::Always, Some(Sizes::Uniform(size))) => Ok(Some(*size)),
             (Dividing::Always, _) => {
-                Err(Error::options("a surface to be divided, and no size that is the same everywhere")
-                    .remedy("give --size H alone, or leave the surface as it is"))
+                Err(Error::options("the surface is to be divided, but there is no uniform size")
+                    .remedy("give --size H only, or keep the surface as it is"))
             }
         }
     }
@@ -134,19 +134,20 @@ impl Filled {
         let is_kept = options.edge_points != EdgePoints::Stay && self.report.divided.is_none();
         let in_pieces = (is_kept && points_on_edges > 0).then(|| {
             format!(
-                "{} triangles of the surfaces are divided: {points_on_edges} points on them found no room inside",
+                "{} triangles of the surfaces are divided: there was no space inside for {points_on_edges} points on \
+                 them",
                 triangles.saturating_sub(triangles_kept + triangles_outside)
             )
         });
         let flat = (not_positive > 0).then(|| {
-            format!("{not_positive} tets have no positive volume in the digits of their coordinates")
+            format!("{not_positive} tets do not have positive volume in floating-point coordinates")
         });
         let without_layers = self.layers.as_ref().is_some_and(|layers| layers.prisms == 0);
         reasons([
             in_pieces,
             flat,
             self.improved.as_ref().and_then(remesh::Report::not_reached),
-            without_layers.then(|| "no layer found room".to_owned()),
+            without_layers.then(|| "there was no space for any layer".to_owned()),
         ])
     }
 }
@@ -212,8 +213,10 @@ pub fn fill(
     let joined = joined.compact();
     if let Some(layers) = &options.layers {
         if options.edge_points == EdgePoints::Stay {
-            return Err(Error::options("layers, and points that stay on edges of the surface")
-                .remedy("layers stand on whole triangles: let points move inside"));
+            return Err(Error::options(
+                "layers cannot be combined with points that stay on edges of the surface",
+            )
+            .remedy("layers need undivided triangles: let points move inside"));
         }
         // This finds out which bodies lie on the two sides of each triangle, and which bodies seeds and holes
         // lie in.
@@ -286,7 +289,7 @@ fn filled(
     let tets = constrain(&points, &surfaces.triangles, options.edge_points, threads)?;
     if tets.tets.is_empty() {
         return Err(Error::input("the surfaces enclose nothing")
-            .remedy("close them, or see what `motet info` says of them"));
+            .remedy("close them; `motet info` shows what is open"));
     }
     Ok(tets)
 }

@@ -40,7 +40,7 @@ pub(super) fn check(
         return Ok(());
     }
     let what =
-        format!("these sizes ask for {expected:.1e} points at the surface, expected at most {MOST:.0e}");
+        format!("these sizes require {expected:.1e} points at the surface; at most {MOST:.0e} are allowed");
     let least = both().min_by(|x, y| size(x.1).total_cmp(&size(y.1)));
     let at = least.map_or_else(String::new, |(t, at)| {
         let [x, y, z] = triangle::centroid(corners(*t));

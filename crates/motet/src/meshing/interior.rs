@@ -29,7 +29,7 @@ pub(super) fn check(points: &[Point], size: f64) -> Result<()> {
     let expected = (0..3).map(|i| (high[i] - low[i]) / (size / EDGE_OVER_SIDE) + 1.0).product::<f64>() * 2.0;
     if expected > MOST {
         let what = format!(
-            "a size of {size} asks for some {expected:.1e} points inside, expected at most {MOST:.0e}"
+            "a size of {size} requires about {expected:.1e} points inside; at most {MOST:.0e} are allowed"
         );
         return Err(Error::options(what).remedy("give a larger size"));
     }

@@ -44,10 +44,10 @@ fn place(key: u64) -> [u64; 3] {
 
 fn too_many(side: f64) -> Error {
     Error::input(format!(
-        "these sizes ask for more than {:.0e} points inside, those of {side} or less alone",
+        "these sizes require more than {:.0e} points inside; sizes of {side} or less alone do",
         2.0 * MOST
     ))
-    .remedy("ask for larger ones")
+    .remedy("request larger sizes")
 }
 
 impl Grid {
@@ -121,7 +121,7 @@ impl Octree {
                 let what = format!("a size here is below {:.1e}, a millionth of the model", grid.side(level));
                 return Err(Error::input(what)
                     .at(format!("{}, {}, {}", at[0], at[1], at[2]))
-                    .remedy("ask for larger ones"));
+                    .remedy("request larger sizes"));
             }
             cubes = children(&of_level);
             divided.push(of_level);

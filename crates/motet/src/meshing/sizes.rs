@@ -125,8 +125,10 @@ impl Grading {
     fn check(&self, surfaces: &Surfaces) -> Result<()> {
         self.largest.map_or(Ok(()), check_length)?;
         if !(self.growth > 0.0 && self.growth <= MOST_GROWTH) {
-            let what =
-                format!("sizes that grow by {}, expected more than 0 and at most {MOST_GROWTH}", self.growth);
+            let what = format!(
+                "the growth of sizes is {}; it must be above 0 and at most {MOST_GROWTH}",
+                self.growth
+            );
             return Err(Error::options(what).remedy("0.3 is a good start"));
         }
         let Some(sizes) = &self.at_points else { return Ok(()) };
@@ -150,11 +152,11 @@ fn check_length(size: f64) -> Result<()> {
     if is_length(size) {
         return Ok(());
     }
-    Err(Error::options(format!("a size of {size}, expected a length above 0 and no more than {LARGEST:e}")))
+    Err(Error::options(format!("the size is {size}; it must be a length above 0 and at most {LARGEST:e}")))
 }
 
 fn no_length(size: f64) -> Error {
-    Error::input(format!("the size {size} is no length of an edge"))
+    Error::input(format!("the size {size} is not a valid edge length"))
         .remedy("give every point of the surface a number above 0")
 }
 
@@ -193,9 +195,9 @@ pub fn sizes_by(mesh: &Mesh, array: &str) -> Result<Vec<f64>> {
 fn scalars(field: &Field) -> Result<Vec<f64>> {
     let values = field.values.to_f64().filter(|_| field.components == 1);
     values.ok_or_else(|| {
-        Error::input("does not have one number a row, which sizes are")
+        Error::input("does not have one number a row, as sizes must")
             .at(format!("array `{}`", field.name))
-            .remedy("give an array of one component")
+            .remedy("give an array with one component")
     })
 }
 

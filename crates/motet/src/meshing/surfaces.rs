@@ -103,9 +103,8 @@ impl Surfaces {
         let surface = Surface::own_or_boundary_of(mesh);
         let first = self.points.len();
         if first + surface.points.len() > VertexId::MAX_COUNT {
-            return Err(
-                Error::input("more points than can be counted").remedy("mesh the surfaces one by one")
-            );
+            return Err(Error::input("the surfaces have more points than there are ids")
+                .remedy("mesh the surfaces one by one"));
         }
         let moved = |t: &[VertexId; 3]| t.map(|v| VertexId::new(first + v.index()));
         self.triangles.extend(surface.triangles.iter().map(moved));

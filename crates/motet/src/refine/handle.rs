@@ -228,7 +228,7 @@ impl Refinement {
             |tet: &&TetId| self.forest.states[self.now.nodes[tet.index()] as usize].generation >= DEEPEST;
         if let Some(tet) = marked.iter().find(is_deepest) {
             return Err(Error::options(format!(
-                "tet {tet} was divided {DEEPEST} times over, which is the most"
+                "tet {tet} has already been divided {DEEPEST} times, the maximum"
             )));
         }
         self.or_back(threads, |this, before| this.divide_all(marked, before, threads))
@@ -247,9 +247,7 @@ impl Refinement {
                 return Ok(());
             }
             if left.is_empty() {
-                return Err(Error::input(
-                    "an edge that is fixed is split as it is, before anything is divided",
-                ));
+                return Err(Error::input("a fixed edge is already split before anything is divided"));
             }
             self.unask(before);
             near.keep_off(&self.forest, &self.now, &split, &mut left);
@@ -343,7 +341,7 @@ impl Refinement {
         let n = self.now.mesh.tets.len();
         match marked.iter().find(|tet| tet.index() >= n) {
             None => Ok(()),
-            Some(tet) => Err(Error::input(format!("tet {tet} is marked, but there are {n}"))),
+            Some(tet) => Err(Error::input(format!("tet {tet} is marked, but the mesh has only {n} tets"))),
         }
     }
 
@@ -393,7 +391,7 @@ impl Refinement {
 pub(super) fn check_roots(mesh: &TetMesh, threads: &Threads) -> Result<()> {
     if mesh.tets.len() > MOST_NODES {
         return Err(Error::input(format!(
-            "{} tets are more than refinement can count, which is {MOST_NODES}",
+            "{} tets exceed the maximum for refinement, {MOST_NODES}",
             mesh.tets.len()
         )));
     }

@@ -79,10 +79,10 @@ pub enum Stop {
 impl fmt::Display for Stop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Generations => "the number of generations came first (--generations)",
-            Self::Limits => "a limit came first (--limit-...)",
+            Self::Generations => "the number of generations was reached (--generations)",
+            Self::Limits => "a limit was reached (--limit-...)",
             Self::Held => {
-                "cells that are no tets, triangles or lines hold edges of tets, which cannot be split"
+                "some edges belong to cells other than tets, triangles and lines, and cannot be split"
             }
         })
     }
@@ -188,8 +188,8 @@ impl<T: FnMut(&Step)> Work<'_, T> {
             let wishes = self.wishes(&active)?;
             let (n_wished, marks) = (marked(&wishes[0]).len(), marked(&wishes[1]));
             if generation == 0 && n_wished == 0 && !wanted.goes_back() {
-                return Err(Error::input("no tet is marked: nothing of it is where, or as, the call says")
-                    .remedy("`motet info` tells bounds and arrays; lengths are in the unit of the mesh"));
+                return Err(Error::input("no tet is marked: no tet of the mesh meets the criteria")
+                    .remedy("`motet info` shows bounds and arrays; lengths are in the unit of the mesh"));
             }
             if marks.is_empty() {
                 stop = Stop::Limits;

@@ -94,8 +94,8 @@ mod tests {
             ("3,0.1,0", "above 0"),
             ("3,0.1,-2", "above 0"),
             ("3,0.1,inf", "finite"),
-            ("200,1e300,10", "beyond numbers"),
-            ("200,1,1e-9", "beyond numbers"),
+            ("200,1e300,10", "too thick or thin to represent"),
+            ("200,1,1e-9", "too thick or thin to represent"),
         ] {
             assert!(layers(text).is_err_and(|told| told.contains(part)), "{text}: {:?}", layers(text));
         }

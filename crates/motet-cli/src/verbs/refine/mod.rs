@@ -62,5 +62,5 @@ fn hint(error: Error) -> Error {
     if !is_memory {
         return error;
     }
-    Error::new(error.kind(), error.what()).remedy("--forget: then the mesh as it is counts as the first")
+    Error::new(error.kind(), error.what()).remedy("--forget: the mesh then counts as unrefined")
 }

@@ -94,7 +94,7 @@ fn nearest(
         let surface = io::read(file)?;
         if surface.points.len() != first.points.len() {
             return Err(Error::input(format!(
-                "has {} points, the first frame {}",
+                "has {} points, but the first frame has {}",
                 surface.points.len(),
                 first.points.len()
             ))

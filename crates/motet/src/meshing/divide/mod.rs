@@ -48,8 +48,9 @@ pub(super) fn divide(surfaces: &Surfaces, size: f64, threads: &Threads) -> Resul
     interior::check(&surfaces.points, size)?;
     let expected = expected(surfaces, size);
     if expected > MOST {
-        let what =
-            format!("a size of {size} asks for some {expected:.1e} triangles, expected at most {MOST:.0e}");
+        let what = format!(
+            "a size of {size} requires about {expected:.1e} triangles; at most {MOST:.0e} are allowed"
+        );
         return Err(Error::options(what).remedy("give a larger size"));
     }
     let sheet = Sheet::of(surfaces);

@@ -78,7 +78,7 @@ impl<'a> Grown<'a> {
     /// Makes layers thinner until there are no tangles.
     fn settle(&mut self, threads: &Threads) -> Result<()> {
         loop {
-            threads.watch().go_on("finding room for layers", self.rounds, 0)?;
+            threads.watch().go_on("fitting layers", self.rounds, 0)?;
             let blamed = tangles(&self.skin, &self.columns(), &self.core, &self.rims, threads);
             if blamed.is_empty() {
                 return Ok(());
@@ -154,9 +154,9 @@ impl<'a> Grown<'a> {
             for (new, old) in new.iter().zip(old).filter_map(|(new, old)| old.map(|old| (new, old))) {
                 let known = new.map(|new| body_to_old[new as usize].get_or_insert(old));
                 if known.is_none_or(|known| *known != old) {
-                    return Err(Error::input("the layers leave no room inside")
+                    return Err(Error::input("the layers leave no space inside")
                         .at(format!("triangle {}", self.core.to_triangle[i]))
-                        .remedy("ask for thinner layers"));
+                        .remedy("request thinner layers"));
                 }
             }
         }
@@ -232,9 +232,12 @@ fn check_count(skin: &Skin) -> Result<()> {
     let count = |&stack: &u32| if stack == NONE { 0 } else { skin.stacks[stack as usize].count as usize };
     let n: usize = skin.stack_of.iter().map(count).sum();
     match n {
-        0 => Err(Error::options("no triangle to grow layers on").remedy("name a patch that bounds a body")),
-        n if n > MOST_PRISMS => Err(Error::options(format!("{n} prisms, expected at most {MOST_PRISMS}"))
-            .remedy("ask for fewer layers")),
+        0 => Err(Error::options("there is no triangle to grow layers on")
+            .remedy("name a patch that bounds a body")),
+        n if n > MOST_PRISMS => Err(Error::options(format!(
+            "the layers would have {n} prisms; at most {MOST_PRISMS} are allowed"
+        ))
+        .remedy("request fewer layers")),
         _ => Ok(()),
     }
 }

@@ -45,22 +45,24 @@ impl Stack {
         let refuse = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
         let Self { count, first, growth } = *self;
         if !(1..=MOST_LAYERS).contains(&count) {
-            return refuse(format!("{count} layers"), "ask for 1 to 200 layers");
+            return refuse(format!("the number of layers is {count}"), "request 1 to 200 layers");
         }
         if !(first > 0.0 && first.is_finite()) {
-            return refuse(format!("a first layer of thickness {first}"), "give a length above 0");
+            return refuse(format!("the thickness of the first layer is {first}"), "give a length above 0");
         }
         if !(growth > 0.0 && growth.is_finite()) {
             return refuse(
-                format!("layers that grow by {growth}"),
-                "give a ratio above 0: 1 for layers that are all alike, 1.2 for each a fifth thicker",
+                format!("the growth of layers is {growth}"),
+                "give a ratio above 0: 1 for equal layers, 1.2 for each a fifth thicker than the last",
             );
         }
         let levels = self.levels();
         if !(levels[levels.len() - 1] <= LARGEST && levels.windows(2).all(|pair| pair[0] < pair[1])) {
             return refuse(
-                format!("{count} layers from {first} on that grow by {growth} are beyond numbers"),
-                "ask for fewer layers, or a growth nearer to 1",
+                format!(
+                    "{count} layers starting at {first} and growing by {growth} are too thick or thin to represent"
+                ),
+                "request fewer layers, or a growth closer to 1",
             );
         }
         Ok(())
@@ -89,7 +91,8 @@ impl Layers {
     /// When a stack is invalid, or there is none.
     pub fn check(&self) -> Result<()> {
         if self.everywhere.is_none() && self.by_patch.is_empty() {
-            return Err(Error::options("layers on no wall").remedy("name a patch, or give layers for all"));
+            return Err(Error::options("layers are requested, but on no wall")
+                .remedy("name a patch, or request layers everywhere"));
         }
         self.everywhere.iter().chain(self.by_patch.values()).try_for_each(Stack::check)
     }

@@ -175,14 +175,14 @@ fn choose(surfaces: &Surfaces, layers: &Layers, sides: &[Sides]) -> Result<Vec<O
         };
     }
     if let Some((patch, _)) = layers.by_patch.keys().zip(is_met).find(|(_, met)| !met) {
-        return Err(Error::options(format!("layers on patch {patch}, but no triangle is of it")));
+        return Err(Error::options(format!("layers are requested on patch {patch}, which has no triangles")));
     }
     Ok(chosen)
 }
 
 fn on_membrane(surfaces: &Surfaces, patch: i32, triangle: usize) -> Error {
     let name = surfaces.patch_names.get(&patch).cloned().unwrap_or_else(|| patch.to_string());
-    Error::options(format!("layers are asked for on `{name}`, which is a membrane"))
+    Error::options(format!("layers are requested on `{name}`, which is a membrane"))
         .at(format!("triangle {triangle}"))
-        .remedy("layers grow on walls alone: leave the membrane out")
+        .remedy("layers grow only on walls: omit the membrane")
 }

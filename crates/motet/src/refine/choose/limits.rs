@@ -26,8 +26,8 @@ impl Limits {
     pub(crate) fn check(&self) -> Result<()> {
         match self.smallest.filter(|smallest| smallest.is_nan() || *smallest < 0.0) {
             None => Ok(()),
-            Some(smallest) => Err(Error::options(format!("a smallest length of {smallest}"))
-                .remedy("give one from 0 on, or leave it out")),
+            Some(smallest) => Err(Error::options(format!("the smallest edge length is {smallest}"))
+                .remedy("give a length of 0 or more, or omit it")),
         }
     }
 

@@ -84,10 +84,10 @@ pub fn check_expected(wishes: &[Wish]) -> Result<()> {
     let factor = (expected / MOST_TETS).cbrt();
     let factor = if factor < 1e6 { format!("{:.1}", factor + 0.05) } else { format!("{factor:.1e}") };
     Err(Error::input(format!(
-        "would be divided into about {expected:.1e} tets, and ids suffice for {MOST_TETS:.1e}"
+        "would be divided into about {expected:.1e} tets, but there are ids for only {MOST_TETS:.1e}"
     ))
     .remedy(format!(
-        "ask for sizes {factor} times as large, or set a limit: a smallest size, a number of tets"
+        "request sizes {factor} times as large, or limit the smallest size or the number of tets"
     )))
 }
 

@@ -242,7 +242,7 @@ impl Forest {
         if self.nodes.len() < self.most_nodes {
             return Ok(());
         }
-        Err(Error::options(format!("more than {} tets would be divided or come of it", self.most_nodes))
+        Err(Error::options(format!("more than {} tets would be divided or created", self.most_nodes))
             .remedy("mark fewer tets, or limit the generation"))
     }
 

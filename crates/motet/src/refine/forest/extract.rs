@@ -77,8 +77,11 @@ pub(in crate::refine) fn extract(
         out.mesh.regions.resize(out.mesh.tets.len(), first.regions[root as usize]);
     }
     if out.mesh.tets.len() > TetId::MAX_COUNT || numbers.vertices.len() > VertexId::MAX_COUNT {
-        return Err(Error::options(format!("{} tets are more than ids can count", out.mesh.tets.len()))
-            .remedy("mark fewer tets, or limit the generation"));
+        return Err(Error::options(format!(
+            "a mesh of {} tets needs more ids than there are",
+            out.mesh.tets.len()
+        ))
+        .remedy("mark fewer tets, or limit the generation"));
     }
     for ((triangle, &patch), i) in first.triangles.iter().zip(&first.patches).zip(0..) {
         numbers.triangle(triangle.map(|v| v.0), &mut out.mesh.triangles);

@@ -52,7 +52,7 @@ pub(super) fn gather(mesh: &TetMesh, trees: &Trees) -> Result<Gathered> {
     }
     match shares.iter().position(|&share| share != 1 << MOST_HALVINGS) {
         None => Ok(gathered),
-        Some(_) => Err(unfit("of an edge that was divided some parts are lines and others are not")),
+        Some(_) => Err(unfit("only some parts of a divided edge are lines")),
     }
 }
 

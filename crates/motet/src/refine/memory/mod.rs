@@ -74,14 +74,14 @@ impl Memory {
         let fits = lengths.into_iter().all(|length| length == n)
             && self.corners.len() == mesh.triangles.len()
             && self.reference.len() == mesh.points.len();
-        if fits { Ok(()) } else { Err(unfit("it has not an entry for each tet, triangle and point")) }
+        if fits { Ok(()) } else { Err(unfit("it does not have one entry for each tet, triangle and point")) }
     }
 }
 
 /// The error for a memory that belongs to another mesh.
 fn unfit(why: &str) -> Error {
-    Error::input(format!("what is remembered of its refinement does not fit the mesh: {why}"))
-        .remedy("forget it: then the mesh as it is counts as the first")
+    Error::input(format!("the stored memory of its refinement does not fit the mesh: {why}"))
+        .remedy("discard the memory: the mesh then counts as unrefined")
 }
 
 /// The generation at which a path ends.

@@ -36,7 +36,7 @@ impl Refinement {
         let is_changed = is_changed || roots.n_dissolved > 0;
         let recalled = roots.recall(mesh, reference, &trees, options, threads)?;
         if !is_changed && !recalled.is_as_given {
-            return Err(unfit("what it says of the tets makes another mesh"));
+            return Err(unfit("its records of the tets give a different mesh"));
         }
         Ok(recalled.refinement)
     }
@@ -145,7 +145,7 @@ impl Roots {
         let now = Extracted { mesh: mesh.clone(), vertices: to_forest, nodes, triangles, lines };
         // A memory of another mesh may request arbitrarily many divisions.
         let most_nodes = std::mem::replace(&mut forest.most_nodes, 100 * forest.nodes.len() + 100_000);
-        let closed = close(&mut forest, need, threads).map_err(|_| unfit("what it divides has no end"))?;
+        let closed = close(&mut forest, need, threads).map_err(|_| unfit("its divisions do not end"))?;
         forest.most_nodes = most_nodes;
         points.resize(forest.reference.len(), [f64::NAN; 3]);
         let same = extract(&forest, &self.first, &closed.cuts, &points, &now.vertices)?;
@@ -234,7 +234,7 @@ impl Building<'_> {
                 self.forest.edges[edge as usize].middle = self.to_forest[middle];
             }
             _ if known == self.to_forest[middle] => {}
-            _ => return Err(unfit("one point is in the middle of two edges")),
+            _ => return Err(unfit("a point is the middle of two edges")),
         }
         Ok(())
     }

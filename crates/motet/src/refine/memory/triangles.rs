@@ -51,7 +51,7 @@ pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<G
                 firsts.push((t, whole));
             } else if mesh.patches[t] != mesh.patches[same[0].1] {
                 return Err(unfit(&format!(
-                    "triangle {t} has another patch than those that it was divided with"
+                    "triangle {t} has a different patch from the other parts of its divided triangle"
                 )));
             }
             part_of[t] = if is_new { t } else { same[0].1 };
@@ -75,7 +75,7 @@ fn whole_of(
     let Some(top) = trees.top_of(tet.index()) else { return Ok((triangle, 0)) };
     let mut knot = &trees.knots[trees.knot_of[tet.index()] as usize];
     let place = |v: &VertexId| knot.vertices.iter().position(|other| other == v).unwrap_or(0);
-    let inside = || unfit("a triangle lies inside of a tet that was divided");
+    let inside = || unfit("a triangle lies inside a divided tet");
     let places = [0, 1, 2].map(|i| place(&triangle[i]));
     let mut facet = facet_of(places).ok_or_else(inside)?;
     // A cut tet has only a part of the facet; a tet divided together with its neighbour has a whole facet, a

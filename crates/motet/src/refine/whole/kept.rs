@@ -21,12 +21,12 @@ pub(super) fn memory(mesh: &Mesh, part: &TetPart) -> Result<Option<Memory>> {
     let whole = |name: &str| -> Result<Vec<i64>> {
         let field = mesh.cell_field(name).ok_or_else(|| unfit(name, "is missing"))?;
         let values = field.values.to_i64().filter(|_| field.components == 1);
-        values.ok_or_else(|| unfit(name, "is no array of whole numbers"))
+        values.ok_or_else(|| unfit(name, "is not an array of integers"))
     };
     let [roots, paths, pieces, asked] = [whole(REFINE_ROOT)?, whole(PATH)?, whole(PIECE)?, whole(ASKED)?];
     let reference = reference.ok_or_else(|| unfit(REFERENCE, "is missing"))?;
     let reference: Vec<Point> =
-        reference.to_vectors().map_err(|_| unfit(REFERENCE, "has not three numbers for each point"))?;
+        reference.to_vectors().map_err(|_| unfit(REFERENCE, "does not have three components per point"))?;
     let tets = || part.tet_to_cell.iter().map(|cell| cell.index());
     Ok(Some(Memory {
         roots: tets().map(|c| u32::try_from(roots[c]).unwrap_or(UNKNOWN)).collect(),
@@ -40,7 +40,7 @@ pub(super) fn memory(mesh: &Mesh, part: &TetPart) -> Result<Option<Memory>> {
 
 fn unfit(array: &str, what: &str) -> Error {
     Error::input(format!("array '{array}', which remembers how the mesh was refined, {what}"))
-        .remedy("take all arrays refine_* out: then the mesh as it is counts as the first")
+        .remedy("remove all arrays refine_*: the mesh then counts as unrefined")
 }
 
 /// Adds the arrays of the memory. Cells that are neither tet nor triangle get -1.

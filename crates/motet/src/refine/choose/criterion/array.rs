@@ -73,8 +73,8 @@ pub(super) fn point_vectors(mesh: &Mesh, word: &str) -> Result<Vec<Point>> {
     check_on_points(mesh, &found, word)?;
     match found.part {
         Part::Whole => found.field.to_vectors(),
-        _ => Err(Error::input(format!("`{word}` is no velocity"))
-            .remedy("give a point array of three components as it is")),
+        _ => Err(Error::input(format!("`{word}` is not a velocity"))
+            .remedy("give a point array with three components, not a part of one")),
     }
 }
 
@@ -82,7 +82,7 @@ fn check_on_points(mesh: &Mesh, found: &Found<'_>, word: &str) -> Result<()> {
     match found.on {
         On::Points => Ok(()),
         On::Cells => {
-            Err(Error::input(format!("`{word}` has values on cells, and derivatives need them on points"))
+            Err(Error::input(format!("`{word}` is a cell array, but derivatives need values at points"))
                 .remedy(format!("average it to the points; point arrays: {}", names(&mesh.point_data))))
         }
     }
@@ -104,7 +104,7 @@ fn find<'a>(mesh: &'a Mesh, word: &str) -> Result<Found<'a>> {
         )));
     }
     let Some(values) = field.values.to_f64() else {
-        return Err(Error::input(format!("the array `{}` holds texts, not numbers", field.name)));
+        return Err(Error::input(format!("the array `{}` contains strings, not numbers", field.name)));
     };
     Ok(Found { on, part, field, values })
 }

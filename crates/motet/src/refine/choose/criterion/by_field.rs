@@ -28,7 +28,7 @@ pub(super) fn size(size: &Size, mesh: &Mesh, part: &TetPart, threads: &Threads) 
     let column = column(mesh, name)?;
     let check = |row: usize, what: &str| match column.values[row] {
         h if h > 0.0 => Ok(()),
-        h => Err(Error::input(format!("the size {h} is no length of an edge"))
+        h => Err(Error::input(format!("the size {h} is not a valid edge length"))
             .at(format!("array {name}, {what} {row}"))
             .remedy(format!("give every {what} of a tet a number above 0"))),
     };
@@ -124,7 +124,7 @@ impl HessianSizes {
         }
         match self.aim {
             Aim::Error(error) => above_0("the error", error)?,
-            Aim::RangePart(part) => a_part("the error as a part of the range", part)?,
+            Aim::RangePart(part) => a_part("the error as a fraction of the range", part)?,
             Aim::Tets(_) => {}
         }
         not_below_0("the smallest size", self.limits.smallest)?;

@@ -78,7 +78,7 @@ impl FromStr for Condition {
     /// Parses `ARRAY>VALUE`, with any of `> >= < <= == !=`; the last relation in the text counts.
     fn from_str(text: &str) -> Result<Self> {
         let expected = || {
-            Error::options(format!("`{text}` is no condition"))
+            Error::options(format!("`{text}` is not a condition"))
                 .remedy("ARRAY>VALUE is expected, such as p>100, with one of > >= < <= == !=")
         };
         let is_sign = |c: char| "<>=!".contains(c);
@@ -106,7 +106,9 @@ impl Condition {
     pub fn check(&self) -> Result<()> {
         match self.value.is_finite() {
             true => Ok(()),
-            false => Err(Error::options(format!("`{self}` compares with what is no finite number"))),
+            false => Err(Error::options(format!(
+                "`{self}` is not a valid condition: its value is no finite number"
+            ))),
         }
     }
 

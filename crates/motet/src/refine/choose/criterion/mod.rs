@@ -185,7 +185,7 @@ impl Criterion {
             Self::Where(condition) => condition.check(),
             Self::Gradient { above, .. } => finite("the change through a tet", *above),
             Self::Estimate { amount, .. } => match amount {
-                Amount::Share(share) => a_part("the share of the error", *share),
+                Amount::Share(share) => a_part("the fraction of the error", *share),
                 Amount::Tets(_) => Ok(()),
             },
             Self::Hessian(sizes) => sizes.check(),
@@ -285,5 +285,5 @@ fn above_0(what: &str, value: f64) -> Result<()> {
 
 fn a_part(what: &str, value: f64) -> Result<()> {
     let is_fine = value > 0.0 && value <= 1.0;
-    if is_fine { Ok(()) } else { Err(off(what, value, "a part, above 0 and at most 1")) }
+    if is_fine { Ok(()) } else { Err(off(what, value, "a fraction above 0 and at most 1")) }
 }

@@ -29,9 +29,11 @@ impl Target {
         }
         let is_astray = |v: &&VertexId| points.get(v.index()).is_none_or(|p| !in_range(*p));
         if let Some(v) = triangles.as_flattened().iter().find(is_astray) {
-            return Err(Error::input("has no place: a coordinate is missing, or no finite number")
-                .at(format!("point {v}"))
-                .remedy("remove the point and its cells, or give it a place"));
+            return Err(Error::input(
+                "has an invalid position: a coordinate is missing or is no finite number",
+            )
+            .at(format!("point {v}"))
+            .remedy("remove the point and its cells, or correct its coordinates"));
         }
         let tree = NearestTriangle::new(&points, &triangles, threads);
         Ok(Self { points, triangles, tree })
