@@ -186,7 +186,7 @@ fn shuffled(mesh: &TetMesh, memory: &Memory, numbers: &mut Numbers) -> (TetMesh,
         roots: by(&order, &memory.roots),
         paths: by(&order, &memory.paths),
         pieces: by(&order, &memory.pieces),
-        asked: by(&order, &memory.asked),
+        n_requested: by(&order, &memory.n_requested),
         ..memory.clone()
     };
     (TetMesh { tets, regions, ..mesh.clone() }, memory)
@@ -309,7 +309,7 @@ fn a_memory_of_another_mesh_is_refused_or_falls_apart() {
                 0 => wrong.roots[t] = (value % 50) as u32,
                 1 => wrong.paths[t] = value >> (value % 64),
                 2 => wrong.pieces[t] = value as u16,
-                3 => wrong.asked[t] = value as u8,
+                3 => wrong.n_requested[t] = value as u8,
                 _ => wrong.paths[t] ^= 1 << (value % 12),
             }
         }

@@ -5,7 +5,7 @@ use crate::base::{Csr, Error, Point, Result, Threads, VertexId, rising};
 use crate::geometry::tet::volume;
 use crate::geometry::triangle::area;
 use crate::mesh::{Surface, TetMesh, TetPart, firsts_at_place};
-use crate::meshing::{compact, named};
+use crate::meshing::{compact, used_vertices};
 use crate::preflight::{Role, preflight, renamed};
 
 /// Devices over one list of points; what several of them share is stored once.
@@ -100,7 +100,7 @@ impl Devices {
     /// Removes points that nothing uses.
     fn compact(&mut self) {
         let of_tets = self.own_tets.iter().flat_map(|tet| &tet.vertices);
-        let is_used = named(self.points.len(), self.triangles.as_flattened().iter().chain(of_tets));
+        let is_used = used_vertices(self.points.len(), self.triangles.as_flattened().iter().chain(of_tets));
         let (points, old_to_new) = compact(&self.points, &is_used);
         self.triangles = renamed(&self.triangles, &old_to_new);
         self.own_tets.iter_mut().for_each(|tet| tet.vertices = tet.vertices.map(|v| old_to_new[v.index()]));

@@ -99,7 +99,7 @@ pub fn implant(
     report.seconds.join = lap();
 
     tell_cells(&mut report, &zone_to_cell, first_new);
-    report.regions = meshing::told(&mesh);
+    report.regions = meshing::bodies_of_mesh(&mesh);
     certify(&mut report, host, (devices, &joined), (&gap, &draft), (&mesh, &names), options.outside);
     report.devices.iter_mut().zip(fits).for_each(|(device, fit)| device.fit = *fit);
     report.seconds.check = lap();

@@ -41,7 +41,7 @@ pub struct Body {
 }
 
 /// The bodies of a mesh, in the order of their region numbers.
-pub(crate) fn told(mesh: &Mesh) -> Vec<Body> {
+pub(crate) fn bodies_of_mesh(mesh: &Mesh) -> Vec<Body> {
     let Some(regions) = mesh.regions() else { return Vec::new() };
     let mut bodies: BTreeMap<i32, Body> = BTreeMap::new();
     for (cell, kind, vertices) in mesh.cells.iter() {
@@ -79,7 +79,7 @@ type Side = Option<u32>;
 
 /// Names and voids of the bodies, by their numbers.
 #[derive(Debug, Default)]
-pub(super) struct Arranged {
+pub(super) struct NumberedBodies {
     pub(super) names: BTreeMap<u32, String>,
     /// Bodies that are kept although closed surfaces turned inward enclose them.
     pub(super) voids: BTreeSet<u32>,
@@ -100,7 +100,7 @@ pub(super) fn arrange(
     surfaces: &Surfaces,
     triangles: &[[VertexId; 3]],
     options: &Options,
-) -> Result<Arranged> {
+) -> Result<NumberedBodies> {
     let Options { seeds, holes, .. } = options;
     let mut names = BTreeMap::new();
     for seed in seeds {
@@ -115,7 +115,7 @@ pub(super) fn arrange(
         voids.iter().copied().filter(|body| options.voids && !names.contains_key(body)).collect();
     holes.extend(&left_out);
     let order = from_outside(&tets.triangle_to_bodies);
-    let by_surface = Holders::find(tets, surfaces, triangles).names(surfaces, &order);
+    let by_surface = EnclosingSurfaces::find(tets, surfaces, triangles).names(surfaces, &order);
     for (body, name) in by_surface {
         if !names.contains_key(&body) && !holes.contains(&body) {
             let unused = unused_name(&name, |name| names.values().any(|other| other == name));
@@ -128,7 +128,7 @@ pub(super) fn arrange(
         return Err(Error::options("every body is a hole or a void").remedy("leave a body to be filled"));
     }
     renumber(tets, &new);
-    Ok(Arranged {
+    Ok(NumberedBodies {
         names: names.into_iter().filter_map(|(body, name)| Some((*new.get(&body)?, name))).collect(),
         voids: voids.iter().filter_map(|body| new.get(body).copied()).collect(),
         n_left_out: left_out.len(),
@@ -154,23 +154,23 @@ fn voids(tets: &Constrained, surfaces: &Surfaces, triangles: &[[VertexId; 3]]) -
         if runs_alike(t, rising(t)) { n } else { -n }
     };
     let beyond = beyond(&tets.triangle_to_bodies);
-    let mut turns: BTreeMap<Side, i32> = BTreeMap::from([(None, 0)]);
+    let mut winding: BTreeMap<Side, i32> = BTreeMap::from([(None, 0)]);
     let mut todo = VecDeque::from([None]);
     while let Some(side) = todo.pop_front() {
         for &(i, other) in beyond.get(&side).map_or(&[][..], Vec::as_slice) {
             let is_inward = tets.triangle_to_bodies[i][0] == side;
-            let there = turns[&side] + if is_inward { inward(i) } else { -inward(i) };
-            match turns.get(&other) {
+            let there = winding[&side] + if is_inward { inward(i) } else { -inward(i) };
+            match winding.get(&other) {
                 Some(known) if *known != there => return BTreeSet::new(),
                 Some(_) => {}
                 None => {
-                    turns.insert(other, there);
+                    winding.insert(other, there);
                     todo.push_back(other);
                 }
             }
         }
     }
-    turns.into_iter().filter(|(_, turns)| *turns == 0).filter_map(|(side, _)| side).collect()
+    winding.into_iter().filter(|(_, winding)| *winding == 0).filter_map(|(side, _)| side).collect()
 }
 
 fn renumber(tets: &mut Constrained, new: &BTreeMap<u32, u32>) {
@@ -182,13 +182,13 @@ fn renumber(tets: &mut Constrained, new: &BTreeMap<u32, u32>) {
     }
 }
 
-fn told_place([x, y, z]: Point) -> String {
+fn format_place([x, y, z]: Point) -> String {
     format!("{x}, {y}, {z}")
 }
 
 fn check_seed(names: &BTreeMap<u32, String>, body: u32, seed: &Seed) -> Result<()> {
     let at = |what: String, remedy: &str| {
-        Err(Error::options(what).at(format!("seed at {}", told_place(seed.place))).remedy(remedy))
+        Err(Error::options(what).at(format!("seed at {}", format_place(seed.place))).remedy(remedy))
     };
     match names.iter().find(|(other, name)| (**other == body) != (**name == seed.name)) {
         Some((other, name)) if *other == body => {
@@ -209,7 +209,7 @@ fn hole_at(tets: &Constrained, place: Point, names: &BTreeMap<u32, String>) -> R
         None => Ok(body),
         Some(name) => {
             let what = format!("the hole lies in a body that a seed names `{name}`");
-            Err(Error::options(what).at(told_place(place)).remedy("give either the hole or the seed"))
+            Err(Error::options(what).at(format_place(place)).remedy("give either the hole or the seed"))
         }
     }
 }
@@ -217,7 +217,7 @@ fn hole_at(tets: &Constrained, place: Point, names: &BTreeMap<u32, String>) -> R
 /// Finds the body that contains a place.
 fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
     if !in_range(place) {
-        return Err(Error::options("the coordinates of a place must be finite").at(told_place(place)));
+        return Err(Error::options("the coordinates of a place must be finite").at(format_place(place)));
     }
     let corners = |tet: &[VertexId; 4]| tet.map(|v| tets.points[v.index()]);
     let is_around = |tet: [Point; 4]| {
@@ -227,11 +227,11 @@ fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
     let Some(t) = tets.tets.iter().position(holder) else {
         let [low, high] = bounds(&tets.points).unwrap_or_default();
         return Err(Error::input("the place lies outside of all enclosed bodies")
-            .at(told_place(place))
+            .at(format_place(place))
             .remedy(format!(
                 "give a place inside; the surfaces extend from {} to {}",
-                told_place(low),
-                told_place(high)
+                format_place(low),
+                format_place(high)
             )));
     };
     let tet = tets.tets[t];
@@ -242,7 +242,7 @@ fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
     match on.filter_map(|facet| wall(tets, facet)).next() {
         None => Ok(tets.bodies[t]),
         Some(triangle) => Err(Error::input("the place lies on the surface, at the border of a body")
-            .at(format!("{} on triangle {triangle}", told_place(place)))
+            .at(format!("{} on triangle {triangle}", format_place(place)))
             .remedy("give a place inside a body")),
     }
 }
@@ -284,14 +284,14 @@ fn from_outside(triangle_to_bodies: &[[Side; 2]]) -> Vec<u32> {
 }
 
 /// The closed surfaces that enclose each body.
-struct Holders {
+struct EnclosingSurfaces {
     /// For each body its surfaces, in ascending order.
     of_body: BTreeMap<u32, BTreeSet<u32>>,
     /// The volume that each surface encloses; absent for surfaces that are not closed by themselves.
     volumes: BTreeMap<u32, f64>,
 }
 
-impl Holders {
+impl EnclosingSurfaces {
     /// Finds them by walking from the outside: crossing a triangle enters or leaves its surfaces.
     fn find(tets: &Constrained, surfaces: &Surfaces, triangles: &[[VertexId; 3]]) -> Self {
         let is_boundary = |s: &u32| surfaces.roles[*s as usize] == Role::Boundary;

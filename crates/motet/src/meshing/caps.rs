@@ -306,12 +306,12 @@ mod tests {
         let mut folded = tent.clone();
         folded.points[4] = [0.9, 0.0, 2.0];
         folded.points[0] = [0.5, 0.0, 3.0];
-        let told = caps.flatten(&folded).unwrap_err().to_string();
-        assert!(told.contains("point") && told.contains("turn over"), "{told}");
+        let error = caps.flatten(&folded).unwrap_err().to_string();
+        assert!(error.contains("point") && error.contains("turn over"), "{error}");
     }
 
     #[test]
-    fn what_has_no_rim_is_told() {
+    fn what_has_no_rim_is_reported() {
         let whole = Aneurysm::default().mesh().unwrap();
         assert!(Caps::of(&whole).unwrap_err().to_string().contains("no open rim"));
         // Two that share an edge and face opposite sides.

@@ -3,10 +3,10 @@
 use crate::base::{Point, VertexId};
 
 /// For each of `n` vertices, whether it occurs in `vertices`.
-pub(crate) fn named<'a>(n: usize, vertices: impl Iterator<Item = &'a VertexId>) -> Vec<bool> {
-    let mut is_named = vec![false; n];
-    vertices.for_each(|v| is_named[v.index()] = true);
-    is_named
+pub(crate) fn used_vertices<'a>(n: usize, vertices: impl Iterator<Item = &'a VertexId>) -> Vec<bool> {
+    let mut is_used = vec![false; n];
+    vertices.for_each(|v| is_used[v.index()] = true);
+    is_used
 }
 
 /// Returns the used points and the new number of each point; the number is meaningless for unused ones.

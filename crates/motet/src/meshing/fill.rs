@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::bodies::{self, Arranged, Body, Seed};
-use super::compact::{compact, named};
+use super::bodies::{self, Body, NumberedBodies, Seed};
+use super::compact::{compact, used_vertices};
 use super::divide::{Divided, divide};
 use super::graded;
 use super::interior;
-use super::layers::{self, Grown, Layers};
+use super::layers::{self, GrownLayers, Layers};
 use super::size_field::SizeField;
 use super::sizes::{Coarse, Sizes};
 use super::surfaces::Surfaces;
@@ -83,10 +83,10 @@ impl Options {
     /// only sizes are given, the default bound applies. With sizes, tets are also improved as a whole.
     pub fn with_sizes(sizes: Option<Sizes>, min_eas: Option<f64>) -> Self {
         let min_eas = min_eas.or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
-        let on_the_whole = sizes.as_ref().map(|_| Improve::filled());
+        let improve_all = sizes.as_ref().map(|_| Improve::filled());
         let improve = min_eas.map(|min_eas| remesh::Options {
             min_eas,
-            improve: on_the_whole,
+            improve: improve_all,
             ..remesh::Options::default()
         });
         Self { sizes, improve, ..Self::default() }
@@ -131,8 +131,8 @@ impl Filled {
         let Report { points_on_edges, not_positive, triangles, triangles_kept, triangles_outside, .. } =
             self.report;
         // A divided surface has no triangles to keep.
-        let is_kept = options.edge_points != EdgePoints::Stay && self.report.divided.is_none();
-        let in_pieces = (is_kept && points_on_edges > 0).then(|| {
+        let keeps_triangles = options.edge_points != EdgePoints::Stay && self.report.divided.is_none();
+        let in_pieces = (keeps_triangles && points_on_edges > 0).then(|| {
             format!(
                 "{} triangles of the surfaces are divided: there was no space inside for {points_on_edges} points on \
                  them",
@@ -220,16 +220,16 @@ pub fn fill(
         }
         // This finds out which bodies lie on the two sides of each triangle, and which bodies seeds and holes
         // lie in.
-        let mut whole = filled(&joined, Vec::new(), options, threads)?;
+        let mut whole = fill_tets(&joined, Vec::new(), options, threads)?;
         let arranged = bodies::arrange(&mut whole, surfaces, &triangles, options)?;
-        let grown = Grown::new(&joined, layers, whole.triangle_to_bodies, threads)?;
+        let grown = GrownLayers::new(&joined, layers, whole.triangle_to_bodies, threads)?;
         let mut filled = fill_with_layers(grown, &at_corners, arranged, layers, options, threads)?;
         (filled.report.coarse, filled.report.divided) = (coarse, divided);
         return Ok(filled);
     }
-    let points = inside(&joined, options.sizes.as_ref(), at_corners, threads)?;
+    let points = points_inside(&joined, options.sizes.as_ref(), at_corners, threads)?;
     let n_points = joined.points.len() + points.len();
-    let mut tets = filled(&joined, points, options, threads)?;
+    let mut tets = fill_tets(&joined, points, options, threads)?;
     threads.watch().go_on("finding regions", 0, 0)?;
     let arranged = bodies::arrange(&mut tets, surfaces, &triangles, options)?;
     let mut report = report(&joined, &tets, n_points);
@@ -246,18 +246,18 @@ pub fn fill(
 /// Fills the core that layers leave, and joins it with them. `at_corners` are sizes at the corners of the
 /// surfaces' triangles.
 fn fill_with_layers(
-    mut grown: Grown,
+    mut grown: GrownLayers,
     at_corners: &[[f64; 3]],
-    arranged: Arranged,
+    arranged: NumberedBodies,
     layers: &Layers,
     options: &Options,
     threads: &Threads,
 ) -> Result<Filled> {
     let (tets, n_points) = grown.fill(threads, |core, to_triangle| {
         let of_core = to_triangle.iter().filter_map(|&t| at_corners.get(t as usize).copied()).collect();
-        let points = inside(core, options.sizes.as_ref(), of_core, threads)?;
+        let points = points_inside(core, options.sizes.as_ref(), of_core, threads)?;
         let n_points = core.points.len() + points.len();
-        Ok((filled(core, points, options, threads)?, n_points))
+        Ok((fill_tets(core, points, options, threads)?, n_points))
     })?;
     let mut report = report(grown.core(), &tets, n_points);
     let (core, core_to_mesh) = mesh(grown.core(), &tets);
@@ -278,7 +278,7 @@ fn fill_with_layers(
 }
 
 /// Returns tets within surfaces, with the given points inside.
-fn filled(
+fn fill_tets(
     surfaces: &Surfaces,
     inside: Vec<Point>,
     options: &Options,
@@ -315,13 +315,13 @@ fn improve(
 }
 
 /// The names of bodies as names of regions, which are numbered from 1.
-fn region_names(arranged: &Arranged) -> BTreeMap<i32, String> {
+fn region_names(arranged: &NumberedBodies) -> BTreeMap<i32, String> {
     arranged.names.iter().map(|(&body, name)| (body as i32 + 1, name.clone())).collect()
 }
 
 /// The bodies of the finished mesh, with the voids among them marked.
-fn bodies_of(mesh: &Mesh, arranged: &Arranged) -> Vec<Body> {
-    let mut bodies = bodies::told(mesh);
+fn bodies_of(mesh: &Mesh, arranged: &NumberedBodies) -> Vec<Body> {
+    let mut bodies = bodies::bodies_of_mesh(mesh);
     for body in &mut bodies {
         body.is_void = arranged.voids.contains(&(body.region as u32).wrapping_sub(1));
     }
@@ -329,7 +329,7 @@ fn bodies_of(mesh: &Mesh, arranged: &Arranged) -> Vec<Body> {
 }
 
 /// Chooses points inside by the requested sizes.
-fn inside(
+fn points_inside(
     surfaces: &Surfaces,
     sizes: Option<&Sizes>,
     at_corners: Vec<[f64; 3]>,
@@ -359,15 +359,15 @@ fn not_positive(mesh: &Mesh) -> usize {
 /// Collects statistics. The first `n_points` points were given; points on edges follow.
 fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report {
     let corners = |t: &[VertexId; 4]| t.map(|v| filled.points[v.index()]);
-    let is_named = named(filled.points.len(), filled.tets.as_flattened().iter());
-    let used = |of: std::ops::Range<usize>| is_named[of].iter().filter(|n| **n).count();
-    let points_on_edges = used(n_points..n_points + filled.on_edges.len() + filled.in_triangles.len());
+    let is_used = used_vertices(filled.points.len(), filled.tets.as_flattened().iter());
+    let n_used = |of: std::ops::Range<usize>| is_used[of].iter().filter(|n| **n).count();
+    let points_on_edges = n_used(n_points..n_points + filled.on_edges.len() + filled.in_triangles.len());
     let is_kept = |list: &[[VertexId; 3]]| list.len() == 1;
     Report {
         triangles: surfaces.triangles.len(),
         tets: filled.tets.len(),
         points_on_edges,
-        points_inside: used(surfaces.points.len()..is_named.len()) - points_on_edges,
+        points_inside: n_used(surfaces.points.len()..is_used.len()) - points_on_edges,
         triangles_kept: filled.triangle_to_facets.iter().filter(|list| is_kept(list)).count(),
         triangles_outside: filled.triangle_to_bodies.iter().filter(|b| **b == [None; 2]).count(),
         coarse: None,
@@ -389,7 +389,7 @@ fn mesh(surfaces: &Surfaces, filled: &Constrained) -> (Mesh, Vec<VertexId>) {
         }
     }
     let of_triangles = triangles.iter().flat_map(|(t, _)| t);
-    let is_used = named(filled.points.len(), filled.tets.as_flattened().iter().chain(of_triangles));
+    let is_used = used_vertices(filled.points.len(), filled.tets.as_flattened().iter().chain(of_triangles));
     let (points, old_to_new) = compact(&filled.points, &is_used);
     let (mut cells, mut regions, mut patches) = (Cells::new(), Vec::new(), Vec::new());
     for (tet, &body) in filled.tets.iter().zip(&filled.bodies) {

@@ -6,7 +6,7 @@
 //! of the lattice (Labelle and Shewchuk 2007, *Isosurface stuffing*), and points of different levels are no
 //! closer to each other than half a side of the smaller cube.
 
-use super::interior::{AWAY, EDGE_OVER_SIDE};
+use super::interior::{CLEARANCE, EDGE_OVER_SIDE};
 use super::octree::{Grid, Octree};
 use super::shadow::Shadow;
 use super::size_field::SizeField;
@@ -16,11 +16,11 @@ use crate::geometry::triangle::{self, area};
 use crate::mesh::{bounds, largest_extent, mean_edge_lengths};
 
 /// Edges of undivided cubes are within this factor of their sizes.
-const WITHIN: f64 = std::f64::consts::SQRT_2;
+const SIZE_FACTOR: f64 = std::f64::consts::SQRT_2;
 
 /// The largest expected number of points near the surface, checked at once; the number inside is checked on
 /// the way.
-const MOST: f64 = 5e7;
+const MAX_POINTS: f64 = 5e7;
 
 /// Checks that sizes do not require too many points at the surface.
 ///
@@ -36,11 +36,12 @@ pub(super) fn check(
     let corners = |t: [VertexId; 3]| t.map(|v| points[v.index()]);
     let both = || triangles.iter().zip(at_corners);
     let expected: f64 = both().map(|(t, at)| area(corners(*t)) / (size(at) * size(at))).sum();
-    if expected <= MOST {
+    if expected <= MAX_POINTS {
         return Ok(());
     }
-    let what =
-        format!("these sizes require {expected:.1e} points at the surface; at most {MOST:.0e} are allowed");
+    let what = format!(
+        "these sizes require {expected:.1e} points at the surface; at most {MAX_POINTS:.0e} are allowed"
+    );
     let least = both().min_by(|x, y| size(x.1).total_cmp(&size(y.1)));
     let at = least.map_or_else(String::new, |(t, at)| {
         let [x, y, z] = triangle::centroid(corners(*t));
@@ -63,7 +64,8 @@ pub(super) fn lattice(
     let shadow = Shadow::new(points, triangles);
     let is_to_be_divided = |grid: &Grid, cube| {
         let edge = grid.bounds(cube)[1][0] - grid.bounds(cube)[0][0];
-        shadow.may_hold(grid.bounds(cube)) && edge * EDGE_OVER_SIDE > WITHIN * field.at(grid.middle(cube))
+        shadow.may_hold(grid.bounds(cube))
+            && edge * EDGE_OVER_SIDE > SIZE_FACTOR * field.at(grid.middle(cube))
     };
     let tree = Octree::new(Grid::new(ends, first_side(ends, field))?, is_to_be_divided, threads)?;
     let leaves = tree.leaves();
@@ -72,7 +74,7 @@ pub(super) fn lattice(
         leaves.into_iter().zip(is_between).filter(|(_, is)| *is).map(|(cube, _)| cube).collect();
     let mut found = tree.corners(&leaves);
     found.extend(leaves.iter().map(|&cube| tree.grid.middle(cube)));
-    let is_away = threads.map(found.len(), |i| !field.is_near(found[i], AWAY * field.at(found[i])));
+    let is_away = threads.map(found.len(), |i| !field.is_near(found[i], CLEARANCE * field.at(found[i])));
     Ok(found.into_iter().zip(is_away).filter(|(_, away)| *away).map(|(p, _)| p).collect())
 }
 

@@ -15,10 +15,10 @@ pub(crate) const EDGE_OVER_SIDE: f64 = (8.0 * 0.866_025_403_784_438_6 + 6.0) / 1
 
 /// The smallest distance of points from the surface, relative to the edge length. A regular tet on a facet
 /// has its apex at 0.82.
-pub(super) const AWAY: f64 = 0.6;
+pub(super) const CLEARANCE: f64 = 0.6;
 
 /// The largest expected number of points.
-const MOST: f64 = 2e8;
+const MAX_POINTS: f64 = 2e8;
 
 /// Rejects sizes that require too many points.
 ///
@@ -27,9 +27,10 @@ const MOST: f64 = 2e8;
 pub(super) fn check(points: &[Point], size: f64) -> Result<()> {
     let [low, high] = bounds(points).unwrap_or_default();
     let expected = (0..3).map(|i| (high[i] - low[i]) / (size / EDGE_OVER_SIDE) + 1.0).product::<f64>() * 2.0;
-    if expected > MOST {
+    if expected > MAX_POINTS {
         let what = format!(
-            "a size of {size} requires about {expected:.1e} points inside; at most {MOST:.0e} are allowed"
+            "a size of {size} requires about {expected:.1e} points inside; at most {MAX_POINTS:.0e} are \
+             allowed"
         );
         return Err(Error::options(what).remedy("give a larger size"));
     }
@@ -58,7 +59,7 @@ pub(super) fn lattice(
         let columns = Columns { low, side, shift, across: [(along + 1) % 3, (along + 2) % 3], along };
         found.extend(columns.points(sides, &columns.spans(points, triangles, sides)));
     }
-    let is_away = threads.map(found.len(), |i| tree.closest_within(found[i], AWAY * size).is_none());
+    let is_away = threads.map(found.len(), |i| tree.closest_within(found[i], CLEARANCE * size).is_none());
     Ok(found.into_iter().zip(is_away).filter(|(_, away)| *away).map(|(p, _)| p).collect())
 }
 

@@ -28,10 +28,10 @@ mod size_field;
 mod sizes;
 mod surfaces;
 
-pub(crate) use bodies::told;
+pub(crate) use bodies::bodies_of_mesh;
 pub use bodies::{Body, Seed};
 pub use caps::{Caps, RimPlane};
-pub(crate) use compact::{compact, named};
+pub(crate) use compact::{compact, used_vertices};
 pub use divide::Divided;
 pub use fill::{Dividing, Filled, Options, Report, fill};
 pub(crate) use graded::points_between;

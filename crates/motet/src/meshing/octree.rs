@@ -7,7 +7,7 @@ const BITS: u32 = 21;
 const MASK: u64 = (1 << BITS) - 1;
 
 /// The largest number of cubes: an undivided cube gives about two points.
-const MOST: f64 = 2.5e7;
+const MAX_CUBES: f64 = 2.5e7;
 
 /// A cube of the tree, by its level and its position among the cubes of that level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -45,7 +45,7 @@ fn place(key: u64) -> [u64; 3] {
 fn too_many(side: f64) -> Error {
     Error::input(format!(
         "these sizes require more than {:.0e} points inside; sizes of {side} or less alone do",
-        2.0 * MOST
+        2.0 * MAX_CUBES
     ))
     .remedy("request larger sizes")
 }
@@ -63,7 +63,7 @@ impl Grid {
         let counts = [0, 1, 2].map(|i| (high[i] / side).floor() - first[i] + 1.0);
         let most = counts.iter().fold(0.0, |a: f64, b| a.max(*b));
         let is_one = side > 0.0 && side.is_finite() && most.is_finite();
-        if !is_one || counts.iter().product::<f64>() > MOST || most > f64::from(1 << (BITS - 1)) {
+        if !is_one || counts.iter().product::<f64>() > MAX_CUBES || most > f64::from(1 << (BITS - 1)) {
             return Err(too_many(side));
         }
         let counts = counts.map(|n| n as u64);
@@ -108,12 +108,17 @@ impl Octree {
             of_columns.flat_map(|(x, y)| (0..nz).map(move |z| key([x, y, z]))).collect();
         let (mut divided, mut n_cubes) = (Vec::new(), cubes.len());
         for level in 0.. {
-            let asked = threads.map(cubes.len(), |i| is_to_be_divided(&grid, Cube { level, key: cubes[i] }));
-            let of_level: Vec<u64> =
-                cubes.iter().zip(asked).filter(|(_, asked)| *asked).map(|(key, _)| *key).collect();
+            let is_requested =
+                threads.map(cubes.len(), |i| is_to_be_divided(&grid, Cube { level, key: cubes[i] }));
+            let of_level: Vec<u64> = cubes
+                .iter()
+                .zip(is_requested)
+                .filter(|(_, is_requested)| *is_requested)
+                .map(|(key, _)| *key)
+                .collect();
             let Some(&one) = of_level.first() else { break };
             n_cubes += 8 * of_level.len();
-            if n_cubes as f64 > MOST {
+            if n_cubes as f64 > MAX_CUBES {
                 return Err(too_many(grid.side(level + 1)));
             }
             if level == grid.depth {
@@ -252,9 +257,9 @@ mod tests {
         let order = |x: &Point, y: &Point| x.partial_cmp(y).unwrap();
         all.sort_by(order);
         all.dedup();
-        let mut told = corners;
-        told.sort_by(order);
-        assert_eq!(told, all);
+        let mut found = corners;
+        found.sort_by(order);
+        assert_eq!(found, all);
     }
 
     #[test]
@@ -269,7 +274,7 @@ mod tests {
             let [low, high] = grid.bounds(cube);
             low[0] <= 0.3 && 0.3 < high[0] && low[1] <= 0.3 && 0.3 < high[1] && low[2] <= 0.3 && 0.3 < high[2]
         };
-        let told = Octree::new(grid(), holds, &Threads::single()).unwrap_err().to_string();
-        assert!(told.contains("millionth") && told.contains("0.3"), "{told}");
+        let error = Octree::new(grid(), holds, &Threads::single()).unwrap_err().to_string();
+        assert!(error.contains("millionth") && error.contains("0.3"), "{error}");
     }
 }

@@ -10,10 +10,10 @@ const PIXELS: f64 = 512.0;
 pub(super) struct Shadow {
     low: Point,
     pixel: f64,
-    pictures: [Picture; 3],
+    images: [Image; 3],
 }
 
-struct Picture {
+struct Image {
     along: usize,
     across: [usize; 2],
     counts: [usize; 2],
@@ -25,28 +25,28 @@ impl Shadow {
         let [low, high] = bounds(points).unwrap_or_default();
         let sides = [0, 1, 2].map(|i| high[i] - low[i]);
         let pixel = sides.iter().fold(0.0, |a: f64, b| a.max(*b)) / PIXELS;
-        let pictures = [0, 1, 2].map(|along| {
+        let images = [0, 1, 2].map(|along| {
             let across = [(along + 1) % 3, (along + 2) % 3];
             let counts = across.map(|axis| (sides[axis] / pixel) as usize + 1);
             let spans = vec![[f64::INFINITY, f64::NEG_INFINITY]; counts[0] * counts[1]];
-            let mut picture = Picture { along, across, counts, spans };
+            let mut image = Image { along, across, counts, spans };
             for triangle in triangles {
                 let corner = |v: VertexId| [0, 1, 2].map(|i| (points[v.index()][i] - low[i]) / pixel);
-                picture.add(triangle.map(corner));
+                image.add(triangle.map(corner));
             }
-            picture
+            image
         });
-        Self { low, pixel, pictures }
+        Self { low, pixel, images }
     }
 
     /// Whether some point of a box may lie between triangles along all three axes.
     pub(super) fn may_hold(&self, bounds: [Point; 2]) -> bool {
         let bounds = bounds.map(|p| [0, 1, 2].map(|i| (p[i] - self.low[i]) / self.pixel));
-        self.pictures.iter().all(|picture| picture.may_hold(bounds))
+        self.images.iter().all(|image| image.may_hold(bounds))
     }
 }
 
-impl Picture {
+impl Image {
     /// The pixels between two positions along an axis of the image.
     fn pixels(&self, i: usize, from: f64, to: f64) -> std::ops::Range<usize> {
         from.floor().max(0.0) as usize..self.counts[i].min((to.floor() + 1.0).max(0.0) as usize)
@@ -122,7 +122,7 @@ mod tests {
     fn a_needle_across_the_picture_fills_its_own_pixels_alone() {
         let points = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [1.0, 1.0, 0.999]];
         let shadow = Shadow::new(&points, &[[0, 1, 2].map(VertexId::new)]);
-        let filled = shadow.pictures.map(|p| p.spans.iter().filter(|s| s[0] <= s[1]).count());
+        let filled = shadow.images.map(|p| p.spans.iter().filter(|s| s[0] <= s[1]).count());
         assert!(filled.iter().all(|n| (500..3000).contains(n)), "{filled:?}");
     }
 }

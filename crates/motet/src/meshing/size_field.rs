@@ -99,7 +99,7 @@ impl<'a> SizeField<'a> {
 
     fn of_triangle(&self, triangle: usize, p: Point) -> f64 {
         let corners = self.triangles[triangle].map(|v| self.points[v.index()]);
-        least_from(corners, self.at_corners[triangle], self.growth, p)
+        min_over_triangle(corners, self.at_corners[triangle], self.growth, p)
     }
 }
 
@@ -116,7 +116,7 @@ fn class(sizes: &[f64; 3]) -> i32 {
 /// Where sizes vary along the triangle, the minimum is not at the point nearest to `p`: if the size has
 /// gradient `m` along the triangle, it lies `height * m / sqrt(growth^2 - m^2)` from there towards smaller
 /// sizes. If that is outside the triangle, the minimum lies on an edge, where the same holds.
-fn least_from(corners: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> f64 {
+fn min_over_triangle(corners: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> f64 {
     let at = |weights: [f64; 3]| {
         let size = (0..3).map(|i| weights[i] * sizes[i]).sum::<f64>();
         size + growth * distance(triangle::at(corners, weights), p)
@@ -124,12 +124,12 @@ fn least_from(corners: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> f6
     if sizes[0] == sizes[1] && sizes[1] == sizes[2] {
         return sizes[0] + growth * distance(triangle::at(corners, triangle::closest(corners, p)), p);
     }
-    if let Some(weights) = within(corners, sizes, growth, p) {
+    if let Some(weights) = min_inside(corners, sizes, growth, p) {
         return at(weights);
     }
     let edge = |i: usize| {
         let j = (i + 1) % 3;
-        let share = along([corners[i], corners[j]], [sizes[i], sizes[j]], growth, p);
+        let share = min_on_edge([corners[i], corners[j]], [sizes[i], sizes[j]], growth, p);
         let mut weights = [0.0; 3];
         (weights[i], weights[j]) = (1.0 - share, share);
         at(weights)
@@ -138,7 +138,7 @@ fn least_from(corners: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> f6
 }
 
 /// The weights of the minimum in the plane of the triangle, if it lies in the triangle.
-fn within([a, b, c]: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> Option<[f64; 3]> {
+fn min_inside([a, b, c]: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> Option<[f64; 3]> {
     let (u, v, w) = (sub(b, a), sub(c, a), sub(p, a));
     let normal = cross(u, v);
     let square = dot(normal, normal);
@@ -157,7 +157,7 @@ fn within([a, b, c]: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> Opti
 }
 
 /// The position of the minimum along an edge, in [0, 1].
-fn along([a, b]: [Point; 2], sizes: [f64; 2], growth: f64, p: Point) -> f64 {
+fn min_on_edge([a, b]: [Point; 2], sizes: [f64; 2], growth: f64, p: Point) -> f64 {
     let (edge, to) = (sub(b, a), sub(p, a));
     let length = dot(edge, edge).sqrt();
     let slope = (sizes[1] - sizes[0]) / length;
@@ -180,7 +180,7 @@ mod tests {
     }
 
     /// The minimum over a fine grid of points of the triangle.
-    fn by_looking(corners: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> f64 {
+    fn by_sampling(corners: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> f64 {
         const N: usize = 60;
         let all =
             (0..=N).flat_map(|i| (0..=N - i).map(move |j| [i, j, N - i - j].map(|k| k as f64 / N as f64)));
@@ -192,19 +192,20 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_least_over_a_triangle_is_what_looking_finds(
+        fn the_minimum_over_a_triangle_is_what_sampling_finds(
             corners in prop::array::uniform3(point()),
             sizes in prop::array::uniform3(0.1..0.6f64),
             growth in 0.1..0.7f64,
             p in point(),
         ) {
-            let (told, seen) = (least_from(corners, sizes, growth, p), by_looking(corners, sizes, growth, p));
-            prop_assert!(told <= seen + 1e-12, "{told} {seen}");
-            prop_assert!(told >= seen - 0.1, "{told} {seen}");
+            let found = min_over_triangle(corners, sizes, growth, p);
+            let seen = by_sampling(corners, sizes, growth, p);
+            prop_assert!(found <= seen + 1e-12, "{found} {seen}");
+            prop_assert!(found >= seen - 0.1, "{found} {seen}");
         }
 
         #[test]
-        fn sizes_grow_no_faster_than_asked_and_are_the_least_of_all_triangles(
+        fn sizes_grow_no_faster_than_requested_and_are_the_least_of_all_triangles(
             points in prop::collection::vec(point(), 9),
             sizes in prop::collection::vec(0.01..1.0f64, 9),
             places in prop::array::uniform2(point()),
@@ -216,10 +217,10 @@ mod tests {
             let at_corners: Vec<_> = triangles.iter().map(|t| t.map(|v| sizes[v.index()])).collect();
             let grading = Grading { growth, largest: Some(0.8), ..Grading::default() };
             let field = SizeField::new(&points, &triangles, at_corners.clone(), &grading, &Threads::single());
-            let told = places.map(|p| field.at(p));
-            prop_assert!((told[0] - told[1]).abs() <= growth * distance(places[0], places[1]) + 1e-12);
+            let found = places.map(|p| field.at(p));
+            prop_assert!((found[0] - found[1]).abs() <= growth * distance(places[0], places[1]) + 1e-12);
             let all = (0..3).map(|i| field.of_triangle(i, places[0])).fold(0.8, f64::min);
-            prop_assert!((told[0] - all).abs() <= 1e-12 * all, "{} {all}", told[0]);
+            prop_assert!((found[0] - all).abs() <= 1e-12 * all, "{} {all}", found[0]);
         }
     }
 }

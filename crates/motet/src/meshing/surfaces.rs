@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::compact::{compact, named};
+use super::compact::{compact, used_vertices};
 use crate::base::{Error, Point, Result, Threads, VertexId, rising};
 use crate::mesh::{Mesh, Surface, firsts_at_place};
 use crate::preflight::{self, Preflight, Repaired, Repairs, Role, renamed};
@@ -181,7 +181,7 @@ impl Surfaces {
 
     /// Removes points that no triangle uses: these may even lie on triangles.
     pub(super) fn compact(mut self) -> Self {
-        let is_used = named(self.points.len(), self.triangles.as_flattened().iter());
+        let is_used = used_vertices(self.points.len(), self.triangles.as_flattened().iter());
         let (points, old_to_new) = compact(&self.points, &is_used);
         self.points = points;
         self.triangles = renamed(&self.triangles, &old_to_new);

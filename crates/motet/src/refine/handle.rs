@@ -1,9 +1,11 @@
 //! The handle: a mesh that is refined and coarsened again and again.
 
-use super::forest::{Closed, DEEPEST, Extracted, Forest, MOST_NODES, NONE, Need, close, extract};
-use super::held::{Near, split_though_fixed};
+use super::fixed_edges::{Neighborhood, ends_of_split_fixed_edges};
+use super::forest::{
+    Closed, Extracted, Forest, MAX_GENERATION, MAX_NODES, NONE, ShapeBounds, close, extract,
+};
 use super::inverted::vertices_of_inverted;
-use super::true_surface::{OnSurface, put_on};
+use super::true_surface::{OnSurface, put_on_surface};
 use crate::base::{Error, Point, Result, TetId, Threads};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
@@ -89,9 +91,9 @@ pub struct Left {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Refinement {
-    pub(super) first: TetMesh,
+    pub(super) first_mesh: TetMesh,
     pub(super) forest: Forest,
-    pub(super) need: Need,
+    pub(super) bounds: ShapeBounds,
     /// The current position of each vertex of the forest that is in the mesh.
     pub(super) points: Vec<Point>,
     pub(super) now: Extracted,
@@ -107,18 +109,18 @@ impl Refinement {
         check_roots(mesh, threads)?;
         let roots = mesh.tets.iter().map(|tet| (tet.map(|v| v.0), false));
         let forest = Forest::new(&mesh.points, roots);
-        let need = Need::new(options, &forest);
+        let bounds = ShapeBounds::new(options, &forest);
         let mut refinement = Self {
-            first: mesh.clone(),
+            first_mesh: mesh.clone(),
             forest,
-            need,
+            bounds,
             points: mesh.points.clone(),
             now: Extracted::default(),
             summary: Summary::default(),
             is_moved: false,
         };
-        let closed = close(&mut refinement.forest, need, threads)?;
-        refinement.give_out(closed)?;
+        let closed = close(&mut refinement.forest, bounds, threads)?;
+        refinement.update_mesh(closed)?;
         Ok(refinement)
     }
 
@@ -130,21 +132,21 @@ impl Refinement {
     /// The first mesh, with its points at their current positions.
     pub fn first(&self) -> TetMesh {
         let points = self.points[..self.forest.n_first_vertices].to_vec();
-        TetMesh { points, ..self.first.clone() }
+        TetMesh { points, ..self.first_mesh.clone() }
     }
 
     /// Puts boundary points made by divisions on the true surface, if they are near it and their edges lie on
     /// it. No tet is inverted, and no good tet becomes bad. Shapes continue to be judged by the positions of
     /// the points before.
     pub fn put_on_surface(&mut self, surface: &NearestTriangle) -> OnSurface {
-        let (points, done) = put_on(&self.now, &self.forest, surface);
-        self.place(&points);
+        let (points, done) = put_on_surface(&self.now, &self.forest, surface);
+        self.set_positions(&points);
         done
     }
 
     /// Whether any tet of the first mesh is divided, or cut.
     pub fn is_divided(&self) -> bool {
-        self.now.mesh.tets.len() != self.first.tets.len()
+        self.now.mesh.tets.len() != self.first_mesh.tets.len()
     }
 
     /// The generation of each tet: how many divisions into eight it lies within. Pieces of a cut tet count as
@@ -173,7 +175,7 @@ impl Refinement {
             });
         let floor = |i: u32| {
             let class = self.forest.nodes[self.now.nodes[i as usize] as usize].shape.class();
-            self.need.floor(self.forest.classes[class as usize].root_eas)
+            self.bounds.floor(self.forest.classes[class as usize].root_eas)
         };
         let bad = (0..).zip(shape).filter(|&(i, eas)| eas < floor(i));
         bad.map(|(i, eas): (u32, f64)| Left {
@@ -204,11 +206,11 @@ impl Refinement {
             return Err(Error::input(format!("{} points, expected {expected}", points.len()))
                 .remedy("give all points in the order of the mesh"));
         }
-        self.place(points);
+        self.set_positions(points);
         Ok(())
     }
 
-    fn place(&mut self, points: &[Point]) {
+    fn set_positions(&mut self, points: &[Point]) {
         self.is_moved = true;
         self.now.mesh.points.copy_from_slice(points);
         for (&vertex, &point) in self.now.vertices.iter().zip(points) {
@@ -224,42 +226,43 @@ impl Refinement {
     /// would not suffice; then nothing has changed.
     pub fn refine(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
         self.check(marked)?;
-        let is_deepest =
-            |tet: &&TetId| self.forest.states[self.now.nodes[tet.index()] as usize].generation >= DEEPEST;
+        let is_deepest = |tet: &&TetId| {
+            self.forest.states[self.now.nodes[tet.index()] as usize].generation >= MAX_GENERATION
+        };
         if let Some(tet) = marked.iter().find(is_deepest) {
             return Err(Error::options(format!(
-                "tet {tet} has already been divided {DEEPEST} times, the maximum"
+                "tet {tet} has already been divided {MAX_GENERATION} times, the maximum"
             )));
         }
-        self.or_back(threads, |this, before| this.divide_all(marked, before, threads))
+        self.or_restore(threads, |this, before| this.divide_all(marked, before, threads))
     }
 
     fn divide_all(&mut self, marked: &[TetId], before: &[bool], threads: &Threads) -> Result<()> {
         let mut left = marked.to_vec();
-        let mut near = Near::default();
+        let mut neighborhood = Neighborhood::default();
         loop {
-            self.ask(&left);
-            let closed = close(&mut self.forest, self.need, threads)?;
-            let split = split_though_fixed(&self.forest, &self.first);
+            self.request(&left);
+            let closed = close(&mut self.forest, self.bounds, threads)?;
+            let split = ends_of_split_fixed_edges(&self.forest, &self.first_mesh);
             if split.is_empty() {
-                self.give_out(closed)?;
+                self.update_mesh(closed)?;
                 self.summary.n_held = marked.len() - left.len();
                 return Ok(());
             }
             if left.is_empty() {
                 return Err(Error::input("a fixed edge is already split before anything is divided"));
             }
-            self.unask(before);
-            near.keep_off(&self.forest, &self.now, &split, &mut left);
+            self.restore_requests(before);
+            neighborhood.remove_marks(&self.forest, &self.now, &split, &mut left);
         }
     }
 
     /// Requests the division of the marked tets, and so of all tets they lie in.
-    fn ask(&mut self, marked: &[TetId]) {
+    fn request(&mut self, marked: &[TetId]) {
         for tet in marked {
             let mut node = self.now.nodes[tet.index()];
-            while node != NONE && !self.forest.states[node as usize].is_asked {
-                self.forest.states[node as usize].is_asked = true;
+            while node != NONE && !self.forest.states[node as usize].is_requested {
+                self.forest.states[node as usize].is_requested = true;
                 node = self.forest.nodes[node as usize].parent;
             }
         }
@@ -273,15 +276,15 @@ impl Refinement {
     /// When a marked tet does not exist; then nothing has changed.
     pub fn coarsen(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
         self.check(marked)?;
-        self.or_back(threads, |this, before| {
-            this.unask_within(marked, before);
+        self.or_restore(threads, |this, before| {
+            this.withdraw_requests(marked, before);
             this.keep_from_inverting(before, threads)
         })
     }
 
     /// Withdraws the requests for divisions all of whose tets are marked, unless a part was requested to be
     /// divided again.
-    fn unask_within(&mut self, marked: &[TetId], before: &[bool]) {
+    fn withdraw_requests(&mut self, marked: &[TetId], before: &[bool]) {
         let mut is_marked = vec![false; self.now.nodes.len()];
         marked.iter().for_each(|tet| is_marked[tet.index()] = true);
         let Forest { nodes, states, .. } = &mut self.forest;
@@ -296,7 +299,7 @@ impl Refinement {
         }
         for node in (0..nodes.len()).filter(|&node| is_whole[node] && before[node]) {
             let first = nodes[node].first_child as usize;
-            states[node].is_asked = before[first..first + 8].iter().any(|&child| child);
+            states[node].is_requested = before[first..first + 8].iter().any(|&child| child);
         }
     }
 
@@ -304,33 +307,34 @@ impl Refinement {
     /// current positions.
     fn keep_from_inverting(&mut self, before: &[bool], threads: &Threads) -> Result<()> {
         let inverted =
-            |this: &Self, out: &Extracted| vertices_of_inverted(&this.forest, &this.first, out, threads);
+            |this: &Self, out: &Extracted| vertices_of_inverted(&this.forest, &this.first_mesh, out, threads);
         let known = if self.is_moved { inverted(self, &self.now) } else { Vec::new() };
         let mut n_held = 0;
         loop {
-            let closed = close(&mut self.forest, self.need, threads)?;
-            let now = extract(&self.forest, &self.first, &closed.cuts, &self.points, &self.now.vertices)?;
+            let closed = close(&mut self.forest, self.bounds, threads)?;
+            let now =
+                extract(&self.forest, &self.first_mesh, &closed.cuts, &self.points, &self.now.vertices)?;
             let mut new = if self.is_moved { inverted(self, &now) } else { Vec::new() };
             new.retain(|v| known.binary_search(v).is_err());
             if new.is_empty() {
-                self.take(closed, now);
+                self.accept(closed, now);
                 self.summary.n_held = n_held;
                 return Ok(());
             }
             let taken_back: Vec<u32> = (0..before.len() as u32)
-                .filter(|&n| before[n as usize] && !self.forest.states[n as usize].is_asked)
+                .filter(|&n| before[n as usize] && !self.forest.states[n as usize].is_requested)
                 .collect();
             let at = |&node: &u32| self.forest.local(node).iter().any(|v| new.binary_search(v).is_ok());
             let near: Vec<u32> = taken_back.iter().copied().filter(at).collect();
-            let again = if near.is_empty() { taken_back } else { near };
-            if again.is_empty() {
-                self.take(closed, now);
+            let restored = if near.is_empty() { taken_back } else { near };
+            if restored.is_empty() {
+                self.accept(closed, now);
                 return Ok(());
             }
-            n_held += again.len();
-            for mut node in again {
+            n_held += restored.len();
+            for mut node in restored {
                 while node != NONE {
-                    self.forest.states[node as usize].is_asked = true;
+                    self.forest.states[node as usize].is_requested = true;
                     node = self.forest.nodes[node as usize].parent;
                 }
             }
@@ -346,32 +350,36 @@ impl Refinement {
     }
 
     /// Restores the requests for division of an earlier state.
-    fn unask(&mut self, before: &[bool]) {
+    fn restore_requests(&mut self, before: &[bool]) {
         let before = before.iter().chain(std::iter::repeat(&false));
-        self.forest.states.iter_mut().zip(before).for_each(|(state, &asked)| state.is_asked = asked);
+        self.forest
+            .states
+            .iter_mut()
+            .zip(before)
+            .for_each(|(state, &is_requested)| state.is_requested = is_requested);
     }
 
     /// Runs a step, given the requests before it; if it fails, restores these.
-    fn or_back(
+    fn or_restore(
         &mut self,
         threads: &Threads,
         step: impl FnOnce(&mut Self, &[bool]) -> Result<()>,
     ) -> Result<Summary> {
-        let before: Vec<bool> = self.forest.states.iter().map(|state| state.is_asked).collect();
+        let before: Vec<bool> = self.forest.states.iter().map(|state| state.is_requested).collect();
         let Err(error) = step(self, &before) else { return Ok(self.summary) };
-        self.unask(&before);
-        let closed = close(&mut self.forest, self.need, threads)?;
-        self.give_out(closed)?;
+        self.restore_requests(&before);
+        let closed = close(&mut self.forest, self.bounds, threads)?;
+        self.update_mesh(closed)?;
         Err(error)
     }
 
-    fn give_out(&mut self, closed: Closed) -> Result<()> {
-        let now = extract(&self.forest, &self.first, &closed.cuts, &self.points, &self.now.vertices)?;
-        self.take(closed, now);
+    fn update_mesh(&mut self, closed: Closed) -> Result<()> {
+        let now = extract(&self.forest, &self.first_mesh, &closed.cuts, &self.points, &self.now.vertices)?;
+        self.accept(closed, now);
         Ok(())
     }
 
-    fn take(&mut self, closed: Closed, now: Extracted) {
+    fn accept(&mut self, closed: Closed, now: Extracted) {
         self.points.resize(self.forest.reference.len(), [f64::NAN; 3]);
         for (&vertex, &point) in now.vertices.iter().zip(&now.mesh.points) {
             self.points[vertex as usize] = point;
@@ -389,9 +397,9 @@ impl Refinement {
 
 /// Rejects tets without volume, and more tets than a forest may have.
 pub(super) fn check_roots(mesh: &TetMesh, threads: &Threads) -> Result<()> {
-    if mesh.tets.len() > MOST_NODES {
+    if mesh.tets.len() > MAX_NODES {
         return Err(Error::input(format!(
-            "{} tets exceed the maximum for refinement, {MOST_NODES}",
+            "{} tets exceed the maximum for refinement, {MAX_NODES}",
             mesh.tets.len()
         )));
     }

@@ -18,9 +18,9 @@ pub(super) fn vertices_of_inverted(
         let [a, b, c, d] = tet.map(|v| points[v.index()]);
         orient3d(a, b, c, d)
     };
-    let of_roots = threads.map(first.tets.len(), |root| side_of(first.tets[root], &forest.reference));
+    let root_edges = threads.map(first.tets.len(), |root| side_of(first.tets[root], &forest.reference));
     let is_inverted = threads.map(out.mesh.tets.len(), |t| {
-        side_of(out.mesh.tets[t], &out.mesh.points) != of_roots[forest.root(out.nodes[t]) as usize]
+        side_of(out.mesh.tets[t], &out.mesh.points) != root_edges[forest.root(out.nodes[t]) as usize]
     });
     let inverted = out.mesh.tets.iter().zip(is_inverted).filter(|(_, is_inverted)| *is_inverted);
     let vertices = inverted.flat_map(|(tet, _)| *tet).map(|v: VertexId| out.vertices[v.index()]);

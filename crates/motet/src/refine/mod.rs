@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | choose | `choose` | [`Criterion`]: by place, distance, size, error estimate, array or region; sizes from second derivatives; limits; which divisions may be taken back |
 //! | divide and fit | `forest` | tets and their eight parts, edges, facets; cuts between divided and undivided tets; what preserves shape |
-//! | hold | `held` | tets whose edges must not be split, because cells of other kinds use them, are left as they are; line cells are divided with their edges |
+//! | hold | `fixed_edges` | tets whose edges must not be split, because cells of other kinds use them, are left as they are; line cells are divided with their edges |
 //! | take back | `inverted` | where points have moved, no division is taken back if the whole tet would be inverted |
 //! | true surface | `true_surface` | new boundary points are put on it, as far as no tet inverts |
 //! | handle | `handle` | [`Refinement`]: a mesh that is refined and coarsened again and again |
@@ -20,9 +20,9 @@
 //! and Ventikos 2008.
 
 mod choose;
+mod fixed_edges;
 mod forest;
 mod handle;
-mod held;
 mod inverted;
 mod memory;
 mod reach;

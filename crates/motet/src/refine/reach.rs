@@ -125,21 +125,21 @@ pub struct Step {
 }
 
 /// The default limit on generations for criteria of size.
-const MOST_GENERATIONS: u32 = 20;
+const DEFAULT_MAX_GENERATIONS: u32 = 20;
 
 impl Wanted {
     /// The largest number of times anything is divided.
     pub fn most_generations(&self) -> u32 {
-        self.generations.unwrap_or(MOST_GENERATIONS)
+        self.generations.unwrap_or(DEFAULT_MAX_GENERATIONS)
     }
 
-    fn goes_back(&self) -> bool {
+    fn coarsens(&self) -> bool {
         self.coarsen || !self.coarsen_where.is_empty()
     }
 }
 
 impl MeshRefinement {
-    /// Takes back divisions no longer wanted, then divides, generation after generation. `told` is called
+    /// Takes back divisions no longer wanted, then divides, generation after generation. `on_step` is called
     /// with each step once it is done.
     ///
     /// # Errors
@@ -150,14 +150,14 @@ impl MeshRefinement {
         wanted: &Wanted,
         rules: &Rules,
         threads: &Threads,
-        told: impl FnMut(&Step),
+        on_step: impl FnMut(&Step),
     ) -> Result<Reached> {
         wanted.limits.check()?;
         let identity = || History::identity(self.mesh().points.len(), self.mesh().cells.len());
         let history = wanted.keeps_history.then(identity);
         let reached = Reached { history, ..Reached::default() };
-        let mut work = Work { refinement: self, wanted, rules, threads, told, reached };
-        work.tell("came", Summary::default(), 0, Instant::now());
+        let mut work = Work { refinement: self, wanted, rules, threads, on_step, reached };
+        work.report_step("came", Summary::default(), 0, Instant::now());
         work.reached.stopped_by = work.run()?;
         work.reached.is_reached = work.reached.stopped_by.is_none();
         Ok(work.reached)
@@ -169,7 +169,7 @@ struct Work<'a, T> {
     wanted: &'a Wanted,
     rules: &'a Rules,
     threads: &'a Threads,
-    told: T,
+    on_step: T,
     reached: Reached,
 }
 
@@ -178,7 +178,7 @@ impl<T: FnMut(&Step)> Work<'_, T> {
     fn run(&mut self) -> Result<Option<Stop>> {
         let wanted = self.wanted;
         let (mut stop, mut is_held) = (Stop::Generations, false);
-        if wanted.goes_back() {
+        if wanted.coarsens() {
             self.take_back()?;
         }
         for generation in 0.. {
@@ -187,7 +187,7 @@ impl<T: FnMut(&Step)> Work<'_, T> {
             self.threads.watch().go_on("refining", generation as usize, most as usize)?;
             let wishes = self.wishes(&active)?;
             let (n_wished, marks) = (marked(&wishes[0]).len(), marked(&wishes[1]));
-            if generation == 0 && n_wished == 0 && !wanted.goes_back() {
+            if generation == 0 && n_wished == 0 && !wanted.coarsens() {
                 return Err(Error::input("no tet is marked: no tet of the mesh meets the criteria")
                     .remedy("`motet info` shows bounds and arrays; lengths are in the unit of the mesh"));
             }
@@ -223,8 +223,8 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         let begin = Instant::now();
         let (summary, history) = self.refinement.refine(marks, self.rules, self.threads)?;
         self.put_on_surface();
-        self.went(&history);
-        self.tell(&(generation + 1).to_string(), summary, marks.len(), begin);
+        self.record(&history);
+        self.report_step(&(generation + 1).to_string(), summary, marks.len(), begin);
         Ok(summary.n_held)
     }
 
@@ -247,36 +247,36 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         let n_levels = if says_how_far { u32::MAX } else { self.wanted.generations.unwrap_or(1).max(1) };
         for _ in 0..n_levels {
             self.threads.watch().go_on("taking divisions back", 0, 0)?;
-            let free = self.free(&self.refinement.part())?;
+            let removable = self.removable(&self.refinement.part())?;
             let before = self.refinement.mesh().cells.len();
             let begin = Instant::now();
-            let (summary, history) = self.refinement.coarsen(&free, self.rules, self.threads)?;
-            self.went(&history);
+            let (summary, history) = self.refinement.coarsen(&removable, self.rules, self.threads)?;
+            self.record(&history);
             if self.refinement.mesh().cells.len() == before {
                 return Ok(());
             }
-            self.tell("back", summary, 0, begin);
+            self.report_step("back", summary, 0, begin);
         }
         Ok(())
     }
 
     /// The tets whose division may be taken back.
-    fn free(&self, part: &TetPart) -> Result<Vec<TetId>> {
+    fn removable(&self, part: &TetPart) -> Result<Vec<TetId>> {
         let mesh = self.refinement.mesh();
         let wishes = wishes_of_all(&self.wanted.criteria, mesh, part, self.threads)?;
-        let free = coarser(&wishes);
+        let removable = coarser(&wishes);
         if self.wanted.coarsen_where.is_empty() {
-            return Ok(free);
+            return Ok(removable);
         }
-        let mut is_so = vec![false; wishes.len()];
+        let mut meets_condition = vec![false; wishes.len()];
         for condition in &self.wanted.coarsen_where {
             let marks = Criterion::Where(condition.clone()).marks(mesh, part, self.threads)?;
-            marks.iter().for_each(|tet| is_so[tet.index()] = true);
+            marks.iter().for_each(|tet| meets_condition[tet.index()] = true);
         }
-        Ok(free.into_iter().filter(|tet| is_so[tet.index()]).collect())
+        Ok(removable.into_iter().filter(|tet| meets_condition[tet.index()]).collect())
     }
 
-    fn went(&mut self, history: &History) {
+    fn record(&mut self, history: &History) {
         let parts = history.ledger.regions.iter().map(|region| region.deviation / region.volume_before);
         self.reached.volume_deviation = parts.fold(self.reached.volume_deviation, f64::max);
         self.reached.history = self.reached.history.as_ref().map(|before| before.then(history));
@@ -292,10 +292,10 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         }
     }
 
-    fn tell(&mut self, step: &str, summary: Summary, n_marked: usize, begin: Instant) {
+    fn report_step(&mut self, step: &str, summary: Summary, n_marked: usize, begin: Instant) {
         let seconds = begin.elapsed().as_secs_f64();
         let step = Step::new(step, self.refinement.refinement(), summary, n_marked, seconds, self.threads);
-        (self.told)(&step);
+        (self.on_step)(&step);
         self.reached.steps.push(step);
     }
 }

@@ -11,12 +11,12 @@ use crate::spatial::NearestTriangle;
 
 /// A point moves at most this fraction of the length of its edge: an arc with this ratio of height to chord
 /// spans about two thirds of a half circle.
-const REACH: f64 = 0.3;
+const MAX_DISPLACEMENT: f64 = 0.3;
 /// An edge counts as an edge of the surface if both ends lie within this fraction of its length from the
 /// surface.
-const ENDS: f64 = 0.05;
+const END_TOLERANCE: f64 = 0.05;
 /// A tet is spoilt if it becomes bad and keeps less than this fraction of its EAS.
-const LOSS: f64 = 0.5;
+const MIN_EAS_RATIO: f64 = 0.5;
 /// How often a displacement is halved before the point is left where it was.
 const HALVINGS: usize = 3;
 
@@ -32,22 +32,26 @@ pub struct OnSurface {
 }
 
 /// Returns new coordinates for all points of the mesh, and a summary.
-pub(super) fn put_on(now: &Extracted, forest: &Forest, surface: &NearestTriangle) -> (Vec<Point>, OnSurface) {
+pub(super) fn put_on_surface(
+    now: &Extracted,
+    forest: &Forest,
+    surface: &NearestTriangle,
+) -> (Vec<Point>, OnSurface) {
     let mesh = &now.mesh;
-    let ways = ways(now, forest, surface);
-    let mut shares: Vec<f64> = ways.iter().map(|way| if way.is_some() { 1.0 } else { 0.0 }).collect();
-    let place = |v: VertexId, shares: &[f64]| match ways[v.index()] {
-        Some(way) => add(mesh.points[v.index()], scale(way, shares[v.index()])),
+    let displacements = displacements(now, forest, surface);
+    let mut shares: Vec<f64> = displacements.iter().map(|d| if d.is_some() { 1.0 } else { 0.0 }).collect();
+    let place = |v: VertexId, shares: &[f64]| match displacements[v.index()] {
+        Some(displacement) => add(mesh.points[v.index()], scale(displacement, shares[v.index()])),
         None => mesh.points[v.index()],
     };
     let moving: Vec<&[VertexId; 4]> =
-        mesh.tets.iter().filter(|tet| tet.iter().any(|v| ways[v.index()].is_some())).collect();
+        mesh.tets.iter().filter(|tet| tet.iter().any(|v| displacements[v.index()].is_some())).collect();
     for round in 0.. {
         let is_spoilt = |tet: &&&[VertexId; 4]| {
             let (was, is) = (eas(tet.map(|v| mesh.points[v.index()])), eas(tet.map(|v| place(v, &shares))));
             // The sign of an EAS is that of the volume.
             let (was, is) = (was.abs(), is * was.signum());
-            is <= 0.0 || is < LOSS * was && is < BAD_EAS
+            is <= 0.0 || is < MIN_EAS_RATIO * was && is < BAD_EAS
         };
         let spoilt: Vec<VertexId> = moving.iter().filter(is_spoilt).flat_map(|tet| **tet).collect();
         if !spoilt.iter().any(|v| shares[v.index()] > 0.0) {
@@ -59,11 +63,11 @@ pub(super) fn put_on(now: &Extracted, forest: &Forest, surface: &NearestTriangle
         let factor = if round < HALVINGS { 0.5 } else { 0.0 };
         vertices.iter().for_each(|v| shares[v.index()] *= factor);
     }
-    let moved = || (0..ways.len()).filter_map(|v| ways[v].map(|way| (shares[v], way)));
+    let moved = || (0..displacements.len()).filter_map(|v| displacements[v].map(|d| (shares[v], d)));
     let done = OnSurface {
         n_moved: moved().filter(|(share, _)| *share == 1.0).count(),
         n_short: moved().filter(|(share, _)| *share < 1.0).count(),
-        farthest: moved().map(|(share, way)| share * distance(way, [0.0; 3])).fold(0.0, f64::max),
+        farthest: moved().map(|(share, d)| share * distance(d, [0.0; 3])).fold(0.0, f64::max),
     };
     let points = (0..mesh.points.len()).map(|v| place(VertexId::new(v), &shares)).collect();
     (points, done)
@@ -71,7 +75,7 @@ pub(super) fn put_on(now: &Extracted, forest: &Forest, surface: &NearestTriangle
 
 /// For each boundary point that a division made on an edge of the surface, the vector to the surface; `None`
 /// for all other points, and for points already on it.
-fn ways(now: &Extracted, forest: &Forest, surface: &NearestTriangle) -> Vec<Option<Point>> {
+fn displacements(now: &Extracted, forest: &Forest, surface: &NearestTriangle) -> Vec<Option<Point>> {
     let mesh = &now.mesh;
     let mut is_boundary = vec![false; mesh.points.len()];
     for_each_tet_facet(&mesh.tets, &[], |sharing| {
@@ -80,15 +84,16 @@ fn ways(now: &Extracted, forest: &Forest, surface: &NearestTriangle) -> Vec<Opti
         }
     });
     let numbers = now.numbers(forest.reference.len());
-    let way = |v: usize| {
+    let displacement = |v: usize| {
         let origin = (now.vertices[v] as usize).checked_sub(forest.n_first_vertices)?;
         let [p, q] =
             forest.edges[forest.origin[origin] as usize].ends.map(|end| numbers[end as usize] as usize);
         let ([p, q], point) = ([*mesh.points.get(p)?, *mesh.points.get(q)?], mesh.points[v]);
         let length = distance(p, q);
         let near = |p: Point, part: f64| surface.closest_within(p, part * length).map(|found| found.point);
-        let found = near(point, REACH)?;
-        (found != point && near(p, ENDS).is_some() && near(q, ENDS).is_some()).then(|| sub(found, point))
+        let found = near(point, MAX_DISPLACEMENT)?;
+        (found != point && near(p, END_TOLERANCE).is_some() && near(q, END_TOLERANCE).is_some())
+            .then(|| sub(found, point))
     };
-    (0..mesh.points.len()).map(|v| if is_boundary[v] { way(v) } else { None }).collect()
+    (0..mesh.points.len()).map(|v| if is_boundary[v] { displacement(v) } else { None }).collect()
 }

@@ -1,7 +1,7 @@
 //! Flat facets of surfaces: triangles in one plane, exactly or up to rounding, that belong to the same
 //! patches of the same surfaces.
 
-use super::net::Plane;
+use super::triangulation::Plane;
 use crate::base::{Point, Sets, VertexId, rising, runs_alike};
 use crate::delaunay::flat_facets;
 use crate::geometry::rounding;

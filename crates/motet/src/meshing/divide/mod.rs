@@ -5,16 +5,16 @@
 //! |---|---|---|
 //! | facets | `facets` | triangles of one patch in one plane, exactly or up to rounding |
 //! | creases | `refine` | divided into parts of about the size |
-//! | triangles | `refine`, `net` | Delaunay refinement in the plane |
+//! | triangles | `refine`, `triangulation` | Delaunay refinement in the plane |
 
 mod facets;
-mod net;
 mod refine;
+mod triangulation;
 
 use serde::Serialize;
 
 use self::facets::{Facets, Sheet};
-use self::net::Net;
+use self::triangulation::Triangulation;
 use super::interior;
 use super::surfaces::Surfaces;
 use crate::base::{Error, Result, Threads, VertexId};
@@ -22,11 +22,11 @@ use crate::geometry::triangle::area;
 use crate::geometry::vector::distance;
 
 /// The largest expected number of triangles.
-const MOST: f64 = 2e7;
+const MAX_TRIANGLES: f64 = 2e7;
 
 /// The largest number of points inserted, as a multiple of the expected number of triangles: where facets are
 /// far narrower than the size, more points than expected are needed.
-const MOST_POINTS: usize = 16;
+const MAX_POINTS_PER_TRIANGLE: usize = 16;
 
 /// The numbers of triangles before and after a surface was divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -47,9 +47,10 @@ pub(super) fn divide(surfaces: &Surfaces, size: f64, threads: &Threads) -> Resul
     watch.go_on("dividing the surface", 0, 0)?;
     interior::check(&surfaces.points, size)?;
     let expected = expected(surfaces, size);
-    if expected > MOST {
+    if expected > MAX_TRIANGLES {
         let what = format!(
-            "a size of {size} requires about {expected:.1e} triangles; at most {MOST:.0e} are allowed"
+            "a size of {size} requires about {expected:.1e} triangles; at most {MAX_TRIANGLES:.0e} are \
+             allowed"
         );
         return Err(Error::options(what).remedy("give a larger size"));
     }
@@ -58,24 +59,24 @@ pub(super) fn divide(surfaces: &Surfaces, size: f64, threads: &Threads) -> Resul
     let Some(Facets { facet_of, planes, labels }) = Facets::find(&surfaces.points, &sheet) else {
         return Ok((surfaces.clone(), Divided { before, after: before }));
     };
-    let mut net = Net::new(surfaces.points.clone(), sheet.triangles, facet_of, planes);
-    net.make_delaunay();
-    refine::divide_creases(&mut net, size, watch)?;
-    refine::refine(&mut net, size, MOST_POINTS * expected as usize, watch)?;
-    let after = net.triangles.len();
-    Ok((joined(surfaces, net, &labels), Divided { before, after }))
+    let mut triangulation = Triangulation::new(surfaces.points.clone(), sheet.triangles, facet_of, planes);
+    triangulation.make_delaunay();
+    refine::divide_creases(&mut triangulation, size, watch)?;
+    refine::refine(&mut triangulation, size, MAX_POINTS_PER_TRIANGLE * expected as usize, watch)?;
+    let after = triangulation.triangles.len();
+    Ok((joined(surfaces, triangulation, &labels), Divided { before, after }))
 }
 
-/// Returns the surfaces with the triangles of `net`, each with the labels of its facet.
-fn joined(surfaces: &Surfaces, net: Net, labels: &[Vec<facets::Label>]) -> Surfaces {
+/// Returns the surfaces with the triangles of `triangulation`, each with the labels of its facet.
+fn joined(surfaces: &Surfaces, triangulation: Triangulation, labels: &[Vec<facets::Label>]) -> Surfaces {
     let mut divided = Surfaces {
-        points: net.points,
-        triangles: Vec::with_capacity(net.triangles.len()),
-        surface_of: Vec::with_capacity(net.triangles.len()),
-        patches: Vec::with_capacity(net.triangles.len()),
+        points: triangulation.points,
+        triangles: Vec::with_capacity(triangulation.triangles.len()),
+        surface_of: Vec::with_capacity(triangulation.triangles.len()),
+        patches: Vec::with_capacity(triangulation.triangles.len()),
         ..surfaces.clone()
     };
-    for (&[a, b, c], &facet) in net.triangles.iter().zip(&net.facet_of) {
+    for (&[a, b, c], &facet) in triangulation.triangles.iter().zip(&triangulation.facet_of) {
         for &(surface, patch, is_alike) in &labels[facet as usize] {
             divided.triangles.push(if is_alike { [a, b, c] } else { [a, c, b] });
             divided.surface_of.push(surface);

@@ -45,7 +45,7 @@ impl<'a> Columns<'a> {
         if level == 0 || stack == NONE {
             return foot;
         }
-        let share = self.heights.heights[w] / self.heights.asked[w];
+        let share = self.heights.heights[w] / self.heights.requested[w];
         add(foot, scale(self.heights.lifts[w], self.levels[stack as usize][level as usize] * share))
     }
 

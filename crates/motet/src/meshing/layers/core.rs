@@ -60,7 +60,8 @@ impl Core {
             .collect();
         for (t, &corners) in surfaces.triangles.iter().enumerate() {
             let [front, behind] = sides[t];
-            let of = |body: Option<u32>| body.map(|body| corners.map(|v| seen(skin, &places, v, body)));
+            let of =
+                |body: Option<u32>| body.map(|body| corners.map(|v| moved_vertex(skin, &places, v, body)));
             let (in_front, from_behind) = (of(front), of(behind));
             // Skins share no vertex, so both sides see the same triangle only where it did not move.
             if in_front.is_some() && in_front == from_behind {
@@ -129,6 +130,6 @@ fn skin_triangles(skin: &Skin, t: u32, sides: Sides) -> impl Iterator<Item = u32
 }
 
 /// The vertex of a body's skin for a vertex of the surfaces, if it moved.
-fn seen(skin: &Skin, places: &[Point], vertex: VertexId, body: u32) -> Option<VertexId> {
+fn moved_vertex(skin: &Skin, places: &[Point], vertex: VertexId, body: u32) -> Option<VertexId> {
     skin.vertex(vertex, body).filter(|w| places[w.index()] != skin.points[w.index()])
 }

@@ -13,7 +13,7 @@ use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::vector::{across, add, cross, dot, norm, scale, sub};
 
 /// The smallest cosine with which a wall may be seen, 78 degrees from its normal; below that, nothing grows.
-const LEAST_COSINE: f64 = 0.2;
+const MIN_COSINE: f64 = 0.2;
 
 /// The sine of the smallest angle at which two planes have a usable line of intersection.
 const APART: f64 = 0.05;
@@ -100,7 +100,7 @@ impl Directions {
             let freedom = Freedom::of(skin, vertex);
             let way = best(&normals, freedom);
             let cosine = least(&normals, way);
-            if cosine < LEAST_COSINE { ([0.0; 3], 0.0, freedom) } else { (way, cosine, freedom) }
+            if cosine < MIN_COSINE { ([0.0; 3], 0.0, freedom) } else { (way, cosine, freedom) }
         });
         let mut all =
             Self { ways: found.iter().map(|f| f.0).collect(), cosines: found.iter().map(|f| f.1).collect() };
@@ -178,18 +178,18 @@ fn axis(a: Point, b: Point, c: Point) -> Point {
 fn most_normal_in(normals: &[Point], plane: Point) -> Point {
     let seen: Vec<Point> = normals.iter().map(|&n| across(n, plane)).collect();
     let mut found = (f64::NEG_INFINITY, [0.0; 3]);
-    let mut look = |way: Point| {
+    let mut consider = |way: Point| {
         let cosine = least(&seen, way);
         if cosine > found.0 + ROUNDING {
             found = (cosine, way);
         }
     };
     for (i, &a) in seen.iter().enumerate() {
-        look(unit(a));
+        consider(unit(a));
         for &b in &seen[..i] {
             let halfway = unit(cross(plane, sub(a, b)));
-            look(halfway);
-            look(scale(halfway, -1.0));
+            consider(halfway);
+            consider(scale(halfway, -1.0));
         }
     }
     found.1

@@ -64,17 +64,17 @@ impl Flats {
 }
 
 /// The fewest triangles of a cap: on a rough wall single triangles may stand out.
-const LEAST: usize = 3;
+const MIN_TRIANGLES: usize = 3;
 
 /// For each triangle, whether it is on a cap: a flat part with a sharp crease all around. If all would be,
 /// none is.
-pub(super) fn caps(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
+pub(super) fn is_on_cap(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
     let behind = neighbors(triangles);
     let flats = Flats::find(points, triangles, &behind, |_| true);
     let normal = |t: usize| unit(area_vector(triangles[t].map(|v| points[v.index()])));
     let mut counts = vec![0; flats.normals.len()];
     flats.of.iter().for_each(|&part| counts[part as usize] += 1);
-    let mut is_cap: Vec<bool> = counts.iter().map(|&n| n >= LEAST).collect();
+    let mut is_cap: Vec<bool> = counts.iter().map(|&n| n >= MIN_TRIANGLES).collect();
     for (t, next) in behind.iter().enumerate() {
         let part = flats.of[t] as usize;
         let beyond = next.iter().filter(|&&s| s != NONE && flats.of[s as usize] != flats.of[t]);

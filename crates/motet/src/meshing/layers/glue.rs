@@ -82,7 +82,7 @@ impl Labelled {
 /// Returns the mesh of core and layers: tets and prisms with their regions, then triangles and quads with
 /// their patches. `mesh` is that of the core, without the tops of layers; `to_mesh` maps vertices of the core
 /// to those of `mesh`.
-pub(super) fn glued(
+pub(super) fn glue(
     mesh: &Mesh,
     to_mesh: &[VertexId],
     surfaces: &Surfaces,

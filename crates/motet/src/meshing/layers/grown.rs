@@ -2,14 +2,14 @@
 
 use super::columns::{Columns, Prism, Site};
 use super::core::Core;
-use super::glue::glued;
+use super::glue::glue;
 use super::neighbors::NONE;
 use super::options::Layers;
 use super::report::Report;
 use super::skin::{Sides, Skin};
-use super::slide::Slide;
+use super::slide::Sliders;
 use super::split::n_tets;
-use super::tangles::{Rims, tangles};
+use super::tangles::{CapRims, tangles};
 use super::thickness::Heights;
 use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
 use crate::delaunay::Constrained;
@@ -18,10 +18,10 @@ use crate::mesh::Mesh;
 use crate::meshing::surfaces::Surfaces;
 
 /// The factor by which columns at fault are made thinner.
-const THINNER: f64 = 0.7;
+const THINNING: f64 = 0.7;
 
 /// How often a column may be at fault before it is removed; a twentieth of its thickness is left by then.
-const PATIENCE: u8 = 8;
+const MAX_BLAMES: u8 = 8;
 
 /// The number of rounds after which all columns at fault are removed at once, with their neighbours.
 const PATIENT_ROUNDS: usize = 40;
@@ -30,24 +30,24 @@ const PATIENT_ROUNDS: usize = 40;
 const ROUNDS: usize = 80;
 
 /// The largest number of prisms.
-const MOST_PRISMS: usize = 200_000_000;
+const MAX_PRISMS: usize = 200_000_000;
 
 /// Layers fitted to surfaces.
-pub(crate) struct Grown<'a> {
+pub(crate) struct GrownLayers<'a> {
     surfaces: &'a Surfaces,
     sides: Vec<Sides>,
     skin: Skin,
     /// The neighbors of each vertex along walls.
     around: Csr<VertexId>,
-    slide: Slide,
-    rims: Rims,
+    slide: Sliders,
+    rims: CapRims,
     heights: Heights,
     blames: Vec<u8>,
     rounds: usize,
     core: Core,
 }
 
-impl<'a> Grown<'a> {
+impl<'a> GrownLayers<'a> {
     /// Grows layers as far as there is space; `sides` are the bodies on the two sides of each triangle.
     ///
     /// # Errors
@@ -63,7 +63,7 @@ impl<'a> Grown<'a> {
         check_count(&skin)?;
         let around = around(&skin);
         let heights = Heights::find(&skin, &around, threads);
-        let (slide, rims) = (Slide::new(&skin), Rims::new(&skin));
+        let (slide, rims) = (Sliders::new(&skin), CapRims::new(&skin));
         let core = build(surfaces, &sides, &skin, &heights, &slide);
         let blames = vec![0; skin.points.len()];
         let mut grown = Self { surfaces, sides, skin, around, slide, rims, heights, blames, rounds: 0, core };
@@ -93,8 +93,8 @@ impl<'a> Grown<'a> {
         for v in blamed {
             let w = v.index();
             self.blames[w] = self.blames[w].saturating_add(1);
-            let goes = self.blames[w] > PATIENCE || self.rounds > PATIENT_ROUNDS;
-            self.heights.heights[w] *= if goes { 0.0 } else { THINNER };
+            let is_removed = self.blames[w] > MAX_BLAMES || self.rounds > PATIENT_ROUNDS;
+            self.heights.heights[w] *= if is_removed { 0.0 } else { THINNING };
         }
         if self.rounds > PATIENT_ROUNDS {
             let beside = blamed.iter().flat_map(|v| self.around.list(v.index()));
@@ -119,11 +119,11 @@ impl<'a> Grown<'a> {
         fill: impl Fn(&Surfaces, &[u32]) -> Result<(Constrained, T)>,
     ) -> Result<(Constrained, T)> {
         loop {
-            let (mut filled, told) = fill(&self.core.surfaces, &self.core.to_triangle)?;
+            let (mut filled, extra) = fill(&self.core.surfaces, &self.core.to_triangle)?;
             let blamed = self.in_pieces(&filled);
             if blamed.is_empty() {
                 self.rename(&mut filled)?;
-                return Ok((filled, told));
+                return Ok((filled, extra));
             }
             self.give_way(&blamed);
             self.settle(threads)?;
@@ -179,7 +179,7 @@ impl<'a> Grown<'a> {
     /// Joins the mesh of the core and the layers, as prisms; `to_mesh` maps vertices of the core to those of
     /// its mesh.
     pub(crate) fn glue(&self, mesh: &Mesh, to_mesh: &[VertexId]) -> Mesh {
-        glued(mesh, to_mesh, self.surfaces, &self.skin, &self.columns(), &self.core)
+        glue(mesh, to_mesh, self.surfaces, &self.skin, &self.columns(), &self.core)
     }
 
     /// The number of triangles of the surfaces.
@@ -214,7 +214,7 @@ impl<'a> Grown<'a> {
     }
 }
 
-fn build(surfaces: &Surfaces, sides: &[Sides], skin: &Skin, heights: &Heights, slide: &Slide) -> Core {
+fn build(surfaces: &Surfaces, sides: &[Sides], skin: &Skin, heights: &Heights, slide: &Sliders) -> Core {
     let motions: Vec<Point> = slide.motions(skin, heights);
     Core::new(surfaces, sides, skin, &Columns::new(skin, heights), &motions)
 }
@@ -234,10 +234,10 @@ fn check_count(skin: &Skin) -> Result<()> {
     match n {
         0 => Err(Error::options("there is no triangle to grow layers on")
             .remedy("name a patch that bounds a body")),
-        n if n > MOST_PRISMS => Err(Error::options(format!(
-            "the layers would have {n} prisms; at most {MOST_PRISMS} are allowed"
-        ))
-        .remedy("request fewer layers")),
+        n if n > MAX_PRISMS => {
+            Err(Error::options(format!("the layers would have {n} prisms; at most {MAX_PRISMS} are allowed"))
+                .remedy("request fewer layers"))
+        }
         _ => Ok(()),
     }
 }

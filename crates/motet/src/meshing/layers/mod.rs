@@ -28,7 +28,7 @@ mod split;
 mod tangles;
 mod thickness;
 
-pub(super) use grown::Grown;
+pub(super) use grown::GrownLayers;
 pub use options::{Layers, MOST_LAYERS, Stack};
 pub use report::Report;
 pub(super) use split::split;

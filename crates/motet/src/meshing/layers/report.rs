@@ -44,9 +44,10 @@ impl Report {
     pub(super) fn new(skin: &Skin, columns: &Columns, heights: &Heights, rounds: usize) -> Self {
         let mut report = Self { rounds, least_share: 1.0, ..Self::default() };
         let mut found = Vec::new();
-        for (w, &asked) in heights.asked.iter().enumerate().filter(|(_, asked)| **asked > 0.0) {
+        for (w, &requested) in heights.requested.iter().enumerate().filter(|(_, requested)| **requested > 0.0)
+        {
             let thickness = heights.heights[w];
-            let share = thickness / asked;
+            let share = thickness / requested;
             report.vertices += 1;
             report.full += usize::from(share >= ALL);
             report.without += usize::from(columns.count(VertexId::new(w)) == 0);

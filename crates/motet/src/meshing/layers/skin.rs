@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use super::flats::{Flats, caps, unit};
+use super::flats::{Flats, is_on_cap, unit};
 use super::neighbors::{NONE, neighbors};
 use super::options::{Layers, Stack};
 use crate::base::{Csr, Error, Point, Result, VertexId};
@@ -55,7 +55,7 @@ impl Skin {
     /// When layers are requested on a membrane, or on a patch without triangles.
     pub(super) fn new(surfaces: &Surfaces, layers: &Layers, sides: &[Sides]) -> Result<Self> {
         let stacks: Vec<Stack> = layers.everywhere.iter().chain(layers.by_patch.values()).copied().collect();
-        let chosen = choose(surfaces, layers, sides)?;
+        let chosen = stacks_of_triangles(surfaces, layers, sides)?;
         let mut grows_in = vec![false; sides.iter().flatten().flatten().max().map_or(0, |&b| b as usize + 1)];
         for (t, side) in chosen.iter().enumerate().filter_map(|(t, c)| c.map(|(_, side)| (t, side))) {
             sides[t][side].into_iter().for_each(|body| grows_in[body as usize] = true);
@@ -145,11 +145,15 @@ impl Skin {
 }
 
 /// For each triangle of the surfaces, the stack on it and the side on which it grows.
-fn choose(surfaces: &Surfaces, layers: &Layers, sides: &[Sides]) -> Result<Vec<Option<(u32, usize)>>> {
+fn stacks_of_triangles(
+    surfaces: &Surfaces,
+    layers: &Layers,
+    sides: &[Sides],
+) -> Result<Vec<Option<(u32, usize)>>> {
     let places: BTreeMap<i32, u32> =
         layers.by_patch.keys().copied().zip(u32::from(layers.everywhere.is_some())..).collect();
     let is_cap = match layers.everywhere {
-        Some(_) => caps(&surfaces.points, &surfaces.triangles),
+        Some(_) => is_on_cap(&surfaces.points, &surfaces.triangles),
         None => Vec::new(),
     };
     let mut chosen = vec![None; surfaces.triangles.len()];

@@ -12,7 +12,7 @@ use crate::base::{Point, VertexId};
 use crate::geometry::vector::{add, distance, norm, scale, sub};
 
 /// Iteration ends when nothing changes by more than this fraction of the largest motion.
-const ENOUGH: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-7;
 
 /// The largest number of iterations.
 const ROUNDS: usize = 2000;
@@ -25,9 +25,9 @@ struct Slider {
 }
 
 /// All sliding vertices.
-pub(super) struct Slide(Vec<Slider>);
+pub(super) struct Sliders(Vec<Slider>);
 
-impl Slide {
+impl Sliders {
     pub(super) fn new(skin: &Skin) -> Self {
         let may_slide = |&w: &usize| {
             let vertex = VertexId::new(w);
@@ -56,7 +56,7 @@ impl Slide {
                 change = change.max(norm(sub(new, motions[slider.vertex.index()])));
                 motions[slider.vertex.index()] = new;
             }
-            if change <= ENOUGH * largest {
+            if change <= TOLERANCE * largest {
                 break;
             }
         }

@@ -14,12 +14,12 @@ use crate::geometry::vector::{add, norm, scale, sub};
 use crate::preflight::own_crossings;
 
 /// Which columns are at fault for problems on a flat part.
-pub(super) struct Rims {
+pub(super) struct CapRims {
     /// For each flat part, its vertices with layers.
     of_flat: Csr<VertexId>,
 }
 
-impl Rims {
+impl CapRims {
     pub(super) fn new(skin: &Skin) -> Self {
         let mut all: Vec<(usize, VertexId)> = Vec::new();
         for (t, triangle) in skin.triangles.iter().enumerate().filter(|(t, _)| skin.flats.of[*t] != NONE) {
@@ -50,7 +50,7 @@ pub(super) fn tangles(
     skin: &Skin,
     columns: &Columns,
     core: &Core,
-    rims: &Rims,
+    rims: &CapRims,
     threads: &Threads,
 ) -> Vec<VertexId> {
     let off: Vec<bool> = threads.map(skin.triangles.len(), |t| {

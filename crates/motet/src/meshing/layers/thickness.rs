@@ -47,7 +47,7 @@ pub(super) struct Heights {
     /// For each vertex, the index of its stack in the skin; [`NONE`] where nothing can grow.
     pub(super) stack_of: Vec<u32>,
     /// The requested thickness.
-    pub(super) asked: Vec<f64>,
+    pub(super) requested: Vec<f64>,
     /// The actual thickness, normal to the wall.
     pub(super) heights: Vec<f64>,
     /// The displacement of a vertex per unit of thickness.
@@ -64,7 +64,7 @@ impl Heights {
         };
         let n = skin.points.len();
         let stack_of: Vec<u32> = (0..n).map(thinnest).collect();
-        let asked: Vec<f64> =
+        let requested: Vec<f64> =
             stack_of.iter().map(|&s| if s == NONE { 0.0 } else { full[s as usize] }).collect();
         let lift = |w: usize| match directions.cosines[w] {
             cosine if cosine > 0.0 => scale(directions.ways[w], 1.0 / cosine),
@@ -77,12 +77,18 @@ impl Heights {
             if stretch.is_nan() || stretch <= 0.0 || stack_of[w] == NONE {
                 return 0.0;
             }
-            let ball = room(skin, &tree, VertexId::new(w), directions.ways[w], asked[w] * stretch / OF_BALL);
-            let beside = around.list(w).iter().map(|v| at_edge(skin, &lifts, [VertexId::new(w), *v]));
-            let most = asked[w].min(asked[w] * STRETCH / stretch);
+            let ball = largest_ball(
+                skin,
+                &tree,
+                VertexId::new(w),
+                directions.ways[w],
+                requested[w] * stretch / OF_BALL,
+            );
+            let beside = around.list(w).iter().map(|v| edge_limit(skin, &lifts, [VertexId::new(w), *v]));
+            let most = requested[w].min(requested[w] * STRETCH / stretch);
             beside.fold(most.min(OF_BALL * ball / stretch), f64::min)
         });
-        let mut all = Self { stack_of, asked, heights, lifts };
+        let mut all = Self { stack_of, requested, heights, lifts };
         all.limit_slope(skin, around);
         all
     }
@@ -124,7 +130,7 @@ impl Heights {
 
 /// The radius of the largest ball that touches the skin at a vertex from inside and contains no wall facing
 /// it; at most `radius`.
-fn room(skin: &Skin, tree: &NearestTriangle, vertex: VertexId, way: Point, mut radius: f64) -> f64 {
+fn largest_ball(skin: &Skin, tree: &NearestTriangle, vertex: VertexId, way: Point, mut radius: f64) -> f64 {
     let (from, star) = (skin.points[vertex.index()], skin.stars.list(vertex.index()));
     let body = star.first().map(|&t| skin.bodies[t as usize]);
     let is_facing = |t: u32| {
@@ -146,7 +152,7 @@ fn room(skin: &Skin, tree: &NearestTriangle, vertex: VertexId, way: Point, mut r
 }
 
 /// The largest thickness for which the columns at both ends of an edge do not meet.
-fn at_edge(skin: &Skin, lifts: &[Point], [w, v]: [VertexId; 2]) -> f64 {
+fn edge_limit(skin: &Skin, lifts: &[Point], [w, v]: [VertexId; 2]) -> f64 {
     let edge = sub(skin.points[v.index()], skin.points[w.index()]);
     let closing = dot(sub(lifts[w.index()], lifts[v.index()]), edge);
     if closing > 0.0 { OF_EDGE * dot(edge, edge) / closing } else { f64::INFINITY }

@@ -8,7 +8,7 @@ use crate::mesh::TetMesh;
 use crate::spatial::{Closest, NearestTriangle};
 
 /// The tets for which `is_marked` returns true, in ascending order.
-fn those(
+fn tets_where(
     mesh: &TetMesh,
     threads: &Threads,
     is_marked: impl Fn([Point; 4]) -> bool + Sync + Send,
@@ -20,12 +20,12 @@ fn those(
 /// Tets that come within `radius` of `centre`.
 pub fn in_ball(mesh: &TetMesh, centre: Point, radius: f64, threads: &Threads) -> Vec<TetId> {
     let nearest = |corners| tet::at(corners, tet::closest(corners, centre));
-    those(mesh, threads, |corners| distance(nearest(corners), centre) <= radius)
+    tets_where(mesh, threads, |corners| distance(nearest(corners), centre) <= radius)
 }
 
 /// Tets whose centre lies in a box with sides along the axes, borders included.
 pub fn in_box(mesh: &TetMesh, [low, high]: [Point; 2], threads: &Threads) -> Vec<TetId> {
-    those(mesh, threads, |corners| {
+    tets_where(mesh, threads, |corners| {
         let centre = tet::centroid(corners);
         (0..3).all(|k| low[k] <= centre[k] && centre[k] <= high[k])
     })
@@ -37,7 +37,7 @@ pub fn above_size(
     size: impl Fn(Point) -> f64 + Sync + Send,
     threads: &Threads,
 ) -> Vec<TetId> {
-    those(mesh, threads, |corners| longest_edge(corners) > size(tet::centroid(corners)))
+    tets_where(mesh, threads, |corners| longest_edge(corners) > size(tet::centroid(corners)))
 }
 
 /// Tets whose longest edge is longer than `size` plus `growth` times their distance from a surface: small
@@ -50,7 +50,7 @@ pub fn near_surface(
     growth: f64,
     threads: &Threads,
 ) -> Vec<TetId> {
-    those(mesh, threads, |corners| {
+    tets_where(mesh, threads, |corners| {
         let (longest, centre) = (longest_edge(corners), tet::centroid(corners));
         if longest <= size {
             return false;
@@ -58,7 +58,9 @@ pub fn near_surface(
         // Surface points farther than this from the centre cannot affect the tet.
         let reach =
             if growth > 0.0 { (longest - size) / growth + radius(corners, centre) } else { f64::INFINITY };
-        surface.closest_within(centre, reach).is_some_and(|found| is_above(corners, [size, growth], &found))
+        surface
+            .closest_within(centre, reach)
+            .is_some_and(|found| is_above_size(corners, [size, growth], &found))
     })
 }
 
@@ -69,7 +71,7 @@ fn radius(corners: [Point; 4], centre: Point) -> f64 {
 
 /// Whether the longest edge of one tet exceeds `size` plus `growth` times its distance from a surface;
 /// `found` is the surface point nearest to its centre.
-pub(super) fn is_above(corners: [Point; 4], [size, growth]: [f64; 2], found: &Closest) -> bool {
+pub(super) fn is_above_size(corners: [Point; 4], [size, growth]: [f64; 2], found: &Closest) -> bool {
     let longest = longest_edge(corners);
     let away = found.distance_squared.sqrt();
     // The distance of the tet lies between that of its centre less its radius and that of its centre: this

@@ -23,7 +23,7 @@ const LARGEST_ERROR: f64 = 9.0 / 32.0;
 /// How often the interval of scales is bisected.
 const HALVINGS: usize = 40;
 /// The number of tets is close enough when it is within this fraction below the target.
-const NEAR: f64 = 0.01;
+const COUNT_TOLERANCE: f64 = 0.01;
 
 /// Limits on sizes, whatever they are derived from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,22 +61,24 @@ impl SizeLimits {
 /// `error`, in the units of the field. Infinite where the curvature is 0 or
 /// [unknown](super::hessian::curvatures).
 pub fn for_error(curvatures: &[f64], error: f64) -> Vec<f64> {
-    let size = |bend: &f64| if *bend > 0.0 { (error / (LARGEST_ERROR * bend)).sqrt() } else { f64::INFINITY };
+    let size = |curvature: &f64| {
+        if *curvature > 0.0 { (error / (LARGEST_ERROR * curvature)).sqrt() } else { f64::INFINITY }
+    };
     curvatures.iter().map(size).collect()
 }
 
 /// The exponent by which sizes depend on curvature where the mean square error is to be least for a given
 /// number of tets (Loseille and Alauzet 2011, *Continuous mesh framework part I*; here in space, with all
-/// edges at a place equal): the sum over space of the square of `bend * h^2`, with `h^-3` tets per unit of
-/// volume, is least where `h^7` is proportional to `bend^-2`.
+/// edges at a place equal): the sum over space of the square of `curvature * h^2`, with `h^-3` tets per unit
+/// of volume, is least where `h^7` is proportional to `curvature^-2`.
 const MEAN_SQUARE: f64 = -2.0 / 7.0;
 
 /// Returns, up to a common scale, the sizes at which a field of the given curvature is closest to its linear
-/// interpolant in the mean square for a given number of tets. Fields can be compared if `bends` are relative
-/// to their ranges. Infinite where the curvature is 0 or unknown.
-pub fn for_mean_square(bends: &[f64]) -> Vec<f64> {
-    let size = |bend: &f64| if *bend > 0.0 { bend.powf(MEAN_SQUARE) } else { f64::INFINITY };
-    bends.iter().map(size).collect()
+/// interpolant in the mean square for a given number of tets. Fields can be compared if `curvatures` are
+/// relative to their ranges. Infinite where the curvature is 0 or unknown.
+pub fn for_mean_square(curvatures: &[f64]) -> Vec<f64> {
+    let size = |curvature: &f64| if *curvature > 0.0 { curvature.powf(MEAN_SQUARE) } else { f64::INFINITY };
+    curvatures.iter().map(size).collect()
 }
 
 /// Returns the sizes times a common scale, within limits, chosen such that dividing all tets that are too
@@ -119,7 +121,7 @@ pub fn for_count(
             continue;
         }
         (high, found) = (scale, sizes);
-        if n > (1.0 - NEAR) * target {
+        if n > (1.0 - COUNT_TOLERANCE) * target {
             break;
         }
     }

@@ -52,15 +52,15 @@ impl Wish {
 
 /// The tets to divide, in ascending order.
 pub fn marked(wishes: &[Wish]) -> Vec<TetId> {
-    those(wishes, Wish::is_divided)
+    tets_with(wishes, Wish::is_divided)
 }
 
 /// The tets whose division may be taken back, in ascending order.
 pub fn coarser(wishes: &[Wish]) -> Vec<TetId> {
-    those(wishes, |wish| wish == Wish::Coarser)
+    tets_with(wishes, |wish| wish == Wish::Coarser)
 }
 
-fn those(wishes: &[Wish], is_one: impl Fn(Wish) -> bool) -> Vec<TetId> {
+fn tets_with(wishes: &[Wish], is_one: impl Fn(Wish) -> bool) -> Vec<TetId> {
     (0..wishes.len()).filter(|&t| is_one(wishes[t])).map(TetId::new).collect()
 }
 

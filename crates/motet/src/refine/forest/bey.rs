@@ -21,11 +21,13 @@ const CHILDREN: [[[usize; 2]; 4]; 4] = [
 /// image has the reversed order of its original, which gives the same way.
 pub(super) fn way(forest: &Forest, class: u32) -> usize {
     let steps = forest.steps_to_class(class);
-    along(steps.into_iter().fold([0, 1, 2, 3], |order, (way, inner)| below(order, inner_part(way, inner))))
+    way_along(
+        steps.into_iter().fold([0, 1, 2, 3], |order, (way, inner)| below(order, inner_part(way, inner))),
+    )
 }
 
 /// The way along the diagonal between the middles of edges 0-2 and 1-3.
-fn along(order: [usize; 4]) -> usize {
+fn way_along(order: [usize; 4]) -> usize {
     let diagonal = [local(order, [0, 2]), local(order, [1, 3])];
     (0..3).find(|&way| ends(way) == diagonal || ends(way) == [diagonal[1], diagonal[0]]).unwrap_or(0)
 }

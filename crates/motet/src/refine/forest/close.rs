@@ -18,17 +18,17 @@ const OF_MEDIAN: f64 = 0.55;
 
 /// The shapes that closing may leave.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::refine) struct Need {
+pub(in crate::refine) struct ShapeBounds {
     /// No part may be below this EAS, a fraction of the worst of the roots.
     floor: f64,
     /// The cap on the floor where it applies to pieces of a cut tet.
-    most_of_pieces: f64,
+    max_floor_of_pieces: f64,
     /// No piece may be below this fraction of what dividing the tet leaves.
     share: f64,
     pub(in crate::refine) rule: Rule,
 }
 
-impl Need {
+impl ShapeBounds {
     /// The floor for pieces is capped by the median root: in a lattice all tets are as bad as the worst, no
     /// piece is as good as the whole, and everything would be divided.
     pub(in crate::refine) fn new(options: Options, forest: &Forest) -> Self {
@@ -37,7 +37,7 @@ impl Need {
         let (worst, median) = (shapes.first().unwrap_or(&0.0), shapes.get(shapes.len() / 2).unwrap_or(&0.0));
         Self {
             floor: options.keep * worst,
-            most_of_pieces: OF_MEDIAN * median,
+            max_floor_of_pieces: OF_MEDIAN * median,
             share: options.share,
             rule: options.rule,
         }
@@ -55,7 +55,7 @@ impl Need {
     /// Where dividing would leave bad parts as well, it is no alternative.
     fn of(self, root_eas: f64, divided: f64) -> f64 {
         let floor = if divided >= BAD_EAS { self.floor(root_eas) } else { self.floor };
-        floor.min(self.most_of_pieces).max(self.share * divided)
+        floor.min(self.max_floor_of_pieces).max(self.share * divided)
     }
 }
 
@@ -108,12 +108,16 @@ pub(in crate::refine) struct Closed {
 ///
 /// # Errors
 /// When the forest would have more tets than allowed.
-pub(in crate::refine) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Result<Closed> {
-    forest.begin_anew();
+pub(in crate::refine) fn close(
+    forest: &mut Forest,
+    bounds: ShapeBounds,
+    threads: &Threads,
+) -> Result<Closed> {
+    forest.reset();
     for node in 0..forest.nodes.len() as u32 {
-        if forest.states[node as usize].is_asked {
-            forest.check_room()?;
-            divide(forest, node, need);
+        if forest.states[node as usize].is_requested {
+            forest.check_limit()?;
+            divide(forest, node, bounds);
         }
     }
     let mut eights = forest.eights();
@@ -121,13 +125,13 @@ pub(in crate::refine) fn close(forest: &mut Forest, need: Need, threads: &Thread
     let mut verdicts = Vec::new();
     loop {
         closed.n_sweeps += 1;
-        verdicts = sweep(forest, &eights, &verdicts, need, threads);
+        verdicts = sweep(forest, &eights, &verdicts, bounds, threads);
         let mut is_done = true;
         for &Verdict { node, mask, goal, .. } in &verdicts {
             if goal.mask == FULL {
                 closed.n_promoted += 1;
-                forest.check_room()?;
-                eights.push(divide(forest, node, need));
+                forest.check_limit()?;
+                eights.push(divide(forest, node, bounds));
             } else if goal.mask != mask {
                 let edges = forest.edges_of[node as usize];
                 for (_, edge) in edges.into_iter().enumerate().filter(|(e, _)| goal.mask >> e & 1 == 1) {
@@ -153,13 +157,13 @@ fn sweep(
     forest: &mut Forest,
     eights: &[u32],
     before: &[Verdict],
-    need: Need,
+    bounds: ShapeBounds,
     threads: &Threads,
 ) -> Vec<Verdict> {
     let shared: &Forest = forest;
     let n_roots = shared.n_roots;
     let said = threads.in_runs(n_roots + eights.len(), RUN, |(): &mut (), run| {
-        let mut finder = Finder::new(shared, need);
+        let mut finder = Finder::new(shared, bounds);
         let mut verdicts = Vec::new();
         let mut before = &before[before.partition_point(|verdict| (verdict.place as usize) < run.start)..];
         for place in run {
@@ -180,7 +184,7 @@ fn sweep(
                 }
                 let known = before.first().filter(|verdict| (verdict.node, verdict.mask) == (node, mask));
                 let goal = match known {
-                    _ if shared.is_to_be_divided(node, mask) => Goal::FULL,
+                    _ if shared.must_be_divided(node, mask) => Goal::FULL,
                     Some(verdict) => verdict.goal,
                     None => goal(&mut finder, node, mask),
                 };
@@ -197,8 +201,8 @@ fn sweep(
     verdicts
 }
 
-fn divide(forest: &mut Forest, node: u32, need: Need) -> u32 {
-    let way = forest.decide(forest.nodes[node as usize].shape.class(), need);
+fn divide(forest: &mut Forest, node: u32, bounds: ShapeBounds) -> u32 {
+    let way = forest.decide(forest.nodes[node as usize].shape.class(), bounds);
     let first = forest.divide(node, way);
     for edge in forest.edges_of[node as usize] {
         forest.is_split[edge as usize] = true;
@@ -210,17 +214,17 @@ fn divide(forest: &mut Forest, node: u32, need: Need) -> u32 {
 /// would leave: compared with the whole, a tet with bad inner parts could never be cut well enough, and in a
 /// mesh of such tets division would spread without end.
 fn goal(finder: &mut Finder, leaf: u32, mask: u8) -> Goal {
-    let Finder { forest, need, .. } = *finder;
+    let Finder { forest, bounds, .. } = *finder;
     let class = forest.nodes[leaf as usize].shape.class();
     let (cuts, fill) = finder.cut(leaf, mask);
     let as_it_is = Goal { mask, cuts, way: fill.way };
     // What is good enough compared with the whole is also good enough compared with its parts.
     let whole = &forest.classes[class as usize];
-    if fill.worst >= need.of(whole.root_eas, whole.eas) {
+    if fill.worst >= bounds.of(whole.root_eas, whole.eas) {
         return as_it_is;
     }
     let divided = finder.divided(class);
-    let least = need.of(whole.root_eas, divided);
+    let least = bounds.of(whole.root_eas, divided);
     if fill.worst >= least {
         return as_it_is;
     }
@@ -238,16 +242,16 @@ fn goal(finder: &mut Finder, leaf: u32, mask: u8) -> Goal {
 
 impl Forest {
     /// Rejects growth beyond the limit.
-    fn check_room(&self) -> Result<()> {
-        if self.nodes.len() < self.most_nodes {
+    fn check_limit(&self) -> Result<()> {
+        if self.nodes.len() < self.max_nodes {
             return Ok(());
         }
-        Err(Error::options(format!("more than {} tets would be divided or created", self.most_nodes))
+        Err(Error::options(format!("more than {} tets would be divided or created", self.max_nodes))
             .remedy("mark fewer tets, or limit the generation"))
     }
 
     /// Resets the state: nothing is divided, and no edge is split except the pinned ones.
-    fn begin_anew(&mut self) {
+    fn reset(&mut self) {
         self.is_split.fill(false);
         for &edge in &self.pinned {
             self.is_split[edge as usize] = true;
@@ -255,7 +259,7 @@ impl Forest {
         let mut n_new = 0;
         for (state, node) in self.states.iter_mut().zip(&self.nodes) {
             (state.is_divided, state.is_cut) = (false, false);
-            n_new += usize::from(state.is_asked && node.first_child == NONE);
+            n_new += usize::from(state.is_requested && node.first_child == NONE);
         }
         self.nodes.reserve(8 * n_new);
         self.states.reserve(8 * n_new);
@@ -290,7 +294,7 @@ impl Forest {
 
     /// Whether a tet must be divided: all its edges are split, or one is split that exists only when it is
     /// divided, namely half of a split edge, or an edge between the middles of two edges of a facet.
-    fn is_to_be_divided(&self, leaf: u32, mask: u8) -> bool {
+    fn must_be_divided(&self, leaf: u32, mask: u8) -> bool {
         if mask == FULL {
             return true;
         }

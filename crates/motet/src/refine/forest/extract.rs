@@ -112,7 +112,7 @@ fn n_tets(forest: &Forest, cuts: &[Cut]) -> usize {
 }
 
 /// A number that means: none yet, but the vertex was in the mesh before.
-const WAS_THERE: u32 = NONE - 1;
+const OLD: u32 = NONE - 1;
 
 /// The numbers of vertices: those of the first mesh unchanged, then the others in the order in which tets use
 /// them.
@@ -128,7 +128,7 @@ impl<'a> Numbers<'a> {
     fn new(forest: &'a Forest, known: &'a [Point], before: &[u32]) -> Self {
         let (n, n_first) = (forest.reference.len(), forest.n_first_vertices);
         let mut number = vec![NONE; n];
-        before.iter().for_each(|&v| number[v as usize] = WAS_THERE);
+        before.iter().for_each(|&v| number[v as usize] = OLD);
         number.iter_mut().zip(0..n_first as u32).for_each(|(number, v)| *number = v);
         let (mut vertices, mut points) = (Vec::with_capacity(n), Vec::with_capacity(n));
         vertices.extend(0..n_first as u32);
@@ -139,7 +139,7 @@ impl<'a> Numbers<'a> {
     #[inline]
     fn of(&mut self, v: u32) -> VertexId {
         let number = self.number[v as usize];
-        if number < WAS_THERE { VertexId(number) } else { self.add(v) }
+        if number < OLD { VertexId(number) } else { self.add(v) }
     }
 
     fn add(&mut self, v: u32) -> VertexId {
@@ -173,7 +173,7 @@ impl<'a> Numbers<'a> {
                 let [p, q] = self.forest.edges[origin as usize].ends;
                 scale(add(self.place(p), self.place(q)), 0.5)
             }
-            WAS_THERE => self.known[i],
+            OLD => self.known[i],
             number => self.points[number as usize],
         }
     }

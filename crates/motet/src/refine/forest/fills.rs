@@ -6,7 +6,7 @@ use hashbrown::HashMap;
 
 use super::bey;
 use super::classes::{Class, corners_at, inner_part};
-use super::close::Need;
+use super::close::ShapeBounds;
 use super::eight::ends;
 use super::patterns::patterns;
 use super::{Forest, with_middles};
@@ -49,13 +49,13 @@ impl Fills {
 /// Computes what is not known yet.
 pub(super) struct Finder<'a> {
     pub(super) forest: &'a Forest,
-    pub(super) need: Need,
+    pub(super) bounds: ShapeBounds,
     found: Fills,
 }
 
 impl<'a> Finder<'a> {
-    pub(super) fn new(forest: &'a Forest, need: Need) -> Self {
-        Self { forest, need, found: Fills::default() }
+    pub(super) fn new(forest: &'a Forest, bounds: ShapeBounds) -> Self {
+        Self { forest, bounds, found: Fills::default() }
     }
 
     /// Returns what was computed.
@@ -82,30 +82,30 @@ impl<'a> Finder<'a> {
             return whole.min(first.eas).min(second.eas);
         }
         let known = forest.fills.divisions.get(&class);
-        let find = || best_division(forest, class, self.need);
+        let find = || best_division(forest, class, self.bounds);
         known.unwrap_or_else(|| self.found.divisions.entry(class).or_insert_with(find)).worst(whole)
     }
 }
 
 impl Forest {
     /// Decides which way tets of a class are divided.
-    pub(super) fn decide(&mut self, class: u32, need: Need) -> usize {
+    pub(super) fn decide(&mut self, class: u32, bounds: ShapeBounds) -> usize {
         if let Some(way) = self.classes[class as usize].best {
             return usize::from(way);
         }
-        let way = self.fills.divisions.remove(&class).unwrap_or_else(|| best_division(self, class, need));
+        let way = self.fills.divisions.remove(&class).unwrap_or_else(|| best_division(self, class, bounds));
         self.classes[class as usize].best = Some(way.place as u8);
         self.add_classes(class, way.place, way.inner);
         way.place
     }
 }
 
-fn best_division(forest: &Forest, class: u32, need: Need) -> Way {
+fn best_division(forest: &Forest, class: u32, bounds: ShapeBounds) -> Way {
     let places = with_middles(forest.corners_of_class(class));
-    match need.rule {
+    match bounds.rule {
         Rule::Shortest => {
             let Class { eas, root_eas, .. } = forest.classes[class as usize];
-            best_way(&places, eas, need.floor(root_eas))
+            best_way(&places, eas, bounds.floor(root_eas))
         }
         Rule::Bey => Way::new(&places, bey::way(forest, class)),
     }

@@ -25,7 +25,7 @@ mod facets;
 mod fills;
 mod patterns;
 
-pub(super) use close::{Closed, Need, close};
+pub(super) use close::{Closed, ShapeBounds, close};
 pub(super) use eight::{IMAGES, eight};
 pub(super) use extract::{Extracted, extract};
 pub(super) use patterns::{FACET_EDGES, patterns};
@@ -44,11 +44,11 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// The largest depth of division: what a path of 64 bits can hold, and far beyond the resolution of
 /// coordinates.
-pub(super) const DEEPEST: u8 = 20;
+pub(super) const MAX_GENERATION: u8 = 20;
 
 /// The largest number of tets of a forest: edges, about a fifth more, still have ids, and ids of classes one
 /// bit to spare.
-pub(super) const MOST_NODES: usize = 2_000_000_000;
+pub(super) const MAX_NODES: usize = 2_000_000_000;
 
 /// An edge of tets of some generation.
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +75,7 @@ pub(super) struct Node {
 pub(super) struct State {
     pub(super) generation: u8,
     /// Whether its division is requested.
-    pub(super) is_asked: bool,
+    pub(super) is_requested: bool,
     /// Whether it is currently divided into eight.
     pub(super) is_divided: bool,
     /// Whether it is currently cut to fit its neighbours.
@@ -99,13 +99,13 @@ pub(super) struct Forest {
     pub(super) n_roots: usize,
     pub(super) n_first_vertices: usize,
     /// No tet is divided once there are this many.
-    pub(super) most_nodes: usize,
+    pub(super) max_nodes: usize,
     /// Edges that stay split because a root has a vertex in their middle.
     pub(super) pinned: Vec<u32>,
     /// The edges of roots, by their ends.
-    of_roots: HashMap<[u32; 2], u32>,
+    root_edges: HashMap<[u32; 2], u32>,
     /// The three edges between the middles of a facet's edges; see [`Self::inner_edges`].
-    of_facets: Facets,
+    facet_edges: Facets,
     /// The classes of shapes: first those of the roots.
     pub(super) classes: Vec<Class>,
     fills: Fills,
@@ -120,7 +120,7 @@ impl Forest {
             reference: points.to_vec(),
             n_roots,
             n_first_vertices: points.len(),
-            most_nodes: MOST_NODES,
+            max_nodes: MAX_NODES,
             nodes: Vec::with_capacity(n_roots),
             states: Vec::with_capacity(n_roots),
             edges_of: Vec::with_capacity(n_roots),
@@ -140,20 +140,20 @@ impl Forest {
 
     /// The edge between two vertices of the first mesh.
     pub(super) fn root_edge(&self, [u, v]: [u32; 2]) -> Option<u32> {
-        self.of_roots.get(&[u.min(v), u.max(v)]).copied()
+        self.root_edges.get(&[u.min(v), u.max(v)]).copied()
     }
 
     /// The edge between two vertices of the first mesh; a new one if there is none.
     fn make_root_edge(&mut self, [u, v]: [u32; 2]) -> u32 {
         let ends = [u.min(v), u.max(v)];
-        *self.of_roots.entry(ends).or_insert_with(|| push_edge(&mut self.edges, &mut self.is_split, ends))
+        *self.root_edges.entry(ends).or_insert_with(|| push_edge(&mut self.edges, &mut self.is_split, ends))
     }
 
     /// The edges within a facet between the middles of its edges, if it was ever divided, by tets here or by
     /// roots: edge `k` is opposite middle `k`, or [`NONE`].
     pub(super) fn inner_edges(&self, middles: [u32; 3]) -> Option<[u32; 3]> {
         let middles = Middles::new(middles);
-        let first = self.of_facets.get(&middles);
+        let first = self.facet_edges.get(&middles);
         if first.is_none() && middles.rising.iter().any(|v| (*v as usize) >= self.n_first_vertices) {
             return None;
         }
@@ -165,12 +165,12 @@ impl Forest {
     #[inline]
     pub(super) fn make_inner_edges(&mut self, middles: [u32; 3]) -> [u32; 3] {
         let middles = Middles::new(middles);
-        let first = self.of_facets.get(&middles).unwrap_or_else(|| {
+        let first = self.facet_edges.get(&middles).unwrap_or_else(|| {
             let [x, y, z] = middles.rising;
             let first = push_edge(&mut self.edges, &mut self.is_split, [y, z]);
             push_edge(&mut self.edges, &mut self.is_split, [x, z]);
             push_edge(&mut self.edges, &mut self.is_split, [x, y]);
-            self.of_facets.add(&middles, first);
+            self.facet_edges.add(&middles, first);
             first
         });
         self.or_root_edges(&middles, middles.named(first))
@@ -301,7 +301,7 @@ impl Forest {
     /// The size in bytes.
     pub(super) fn memory(&self) -> usize {
         // An entry of a hash map takes one byte more.
-        let named = self.of_roots.capacity() * (size_of::<(u64, u32)>() + 1) + self.fills.memory();
+        let named = self.root_edges.capacity() * (size_of::<(u64, u32)>() + 1) + self.fills.memory();
         size_of_val(&self.reference[..])
             + size_of_val(&self.origin[..])
             + size_of_val(&self.edges[..])
@@ -310,7 +310,7 @@ impl Forest {
             + size_of_val(&self.states[..])
             + size_of_val(&self.edges_of[..])
             + size_of_val(&self.classes[..])
-            + self.of_facets.memory()
+            + self.facet_edges.memory()
             + named
     }
 }

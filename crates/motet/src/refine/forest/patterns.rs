@@ -109,7 +109,7 @@ fn surface(mask: u8, cuts: u8) -> Vec<[u8; 3]> {
             let middle = |edge: usize| (mask >> edge & 1 == 1).then_some(4 + edge as u8);
             cut(corners, FACET_EDGES[facet].map(middle), cuts >> facet & 1 == 1)
         })
-        .map(named)
+        .map(canonical)
         .collect()
 }
 
@@ -149,16 +149,16 @@ impl Search {
             if !self.is_there[usize::from(v)] || volume <= 0 || volume > left {
                 continue;
             }
-            let facets = FACETS.map(|facet| named(facet.map(|i| tet[i])));
+            let facets = FACETS.map(|facet| canonical(facet.map(|i| tet[i])));
             // A facet on the surface must be a part of it. Without this check the search takes thirteen times
             // as long.
             let fits = |seen: &[u8; 3]| {
-                open.contains(seen) || !on_surface(*seen) && !open.contains(&from_beyond(*seen))
+                open.contains(seen) || !on_surface(*seen) && !open.contains(&from_other_side(*seen))
             };
             if facets.iter().all(fits) {
                 let mut rest: Vec<[u8; 3]> =
                     open.iter().filter(|other| !facets.contains(other)).copied().collect();
-                rest.extend(facets.into_iter().filter(|seen| !open.contains(seen)).map(from_beyond));
+                rest.extend(facets.into_iter().filter(|seen| !open.contains(seen)).map(from_other_side));
                 self.tets.push(tet);
                 self.fill(rest, left - volume);
                 self.tets.pop();
@@ -168,7 +168,7 @@ impl Search {
 }
 
 /// Rotates a triangle so that it begins with its least vertex: its unique name from that side.
-fn named([a, b, c]: [u8; 3]) -> [u8; 3] {
+fn canonical([a, b, c]: [u8; 3]) -> [u8; 3] {
     match a.min(b).min(c) {
         least if least == a => [a, b, c],
         least if least == b => [b, c, a],
@@ -177,7 +177,7 @@ fn named([a, b, c]: [u8; 3]) -> [u8; 3] {
 }
 
 /// The name of a triangle from the other side.
-fn from_beyond([a, b, c]: [u8; 3]) -> [u8; 3] {
+fn from_other_side([a, b, c]: [u8; 3]) -> [u8; 3] {
     [a, c, b]
 }
 
@@ -240,10 +240,12 @@ mod tests {
             for cuts in 0..16u8 {
                 for pattern in patterns(mask, cuts) {
                     assert_eq!(pattern.iter().map(|t| volume(*t)).sum::<i32>(), 64);
-                    let mut facets: Vec<_> =
-                        pattern.iter().flat_map(|t| FACETS.map(|facet| named(facet.map(|i| t[i])))).collect();
+                    let mut facets: Vec<_> = pattern
+                        .iter()
+                        .flat_map(|t| FACETS.map(|facet| canonical(facet.map(|i| t[i]))))
+                        .collect();
                     let all = facets.clone();
-                    facets.retain(|f| !all.contains(&from_beyond(*f)));
+                    facets.retain(|f| !all.contains(&from_other_side(*f)));
                     let expected = surface(mask, cuts);
                     assert_eq!(facets.len(), expected.len());
                     assert!(facets.iter().all(|f| expected.contains(f)));

@@ -19,7 +19,7 @@ pub(super) struct Gathered {
 }
 
 /// No edge is halved more often than this.
-const MOST_HALVINGS: usize = 32;
+const MAX_HALVINGS: usize = 32;
 
 /// Returns the lines before division, in the order of their first parts.
 ///
@@ -38,7 +38,7 @@ pub(super) fn gather(mesh: &TetMesh, trees: &Trees) -> Result<Gathered> {
     for (line, (&part, &label)) in mesh.lines.iter().zip(&mesh.line_labels).enumerate() {
         let seen = n_seen.entry((sorted(part), label)).or_default();
         let copy = std::mem::replace(seen, *seen + 1);
-        let (whole, n_halvings) = climb(part, &whole_of)
+        let (whole, n_halvings) = undivided_edge(part, &whole_of)
             .ok_or_else(|| unfit(&format!("line {line} lies in an edge that was divided too often")))?;
         let next = gathered.lines.len() as u32;
         let number = *numbers.entry((sorted(whole), label, copy)).or_insert(next);
@@ -48,9 +48,9 @@ pub(super) fn gather(mesh: &TetMesh, trees: &Trees) -> Result<Gathered> {
             shares.push(0);
         }
         gathered.part_of.push(number);
-        shares[number as usize] += 1 << (MOST_HALVINGS - n_halvings);
+        shares[number as usize] += 1 << (MAX_HALVINGS - n_halvings);
     }
-    match shares.iter().position(|&share| share != 1 << MOST_HALVINGS) {
+    match shares.iter().position(|&share| share != 1 << MAX_HALVINGS) {
         None => Ok(gathered),
         Some(_) => Err(unfit("only some parts of a divided edge are lines")),
     }
@@ -60,12 +60,12 @@ fn sorted([a, b]: [VertexId; 2]) -> [VertexId; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// For each half of an edge of a whole knot, that edge; both with the lower vertex first.
+/// For each half of an edge of a whole node, that edge; both with the lower vertex first.
 fn whole_edges(trees: &Trees) -> HashMap<[VertexId; 2], [VertexId; 2]> {
     let mut whole_of = HashMap::new();
-    for knot in trees.knots.iter().filter(|knot| knot.is_whole) {
+    for node in trees.nodes.iter().filter(|node| node.is_whole) {
         for (e, [i, j]) in EDGES.into_iter().enumerate() {
-            let ([a, b], middle) = ([knot.vertices[i], knot.vertices[j]], knot.vertices[4 + e]);
+            let ([a, b], middle) = ([node.vertices[i], node.vertices[j]], node.vertices[4 + e]);
             if middle != VertexId::NONE {
                 whole_of.extend([a, b].map(|end| (sorted([end, middle]), sorted([a, b]))));
             }
@@ -76,11 +76,11 @@ fn whole_edges(trees: &Trees) -> HashMap<[VertexId; 2], [VertexId; 2]> {
 
 /// Returns the undivided edge that a part lies in, in the direction of the part, and how often it was halved
 /// to give the part.
-fn climb(
+fn undivided_edge(
     mut part: [VertexId; 2],
     whole_of: &HashMap<[VertexId; 2], [VertexId; 2]>,
 ) -> Option<([VertexId; 2], usize)> {
-    for n in 0..=MOST_HALVINGS {
+    for n in 0..=MAX_HALVINGS {
         let Some(&[a, b]) = whole_of.get(&sorted(part)) else { return Some((part, n)) };
         let runs_up = part[0] == a || part[1] == b;
         part = if runs_up { [a, b] } else { [b, a] };

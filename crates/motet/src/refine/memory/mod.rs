@@ -3,7 +3,7 @@
 //!
 //! | step | file | what it does |
 //! |---|---|---|
-//! | tell | `tell` | records for each tet its place in its tet of the first mesh, and the roles of its vertices there |
+//! | record | `record` | stores for each tet its place in its tet of the first mesh and its vertices' roles there |
 //! | gather | `trees` | merges tets of one origin where all of them are still there |
 //! | dissolve | `dissolve` | what others have changed, and what no longer fits it, starts anew |
 //! | triangles, lines | `triangles`, `lines` | triangles of patches and lines are merged as the tets are |
@@ -16,7 +16,7 @@
 mod dissolve;
 mod lines;
 mod recall;
-mod tell;
+mod record;
 mod trees;
 mod triangles;
 
@@ -40,7 +40,7 @@ pub struct Memory {
     /// first in the lowest bits: 0 to 3 for a corner, 4 to 9 for the middle of an edge.
     pub pieces: Vec<u16>,
     /// For each tet, how many of the divisions on that path, from the first on, were requested.
-    pub asked: Vec<u8>,
+    pub n_requested: Vec<u8>,
     /// For each triangle, which corner its first vertex is in the tet of the first mesh of which it is a
     /// facet.
     pub corners: Vec<u8>,
@@ -61,7 +61,7 @@ impl Memory {
             roots: of_tets().map(|old| old.map_or(UNKNOWN, |t| self.roots[t])).collect(),
             paths: of_tets().map(|old| old.map_or(0, |t| self.paths[t])).collect(),
             pieces: of_tets().map(|old| old.map_or(0, |t| self.pieces[t])).collect(),
-            asked: of_tets().map(|old| old.map_or(0, |t| self.asked[t])).collect(),
+            n_requested: of_tets().map(|old| old.map_or(0, |t| self.n_requested[t])).collect(),
             corners: change.triangle_to_old.iter().map(|&t| self.corners[t as usize]).collect(),
             reference: change.vertex_to_old.iter().enumerate().map(old_point).collect(),
         }
@@ -70,7 +70,7 @@ impl Memory {
     /// Checks that there is an entry for each tet, triangle and point.
     fn check(&self, mesh: &TetMesh) -> Result<()> {
         let n = mesh.tets.len();
-        let lengths = [self.roots.len(), self.paths.len(), self.pieces.len(), self.asked.len()];
+        let lengths = [self.roots.len(), self.paths.len(), self.pieces.len(), self.n_requested.len()];
         let fits = lengths.into_iter().all(|length| length == n)
             && self.corners.len() == mesh.triangles.len()
             && self.reference.len() == mesh.points.len();

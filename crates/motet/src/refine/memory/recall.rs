@@ -2,7 +2,7 @@
 
 use super::super::forest::{Extracted, extract};
 use super::super::forest::{Forest, NONE};
-use super::super::forest::{Need, close};
+use super::super::forest::{ShapeBounds, close};
 use super::super::handle::{Options, Refinement, Summary, check_roots};
 use super::trees::Trees;
 use super::triangles::Gathered;
@@ -23,7 +23,7 @@ impl Refinement {
         mesh.validate()?;
         memory.check(mesh)?;
         let mut trees = Trees::gather(mesh, memory);
-        let is_changed = trees.knot_of.contains(&NONE);
+        let is_changed = trees.node_of.contains(&NONE);
         let reference = if is_changed { &mesh.points } else { &memory.reference };
         if is_changed {
             let shape = |t: usize| eas(mesh.tets[t].map(|v| mesh.points[v.index()])).abs();
@@ -46,8 +46,8 @@ impl Refinement {
 struct Roots {
     /// The first mesh, with the vertex ids of the given mesh.
     first: TetMesh,
-    /// For each root, its knot; [`NONE`] if it is a single tet without one.
-    knots: Vec<u32>,
+    /// For each root, its node in the trees; [`NONE`] if it is a single tet without one.
+    tree_nodes: Vec<u32>,
     /// For each tet, its root.
     root_of: Vec<u32>,
     /// For each triangle of the mesh, its triangle of the first mesh.
@@ -64,36 +64,36 @@ impl Roots {
         (first.triangles, first.patches) = (triangles, patches);
         let gathered = lines::gather(mesh, trees)?;
         (first.lines, first.line_labels) = (gathered.lines, gathered.labels);
-        let mut knots = Vec::new();
+        let mut tree_nodes = Vec::new();
         let mut root_of = Vec::with_capacity(mesh.tets.len());
-        let mut root_of_knot = vec![NONE; trees.knots.len()];
+        let mut root_of_tree_node = vec![NONE; trees.nodes.len()];
         for (t, &tet) in mesh.tets.iter().enumerate() {
             let top = trees.top_of(t);
-            let known = top.map_or(NONE, |top| root_of_knot[top as usize]);
+            let known = top.map_or(NONE, |top| root_of_tree_node[top as usize]);
             if known != NONE {
                 root_of.push(known);
                 continue;
             }
-            let root = knots.len() as u32;
+            let root = tree_nodes.len() as u32;
             root_of.push(root);
-            knots.push(top.unwrap_or(NONE));
+            tree_nodes.push(top.unwrap_or(NONE));
             first.regions.push(mesh.regions[t]);
             first.tets.push(top.map_or(tet, |top| {
-                root_of_knot[top as usize] = root;
-                let knot = &trees.knots[top as usize];
-                let [a, b, c, d]: [VertexId; 4] = std::array::from_fn(|i| knot.vertices[i]);
-                if knot.is_turned { [b, a, c, d] } else { [a, b, c, d] }
+                root_of_tree_node[top as usize] = root;
+                let tree_node = &trees.nodes[top as usize];
+                let [a, b, c, d]: [VertexId; 4] = std::array::from_fn(|i| tree_node.vertices[i]);
+                if tree_node.is_turned { [b, a, c, d] } else { [a, b, c, d] }
             }));
         }
-        let n_dissolved = trees.knots.iter().filter(|knot| !knot.is_whole).count();
-        Ok(Self { first, knots, root_of, triangle_of: part_of, line_of: gathered.part_of, n_dissolved })
+        let n_dissolved = trees.nodes.iter().filter(|tree_node| !tree_node.is_whole).count();
+        Ok(Self { first, tree_nodes, root_of, triangle_of: part_of, line_of: gathered.part_of, n_dissolved })
     }
 
     /// For each vertex of the mesh, whether it exists only because of a division.
     fn middles(&self, mesh: &TetMesh, trees: &Trees) -> Vec<bool> {
         let mut is_middle = vec![false; mesh.points.len()];
-        let whole = trees.knots.iter().filter(|knot| knot.is_whole);
-        let middles = whole.flat_map(|knot| &knot.vertices[4..]).filter(|v| **v != VertexId::NONE);
+        let whole = trees.nodes.iter().filter(|tree_node| tree_node.is_whole);
+        let middles = whole.flat_map(|tree_node| &tree_node.vertices[4..]).filter(|v| **v != VertexId::NONE);
         middles.for_each(|v| is_middle[v.index()] = true);
         let stay = self.first.tets.iter().flatten().chain(&mesh.fixed_vertices);
         let stay = stay.chain(mesh.fixed_edges.iter().flatten()).chain(self.first.lines.iter().flatten());
@@ -116,23 +116,27 @@ impl Roots {
         self.rename(&to_forest);
         self.first.points = firsts.iter().map(|&v| reference[v]).collect();
         check_roots(&self.first, threads)?;
-        let turned = |knot: u32| knot != NONE && trees.knots[knot as usize].is_turned;
-        let roots = self.first.tets.iter().zip(&self.knots).map(|(tet, &knot)| match tet.map(|v| v.0) {
-            [a, b, c, d] if turned(knot) => ([b, a, c, d], true),
-            tet => (tet, false),
-        });
+        let turned = |tree_node: u32| tree_node != NONE && trees.nodes[tree_node as usize].is_turned;
+        let roots =
+            self.first.tets.iter().zip(&self.tree_nodes).map(|(tet, &tree_node)| match tet.map(|v| v.0) {
+                [a, b, c, d] if turned(tree_node) => ([b, a, c, d], true),
+                tet => (tet, false),
+            });
         let forest = Forest::new(&self.first.points, roots);
-        let need = Need::new(options, &forest);
+        let bounds = ShapeBounds::new(options, &forest);
         self.first.points = firsts.iter().map(|&v| mesh.points[v]).collect();
 
-        let mut building = Building { trees, forest, to_forest, node_of: vec![NONE; trees.knots.len()] };
-        for (root, &knot) in (0..).zip(&self.knots).filter(|(_, knot)| **knot != NONE) {
-            building.build(root, knot)?;
+        let mut building =
+            Building { trees, forest, to_forest, forest_node_of: vec![NONE; trees.nodes.len()] };
+        for (root, &tree_node) in (0..).zip(&self.tree_nodes).filter(|(_, tree_node)| **tree_node != NONE) {
+            building.build(root, tree_node)?;
         }
-        let Building { mut forest, to_forest, node_of, .. } = building;
+        let Building { mut forest, to_forest, forest_node_of, .. } = building;
         forest.pin();
-        let nodes = |t: usize| match trees.knot_of[t] {
-            knot if knot != NONE && node_of[knot as usize] != NONE => node_of[knot as usize],
+        let nodes = |t: usize| match trees.node_of[t] {
+            tree_node if tree_node != NONE && forest_node_of[tree_node as usize] != NONE => {
+                forest_node_of[tree_node as usize]
+            }
             _ => self.root_of[t],
         };
         let nodes: Vec<u32> = (0..mesh.tets.len()).map(nodes).collect();
@@ -144,15 +148,16 @@ impl Roots {
         let (triangles, lines) = (self.triangle_of, self.line_of);
         let now = Extracted { mesh: mesh.clone(), vertices: to_forest, nodes, triangles, lines };
         // A memory of another mesh may request arbitrarily many divisions.
-        let most_nodes = std::mem::replace(&mut forest.most_nodes, 100 * forest.nodes.len() + 100_000);
-        let closed = close(&mut forest, need, threads).map_err(|_| unfit("its divisions do not end"))?;
-        forest.most_nodes = most_nodes;
+        let max_nodes = std::mem::replace(&mut forest.max_nodes, 100 * forest.nodes.len() + 100_000);
+        let closed = close(&mut forest, bounds, threads).map_err(|_| unfit("its divisions do not end"))?;
+        forest.max_nodes = max_nodes;
         points.resize(forest.reference.len(), [f64::NAN; 3]);
         let same = extract(&forest, &self.first, &closed.cuts, &points, &now.vertices)?;
         let is_as_given = is_same(&same, &now);
         let summary = Summary { n_tets: mesh.tets.len(), ..Summary::default() };
         let is_moved = mesh.points != reference;
-        let refinement = Refinement { first: self.first, forest, need, points, now, summary, is_moved };
+        let refinement =
+            Refinement { first_mesh: self.first, forest, bounds, points, now, summary, is_moved };
         Ok(Recalled { refinement, is_as_given })
     }
 
@@ -204,22 +209,23 @@ struct Building<'a> {
     forest: Forest,
     /// For each vertex of the mesh, its id in the forest, once it has one.
     to_forest: Vec<u32>,
-    node_of: Vec<u32>,
+    /// For each node of the trees, its tet in the forest; [`NONE`] if it has none yet.
+    forest_node_of: Vec<u32>,
 }
 
 impl Building<'_> {
-    /// Divides a root as its knot is divided.
-    fn build(&mut self, root: u32, knot: u32) -> Result<()> {
-        let mut open = vec![(root, knot)];
-        while let Some((node, knot)) = open.pop() {
-            let of = &self.trees.knots[knot as usize];
-            self.node_of[knot as usize] = node;
+    /// Divides a root as its node in the trees is divided.
+    fn build(&mut self, root: u32, tree_node: u32) -> Result<()> {
+        let mut open = vec![(root, tree_node)];
+        while let Some((node, tree_node)) = open.pop() {
+            let of = &self.trees.nodes[tree_node as usize];
+            self.forest_node_of[tree_node as usize] = node;
             for (e, middle) in of.vertices[4..].iter().enumerate().filter(|(_, v)| **v != VertexId::NONE) {
                 self.set_middle(self.forest.edges_of[node as usize][e], middle.index())?;
             }
             let Some((way, children)) = of.divided else { continue };
             let first = self.forest.divide(node, way);
-            self.forest.states[node as usize].is_asked = u32::from(of.asked) > of.generation;
+            self.forest.states[node as usize].is_requested = u32::from(of.n_requested) > of.generation;
             open.extend((first..first + 8).zip(children));
         }
         Ok(())

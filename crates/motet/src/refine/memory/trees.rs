@@ -10,7 +10,7 @@ use crate::mesh::TetMesh;
 
 /// A node of a tree: a tet of the mesh, several pieces of one, or eight such nodes.
 #[derive(Clone, Debug)]
-pub(super) struct Knot {
+pub(super) struct TreeNode {
     /// The corners, then the middles of split edges; [`Id::NONE`] for edges that are not split.
     pub(super) vertices: [VertexId; 10],
     pub(super) parent: u32,
@@ -22,7 +22,7 @@ pub(super) struct Knot {
     pub(super) tet: u32,
     pub(super) generation: u32,
     /// How many divisions on the path down to it and below were requested.
-    pub(super) asked: u8,
+    pub(super) n_requested: u8,
     /// Whether all tets in it have the opposite orientation.
     pub(super) is_turned: bool,
     pub(super) region: i32,
@@ -30,7 +30,7 @@ pub(super) struct Knot {
     pub(super) is_whole: bool,
 }
 
-impl Default for Knot {
+impl Default for TreeNode {
     fn default() -> Self {
         Self {
             vertices: [VertexId::NONE; 10],
@@ -39,7 +39,7 @@ impl Default for Knot {
             divided: None,
             tet: NONE,
             generation: 0,
-            asked: 0,
+            n_requested: 0,
             is_turned: false,
             region: 0,
             is_whole: true,
@@ -47,12 +47,12 @@ impl Default for Knot {
     }
 }
 
-/// All knots; in each tree, parents come after their children.
+/// All nodes; in each tree, parents come after their children.
 #[derive(Debug, Default)]
 pub(super) struct Trees {
-    pub(super) knots: Vec<Knot>,
-    /// For each tet, the knot that it is or is a piece of; [`NONE`] if unknown.
-    pub(super) knot_of: Vec<u32>,
+    pub(super) nodes: Vec<TreeNode>,
+    /// For each tet, the node that it is or is a piece of; [`NONE`] if unknown.
+    pub(super) node_of: Vec<u32>,
 }
 
 impl Trees {
@@ -64,30 +64,30 @@ impl Trees {
             (memory.roots[t as usize], path << path.leading_zeros() << 1, t)
         };
         order.sort_unstable_by_key(|&t| key(t));
-        let knots = Vec::new();
+        let nodes = Vec::new();
         let mut gathering =
-            Gathering { mesh, memory, trees: Self { knots, knot_of: vec![NONE; mesh.tets.len()] } };
+            Gathering { mesh, memory, trees: Self { nodes, node_of: vec![NONE; mesh.tets.len()] } };
         for tree in order.chunk_by(|&s, &t| memory.roots[s as usize] == memory.roots[t as usize]) {
             gathering.gather(tree, 0);
         }
         gathering.trees
     }
 
-    /// The largest whole knot that a tet lies in.
+    /// The largest whole node that a tet lies in.
     pub(super) fn top_of(&self, tet: usize) -> Option<u32> {
-        let is_whole = |knot: &u32| *knot != NONE && self.knots[*knot as usize].is_whole;
-        let mut top = Some(self.knot_of[tet]).filter(is_whole)?;
-        while let Some(parent) = Some(self.knots[top as usize].parent).filter(is_whole) {
+        let is_whole = |node: &u32| *node != NONE && self.nodes[*node as usize].is_whole;
+        let mut top = Some(self.node_of[tet]).filter(is_whole)?;
+        while let Some(parent) = Some(self.nodes[top as usize].parent).filter(is_whole) {
             top = parent;
         }
         Some(top)
     }
 
-    /// Marks a knot, and all knots that it lies in, as not whole.
-    pub(super) fn dissolve(&mut self, mut knot: u32) {
-        while knot != NONE && self.knots[knot as usize].is_whole {
-            self.knots[knot as usize].is_whole = false;
-            knot = self.knots[knot as usize].parent;
+    /// Marks a node, and all nodes that it lies in, as not whole.
+    pub(super) fn dissolve(&mut self, mut node: u32) {
+        while node != NONE && self.nodes[node as usize].is_whole {
+            self.nodes[node as usize].is_whole = false;
+            node = self.nodes[node as usize].parent;
         }
     }
 }
@@ -99,7 +99,7 @@ struct Gathering<'a> {
 }
 
 impl Gathering<'_> {
-    /// Builds the knot that these tets form; up to `depth` they have the same path.
+    /// Builds the node that these tets form; up to `depth` they have the same path.
     fn gather(&mut self, tets: &[u32], depth: u32) -> Option<u32> {
         let depth_of = |t: u32| generation(self.memory.paths[t as usize]);
         if tets.iter().all(|&t| depth_of(t) == depth) {
@@ -134,30 +134,32 @@ impl Gathering<'_> {
         }
         let is_turned = is_turned(tets, memory, mask)?;
         let first = tets[0] as usize;
-        let (region, asked) = (mesh.regions[first], memory.asked[first]);
-        let is_alike = |&t: &u32| mesh.regions[t as usize] == region && memory.asked[t as usize] == asked;
+        let (region, n_requested) = (mesh.regions[first], memory.n_requested[first]);
+        let is_alike =
+            |&t: &u32| mesh.regions[t as usize] == region && memory.n_requested[t as usize] == n_requested;
         if !tets.iter().all(is_alike) || vertices[..4].contains(&VertexId::NONE) {
             return None;
         }
-        let id = self.trees.knots.len() as u32;
-        tets.iter().for_each(|&t| self.trees.knot_of[t as usize] = id);
+        let id = self.trees.nodes.len() as u32;
+        tets.iter().for_each(|&t| self.trees.node_of[t as usize] = id);
         let tet = tets.iter().copied().min()?;
-        let knot = Knot { vertices, tet, generation, asked, is_turned, region, ..Knot::default() };
-        self.trees.knots.push(knot);
+        let node =
+            TreeNode { vertices, tet, generation, n_requested, is_turned, region, ..TreeNode::default() };
+        self.trees.nodes.push(node);
         Some(id)
     }
 
-    /// Builds the knot that was divided into these eight.
+    /// Builds the node that was divided into these eight.
     fn whole(&mut self, children: [u32; 8], generation: u32) -> Option<u32> {
-        let knots = &mut self.trees.knots;
-        let of = |k: usize| &knots[children[k] as usize];
+        let nodes = &mut self.trees.nodes;
+        let of = |k: usize| &nodes[children[k] as usize];
         let (region, is_turned) = (of(0).region, of(0).is_turned);
-        let asked = (0..8).map(|k| of(k).asked).max()?;
+        let n_requested = (0..8).map(|k| of(k).n_requested).max()?;
         let is_alike = |k: usize| {
-            let knot = of(k);
-            let is_asked = u32::from(knot.asked.min(asked)) > generation;
-            (knot.region, knot.is_turned ^ IMAGES.contains(&k)) == (region, is_turned)
-                && is_asked == (u32::from(asked) > generation)
+            let node = of(k);
+            let is_requested = u32::from(node.n_requested.min(n_requested)) > generation;
+            (node.region, node.is_turned ^ IMAGES.contains(&k)) == (region, is_turned)
+                && is_requested == (u32::from(n_requested) > generation)
         };
         if !(0..8).all(is_alike) {
             return None;
@@ -173,12 +175,21 @@ impl Gathering<'_> {
         });
         let (way, vertices) = fitted?;
         let tet = (0..8).map(|k| of(k).tet).min()?;
-        let id = knots.len() as u32;
+        let id = nodes.len() as u32;
         for (place, child) in children.into_iter().enumerate() {
-            (knots[child as usize].parent, knots[child as usize].place) = (id, place);
+            (nodes[child as usize].parent, nodes[child as usize].place) = (id, place);
         }
         let divided = Some((way, children));
-        knots.push(Knot { vertices, divided, tet, generation, asked, is_turned, region, ..Knot::default() });
+        nodes.push(TreeNode {
+            vertices,
+            divided,
+            tet,
+            generation,
+            n_requested,
+            is_turned,
+            region,
+            ..TreeNode::default()
+        });
         Some(id)
     }
 }

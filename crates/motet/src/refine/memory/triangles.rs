@@ -3,7 +3,7 @@
 use super::super::forest::FACET_EDGES;
 use super::super::forest::NONE;
 use super::super::forest::eight;
-use super::trees::{Knot, Trees};
+use super::trees::{TreeNode, Trees};
 use super::{Memory, unfit};
 use crate::base::{Result, TetId, VertexId, rising};
 use crate::geometry::tet::FACETS;
@@ -73,28 +73,28 @@ fn whole_of(
     tet: TetId,
 ) -> Result<([VertexId; 3], usize)> {
     let Some(top) = trees.top_of(tet.index()) else { return Ok((triangle, 0)) };
-    let mut knot = &trees.knots[trees.knot_of[tet.index()] as usize];
-    let place = |v: &VertexId| knot.vertices.iter().position(|other| other == v).unwrap_or(0);
+    let mut node = &trees.nodes[trees.node_of[tet.index()] as usize];
+    let place = |v: &VertexId| node.vertices.iter().position(|other| other == v).unwrap_or(0);
     let inside = || unfit("a triangle lies inside a divided tet");
     let places = [0, 1, 2].map(|i| place(&triangle[i]));
     let mut facet = facet_of(places).ok_or_else(inside)?;
     // A cut tet has only a part of the facet; a tet divided together with its neighbour has a whole facet, a
     // smaller one.
     let mut n_divided = usize::from(places.iter().any(|k| *k > 3));
-    while knot.parent != NONE && !std::ptr::eq(knot, &trees.knots[top as usize]) {
-        let parent = &trees.knots[knot.parent as usize];
+    while node.parent != NONE && !std::ptr::eq(node, &trees.nodes[top as usize]) {
+        let parent = &trees.nodes[node.parent as usize];
         let Some((way, _)) = parent.divided else { break };
-        let child = eight(way)[knot.place];
+        let child = eight(way)[node.place];
         facet = facet_of(facet.map(|k| usize::from(child[k]))).ok_or_else(inside)?;
-        knot = parent;
+        node = parent;
         n_divided += 1;
     }
-    Ok((begin_at(facet, corner, knot, triangle), n_divided))
+    Ok((rotated_to(facet, corner, node, triangle), n_divided))
 }
 
 /// The vertices of a facet, starting from the given corner if the facet has it.
-fn begin_at(facet: [usize; 3], corner: u8, knot: &Knot, triangle: [VertexId; 3]) -> [VertexId; 3] {
-    let vertices = facet.map(|k| knot.vertices[k]);
+fn rotated_to(facet: [usize; 3], corner: u8, node: &TreeNode, triangle: [VertexId; 3]) -> [VertexId; 3] {
+    let vertices = facet.map(|k| node.vertices[k]);
     // An undivided triangle keeps its first vertex.
     let begin = match vertices.iter().position(|v| *v == triangle[0]) {
         Some(begin) if triangle.iter().all(|v| vertices.contains(v)) => begin,

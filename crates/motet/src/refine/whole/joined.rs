@@ -29,9 +29,9 @@ pub(super) struct Matched {
     /// For each item of the new mesh, the same item of the old one, or [`NONE`].
     to_old: Vec<u32>,
     /// Items of the old mesh that were removed, in ascending order.
-    pub(super) gone: Vec<u32>,
+    pub(super) removed: Vec<u32>,
     /// New items, in ascending order.
-    pub(super) came: Vec<u32>,
+    pub(super) inserted: Vec<u32>,
 }
 
 impl Joined {
@@ -186,8 +186,8 @@ fn matched<const N: usize>(names: [Vec<[u32; N]>; 2], roots: [&[u32]; 2]) -> Mat
     let flagged = |flags: &mut dyn Iterator<Item = bool>| -> Vec<u32> {
         (0..).zip(flags).filter(|(_, flag)| *flag).map(|(i, _)| i).collect()
     };
-    matched.gone = flagged(&mut stays.iter().map(|stays| !stays));
-    matched.came = flagged(&mut matched.to_old.iter().map(|old| *old == NONE));
+    matched.removed = flagged(&mut stays.iter().map(|stays| !stays));
+    matched.inserted = flagged(&mut matched.to_old.iter().map(|old| *old == NONE));
     matched
 }
 

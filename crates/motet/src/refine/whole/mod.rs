@@ -2,7 +2,7 @@
 //! is stored as arrays.
 
 mod joined;
-mod kept;
+mod memory_arrays;
 mod origins;
 
 use super::handle::{Options, Refinement, Summary};
@@ -57,7 +57,7 @@ impl MeshRefinement {
     /// the arrays belong to another mesh.
     pub fn new(mesh: &Mesh, options: Options, threads: &Threads) -> Result<Self> {
         let part = TetPart::of(mesh)?;
-        let memory = kept::memory(mesh, &part)?;
+        let memory = memory_arrays::memory(mesh, &part)?;
         let refinement = match &memory {
             Some(memory) => Refinement::recall(&part.mesh, memory, options, threads),
             None => Refinement::new(&part.mesh, options, threads),
@@ -65,13 +65,13 @@ impl MeshRefinement {
         let refinement = refinement.map_err(|error| part.at_cell(error))?;
         let slots = slots(mesh, &refinement);
         let TetPart { tet_to_cell, triangle_to_cell, line_to_cell, .. } = part;
-        let mesh = kept::without(mesh);
+        let mesh = memory_arrays::without(mesh);
         Ok(Self { mesh, refinement, slots, tet_to_cell, triangle_to_cell, line_to_cell })
     }
 
     /// Returns the mesh without its memory: it then counts as the first mesh, as it is.
     pub fn forget(mesh: &Mesh) -> Mesh {
-        kept::without(mesh)
+        memory_arrays::without(mesh)
     }
 
     /// Puts new points of the boundary on the true surface, see [`Refinement::put_on_surface`].
@@ -109,7 +109,7 @@ impl MeshRefinement {
         let mut mesh = self.mesh.clone();
         if self.refinement.is_divided() {
             let memory = self.refinement.memory_to_keep(threads);
-            kept::put(&mut mesh, &memory, &self.tet_to_cell, &self.triangle_to_cell);
+            memory_arrays::store(&mut mesh, &memory, &self.tet_to_cell, &self.triangle_to_cell);
         }
         mesh
     }

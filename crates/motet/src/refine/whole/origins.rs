@@ -37,11 +37,11 @@ pub(super) fn origins(
     cells: [&[CellId]; 3],
     threads: &Threads,
 ) -> Result<Found> {
-    let kin = Kin::new(&after.forest, &before.now, &after.now);
-    let parts = threads.map(joined.tets.came.len(), |i| kin.parts(joined.tets.came[i] as usize));
-    let ledger = ledger(&kin, joined, &parts);
+    let ancestry = Ancestry::new(&after.forest, &before.now, &after.now);
+    let parts = threads.map(joined.tets.inserted.len(), |i| ancestry.parts(joined.tets.inserted[i] as usize));
+    let ledger = ledger(&ancestry, joined, &parts);
     let mut rows: Vec<CellRow> = Vec::with_capacity(parts.len());
-    for (&t, parts) in joined.tets.came.iter().zip(&parts) {
+    for (&t, parts) in joined.tets.inserted.iter().zip(&parts) {
         let of_old = parts.iter().map(|&(old, volume)| (cells[0][old as usize], volume));
         let main = parts.iter().fold((NONE, -1.0), |best, &part| if part.1 > best.1 { part } else { best }).0;
         rows.push((joined.tet_to_cell[t as usize], of_old.collect(), cells[0][main as usize]));
@@ -53,8 +53,8 @@ pub(super) fn origins(
     rows.iter().for_each(|(cell, parts, main)| of_cells.push(*cell, parts, *main));
     let mut of_vertices = Rows::new();
     let means = Means::new(&after.forest, &before.now);
-    let came = joined.vertex_to_old.iter().enumerate().filter(|(_, old)| **old == NONE);
-    for (v, _) in came {
+    let inserted = joined.vertex_to_old.iter().enumerate().filter(|(_, old)| **old == NONE);
+    for (v, _) in inserted {
         let parts = means.of(after.now.vertices[v]);
         of_vertices.push(VertexId::new(v), &parts, parts[0].0);
     }
@@ -62,7 +62,7 @@ pub(super) fn origins(
 }
 
 /// Which tets before and after the step lie in which.
-struct Kin<'a> {
+struct Ancestry<'a> {
     forest: &'a Forest,
     was: &'a Extracted,
     is: &'a Extracted,
@@ -73,7 +73,7 @@ struct Kin<'a> {
     within: BTreeMap<u32, Vec<u32>>,
 }
 
-impl<'a> Kin<'a> {
+impl<'a> Ancestry<'a> {
     fn new(forest: &'a Forest, was: &'a Extracted, is: &'a Extracted) -> Self {
         let pieces = |out: &Extracted| {
             let mut pieces = vec![[0, 0]; forest.nodes.len()];
@@ -87,7 +87,7 @@ impl<'a> Kin<'a> {
         let (old, new) = (pieces(was), pieces(is));
         let mut within: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for (&node, t) in was.nodes.iter().zip(0..) {
-            let coarser = above(forest, node).skip(1).find(|&node| new[node as usize][1] > 0);
+            let coarser = ancestors(forest, node).skip(1).find(|&node| new[node as usize][1] > 0);
             if let Some(coarser) = coarser {
                 within.entry(coarser).or_default().push(t);
             }
@@ -99,7 +99,7 @@ impl<'a> Kin<'a> {
     /// tet.
     fn parts(&self, t: usize) -> Vec<(u32, f64)> {
         let node = self.is.nodes[t];
-        let holder = above(self.forest, node).map(|node| self.old[node as usize]).find(|old| old[1] > 0);
+        let holder = ancestors(self.forest, node).map(|node| self.old[node as usize]).find(|old| old[1] > 0);
         let candidates: Vec<u32> = match (holder, self.within.get(&node)) {
             (Some([first, end]), _) if end == first + 1 => return vec![(first, 1.0)],
             (Some([first, end]), _) => (first..end).collect(),
@@ -124,7 +124,7 @@ impl<'a> Kin<'a> {
 }
 
 /// Iterates over a tet of the forest and its ancestors.
-fn above(forest: &Forest, node: u32) -> impl Iterator<Item = u32> {
+fn ancestors(forest: &Forest, node: u32) -> impl Iterator<Item = u32> {
     let parent = |node: &u32| Some(forest.nodes[*node as usize].parent).filter(|parent| *parent != NONE);
     std::iter::successors(Some(node), parent)
 }
@@ -133,18 +133,18 @@ fn corners(out: &Extracted, t: usize) -> [Point; 4] {
     estimate::corners(&out.mesh, out.mesh.tets[t])
 }
 
-fn ledger(kin: &Kin, joined: &Joined, parts: &[Vec<(u32, f64)>]) -> Ledger {
+fn ledger(ancestry: &Ancestry, joined: &Joined, parts: &[Vec<(u32, f64)>]) -> Ledger {
     let volume = |out: &Extracted, t: u32| tet::volume(corners(out, t as usize)).abs();
     let mut regions: BTreeMap<i32, RegionLedger> = BTreeMap::new();
     let mut taken: BTreeMap<u32, f64> = BTreeMap::new();
-    for (&t, parts) in joined.tets.came.iter().zip(parts) {
-        let (all, sum) = (volume(kin.is, t), parts.iter().map(|part| part.1).sum::<f64>());
-        regions.entry(kin.is.mesh.regions[t as usize]).or_default().volume_after += all;
+    for (&t, parts) in joined.tets.inserted.iter().zip(parts) {
+        let (all, sum) = (volume(ancestry.is, t), parts.iter().map(|part| part.1).sum::<f64>());
+        regions.entry(ancestry.is.mesh.regions[t as usize]).or_default().volume_after += all;
         parts.iter().for_each(|&(old, part)| *taken.entry(old).or_default() += all * (part / sum));
     }
-    for &t in &joined.tets.gone {
-        let all = volume(kin.was, t);
-        let entry = regions.entry(kin.was.mesh.regions[t as usize]).or_default();
+    for &t in &joined.tets.removed {
+        let all = volume(ancestry.was, t);
+        let entry = regions.entry(ancestry.was.mesh.regions[t as usize]).or_default();
         entry.volume_before += all;
         entry.deviation += (taken.get(&t).copied().unwrap_or(0.0) - all).abs();
     }
@@ -173,8 +173,8 @@ fn triangles(
         &LocalChange {
             old_points: &before.now.mesh.points,
             new_points: &after.now.mesh.points,
-            removed_triangles: &labelled(&before.now, &joined.triangles.gone, old_cells),
-            new_triangles: &labelled(&after.now, &joined.triangles.came, &joined.triangle_to_cell),
+            removed_triangles: &labelled(&before.now, &joined.triangles.removed, old_cells),
+            new_triangles: &labelled(&after.now, &joined.triangles.inserted, &joined.triangle_to_cell),
             ..LocalChange::default()
         },
         threads,
@@ -186,17 +186,17 @@ fn triangles(
 
 /// Lines inherit from the nearest part of the same line of the first mesh.
 fn lines(was: &Extracted, is: &Extracted, joined: &Joined, old_cells: &[CellId], rows: &mut Vec<CellRow>) {
-    let mut gone: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    joined.lines.gone.iter().for_each(|&l| gone.entry(was.lines[l as usize]).or_default().push(l));
+    let mut removed: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    joined.lines.removed.iter().for_each(|&l| removed.entry(was.lines[l as usize]).or_default().push(l));
     let ends = |out: &Extracted, l: u32| out.mesh.lines[l as usize].map(|v| out.mesh.points[v.index()]);
-    for &l in &joined.lines.came {
+    for &l in &joined.lines.inserted {
         let [a, b] = ends(is, l);
         let middle = scale(add(a, b), 0.5);
         let far = |old: &u32| {
             let [p, q] = ends(was, *old);
             distance(add(p, scale(sub(q, p), segment::closest([p, q], middle))), middle)
         };
-        let parts = gone.get(&is.lines[l as usize]).into_iter().flatten().copied();
+        let parts = removed.get(&is.lines[l as usize]).into_iter().flatten().copied();
         let nearest = parts.min_by(|x, y| far(x).total_cmp(&far(y)));
         let old = old_cells[nearest.unwrap_or(0) as usize];
         rows.push((joined.line_to_cell[l as usize], vec![(old, 1.0)], old));

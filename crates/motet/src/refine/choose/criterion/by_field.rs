@@ -1,7 +1,7 @@
 //! Criteria based on the arrays of a mesh: sizes, gradients, error estimates, vortices.
 
 use super::array::{On, column, point_columns, point_vectors};
-use super::{Aim, Amount, Criterion, Estimator, HessianSizes, Size, a_part, above_0, not_below_0};
+use super::{Aim, Amount, Criterion, Estimator, HessianSizes, Size, fraction, non_negative, positive};
 use crate::base::{Error, Point, Result, Threads};
 use crate::geometry::vector::{dot, norm, sub};
 use crate::mesh::{Field, Mesh, TetMesh, TetPart, bounds};
@@ -123,11 +123,11 @@ impl HessianSizes {
             return Err(Error::options("sizes from second derivatives need an array"));
         }
         match self.aim {
-            Aim::Error(error) => above_0("the error", error)?,
-            Aim::RangePart(part) => a_part("the error as a fraction of the range", part)?,
+            Aim::Error(error) => positive("the error", error)?,
+            Aim::RangePart(part) => fraction("the error as a fraction of the range", part)?,
             Aim::Tets(_) => {}
         }
-        not_below_0("the smallest size", self.limits.smallest)?;
+        non_negative("the smallest size", self.limits.smallest)?;
         if !(self.limits.largest >= self.limits.smallest && self.limits.largest > 0.0) {
             return Err(Error::options(format!(
                 "the largest size, {}, is below the smallest, {}",
@@ -136,7 +136,7 @@ impl HessianSizes {
         }
         match self.limits.growth >= 0.0 {
             true => Ok(()),
-            false => not_below_0("the growth of sizes", self.limits.growth),
+            false => non_negative("the growth of sizes", self.limits.growth),
         }
     }
 
@@ -173,16 +173,19 @@ impl HessianSizes {
         let extent_squared = dot(sub(high, low), sub(high, low));
         for array in &self.arrays {
             let columns = point_columns(mesh, array)?;
-            let mut bends = curvatures(&part.mesh, columns.iter().map(Vec::as_slice), threads);
+            let mut curvatures = curvatures(&part.mesh, columns.iter().map(Vec::as_slice), threads);
             let range = range(&columns, part);
-            let least_bend = ROUNDING * range / extent_squared;
-            bends.iter_mut().filter(|bend| **bend < least_bend).for_each(|bend| *bend = 0.0);
+            let min_curvature = ROUNDING * range / extent_squared;
+            curvatures
+                .iter_mut()
+                .filter(|curvature| **curvature < min_curvature)
+                .for_each(|curvature| *curvature = 0.0);
             let of_array = match self.aim {
-                Aim::Error(error) => sizes::for_error(&bends, error),
-                Aim::RangePart(share) => sizes::for_error(&bends, share * range),
+                Aim::Error(error) => sizes::for_error(&curvatures, error),
+                Aim::RangePart(share) => sizes::for_error(&curvatures, share * range),
                 Aim::Tets(_) => {
-                    bends.iter_mut().for_each(|bend| *bend /= range);
-                    sizes::for_mean_square(&bends)
+                    curvatures.iter_mut().for_each(|curvature| *curvature /= range);
+                    sizes::for_mean_square(&curvatures)
                 }
             };
             // A constant array requests nothing.

@@ -64,22 +64,22 @@ fn near(mesh: &TetMesh, target: &Target, within: f64, threads: &Threads) -> Vec<
 fn near_size(mesh: &TetMesh, target: &Target, [size, growth]: [f64; 2], threads: &Threads) -> Vec<Wish> {
     let longest = threads.map(mesh.tets.len(), |t| longest_edge(corners(mesh, mesh.tets[t])));
     // Tets with shorter edges are `Coarser` at any distance.
-    let asked: Vec<usize> =
+    let candidates: Vec<usize> =
         (0..longest.len()).filter(|&t| Wish::of_ratio(longest[t] / size) != Wish::Coarser).collect();
-    let places: Vec<[Point; 4]> = threads.map(asked.len(), |i| corners(mesh, mesh.tets[asked[i]]));
+    let places: Vec<[Point; 4]> = threads.map(candidates.len(), |i| corners(mesh, mesh.tets[candidates[i]]));
     let centres: Vec<Point> = threads.map(places.len(), |i| tet::centroid(places[i]));
     let found = target.tree().closest_all(&centres, None, threads);
-    let of_asked = threads.map(asked.len(), |i| {
+    let of_candidates = threads.map(candidates.len(), |i| {
         let Some(found) = &found[i] else { return Wish::Coarser };
-        let (longest, away) = (longest[asked[i]], found.distance_squared.sqrt());
-        if mark::is_above(places[i], [size, growth], found) {
+        let (longest, away) = (longest[candidates[i]], found.distance_squared.sqrt());
+        if mark::is_above_size(places[i], [size, growth], found) {
             return Wish::of_ratio(longest / (size + growth * away)).max(Wish::Divided(1));
         }
         // The whole that this tet is a part of reaches no farther.
         Wish::of_ratio(longest / (size + growth * (away - 2.0 * longest).max(0.0))).min(Wish::Kept)
     });
     let mut wishes = vec![Wish::Coarser; longest.len()];
-    asked.into_iter().zip(of_asked).for_each(|(t, wish)| wishes[t] = wish);
+    candidates.into_iter().zip(of_candidates).for_each(|(t, wish)| wishes[t] = wish);
     wishes
 }
 

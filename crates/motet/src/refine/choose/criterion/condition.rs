@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_condition_is_told() {
+    fn what_is_no_condition_is_reported() {
         for text in ["p", "p>", ">3", "p>x", "p=3", "p=>3", "p<>3", "", "p>3>"] {
             let error = text.parse::<Condition>().unwrap_err().to_string();
             assert!(error.contains("ARRAY>VALUE"), "{text}: {error}");

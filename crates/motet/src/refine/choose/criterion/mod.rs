@@ -172,20 +172,20 @@ impl Criterion {
             Self::All | Self::Region(_) | Self::Size(Size::Array(_)) => Ok(()),
             Self::Ball { centre, radius } => {
                 centre.iter().try_for_each(|x| finite("the centre of a ball", *x))?;
-                not_below_0("the radius of a ball", *radius)
+                non_negative("the radius of a ball", *radius)
             }
             Self::Box(corners) => by_place::check_box(*corners),
-            Self::Near { within, .. } => not_below_0("the distance from a surface", *within),
+            Self::Near { within, .. } => non_negative("the distance from a surface", *within),
             Self::NearSize { size, growth, .. } => {
-                above_0("the size at a surface", *size)?;
-                not_below_0("the growth of sizes", *growth)
+                positive("the size at a surface", *size)?;
+                non_negative("the growth of sizes", *growth)
             }
-            Self::Patch { within, .. } => not_below_0("the distance from a patch", within.unwrap_or(0.0)),
-            Self::Size(Size::Uniform(size)) => above_0("the size", *size),
+            Self::Patch { within, .. } => non_negative("the distance from a patch", within.unwrap_or(0.0)),
+            Self::Size(Size::Uniform(size)) => positive("the size", *size),
             Self::Where(condition) => condition.check(),
             Self::Gradient { above, .. } => finite("the change through a tet", *above),
             Self::Estimate { amount, .. } => match amount {
-                Amount::Share(share) => a_part("the fraction of the error", *share),
+                Amount::Share(share) => fraction("the fraction of the error", *share),
                 Amount::Tets(_) => Ok(()),
             },
             Self::Hessian(sizes) => sizes.check(),
@@ -265,25 +265,25 @@ pub fn marks_of_all(
     wishes_of_all(criteria, mesh, part, threads).map(|wishes| marked(&wishes))
 }
 
-fn off(what: &str, value: f64, expected: &str) -> Error {
+fn invalid(what: &str, value: f64, expected: &str) -> Error {
     Error::options(format!("{what} is {value}")).remedy(format!("give {expected}"))
 }
 
 fn finite(what: &str, value: f64) -> Result<()> {
-    if value.is_finite() { Ok(()) } else { Err(off(what, value, "a finite number")) }
+    if value.is_finite() { Ok(()) } else { Err(invalid(what, value, "a finite number")) }
 }
 
-fn not_below_0(what: &str, value: f64) -> Result<()> {
+fn non_negative(what: &str, value: f64) -> Result<()> {
     let is_fine = value >= 0.0 && value.is_finite();
-    if is_fine { Ok(()) } else { Err(off(what, value, "a number of 0 or more")) }
+    if is_fine { Ok(()) } else { Err(invalid(what, value, "a number of 0 or more")) }
 }
 
-fn above_0(what: &str, value: f64) -> Result<()> {
+fn positive(what: &str, value: f64) -> Result<()> {
     let is_fine = value > 0.0 && value.is_finite();
-    if is_fine { Ok(()) } else { Err(off(what, value, "a number above 0")) }
+    if is_fine { Ok(()) } else { Err(invalid(what, value, "a number above 0")) }
 }
 
-fn a_part(what: &str, value: f64) -> Result<()> {
+fn fraction(what: &str, value: f64) -> Result<()> {
     let is_fine = value > 0.0 && value <= 1.0;
-    if is_fine { Ok(()) } else { Err(off(what, value, "a fraction above 0 and at most 1")) }
+    if is_fine { Ok(()) } else { Err(invalid(what, value, "a fraction above 0 and at most 1")) }
 }

@@ -27,8 +27,8 @@ impl Target {
             )
             .remedy("give triangles or other surface cells"));
         }
-        let is_astray = |v: &&VertexId| points.get(v.index()).is_none_or(|p| !in_range(*p));
-        if let Some(v) = triangles.as_flattened().iter().find(is_astray) {
+        let is_invalid = |v: &&VertexId| points.get(v.index()).is_none_or(|p| !in_range(*p));
+        if let Some(v) = triangles.as_flattened().iter().find(is_invalid) {
             return Err(Error::input(
                 "has an invalid position: a coordinate is missing or is no finite number",
             )

@@ -17,8 +17,8 @@ impl Refinement {
             roots: of_tets.iter().map(|entry| entry.root).collect(),
             paths: of_tets.iter().map(|entry| entry.path).collect(),
             pieces: of_tets.iter().map(|entry| entry.piece).collect(),
-            asked: of_tets.iter().map(|entry| entry.asked).collect(),
-            corners: corners(forest, &self.first, &now.triangles),
+            n_requested: of_tets.iter().map(|entry| entry.n_requested).collect(),
+            corners: corners(forest, &self.first_mesh, &now.triangles),
             reference: now.vertices.iter().map(|&v| forest.reference[v as usize]).collect(),
         }
     }
@@ -28,7 +28,7 @@ struct Entry {
     root: u32,
     path: u64,
     piece: u16,
-    asked: u8,
+    n_requested: u8,
 }
 
 fn entry(forest: &Forest, now: &Extracted, t: usize) -> Entry {
@@ -40,16 +40,16 @@ fn entry(forest: &Forest, now: &Extracted, t: usize) -> Entry {
         let place = local.iter().position(|&other| other == vertex).unwrap_or(15);
         piece |= (place as u16) << (4 * i);
     }
-    let (mut node, mut path, mut shift, mut asked) = (leaf, 0, 0, 0);
+    let (mut node, mut path, mut shift, mut n_requested) = (leaf, 0, 0, 0);
     while forest.nodes[node as usize].parent != NONE {
         let parent = forest.nodes[node as usize].parent;
         let above = &forest.nodes[parent as usize];
         path |= u64::from(node - above.first_child) << shift;
         shift += 3;
-        asked += u8::from(forest.states[parent as usize].is_asked);
+        n_requested += u8::from(forest.states[parent as usize].is_requested);
         node = parent;
     }
-    Entry { root: node, path: path | 1 << shift, piece, asked }
+    Entry { root: node, path: path | 1 << shift, piece, n_requested }
 }
 
 /// For each triangle, the corner that the first vertex of the whole triangle is in the first tet that has it

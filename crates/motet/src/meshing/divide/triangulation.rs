@@ -50,7 +50,7 @@ pub(super) enum Blocked {
     /// A crease hides it, or is seen from it at an obtuse angle.
     By([VertexId; 2]),
     /// The triangles there have no space for it.
-    NoRoom,
+    NoSpace,
 }
 
 /// Triangles to be replaced, and the directed edges around them.
@@ -60,7 +60,7 @@ struct Cavity {
 }
 
 /// Triangles of flat facets.
-pub(super) struct Net {
+pub(super) struct Triangulation {
     pub(super) points: Vec<Point>,
     pub(super) triangles: Vec<[VertexId; 3]>,
     pub(super) facet_of: Vec<u32>,
@@ -71,8 +71,8 @@ pub(super) struct Net {
     creases: HashMap<[VertexId; 2], Vec<u32>>,
 }
 
-impl Net {
-    /// Builds a net of triangles, given the facet of each; all must be oriented as their facet. An edge is a
+impl Triangulation {
+    /// Builds it from triangles, given the facet of each; all must be oriented as their facet. An edge is a
     /// crease unless exactly two triangles meet there, both of one facet.
     pub(super) fn new(
         points: Vec<Point>,
@@ -80,7 +80,7 @@ impl Net {
         facet_of: Vec<u32>,
         planes: Vec<Plane>,
     ) -> Self {
-        let mut net = Self {
+        let mut triangulation = Self {
             points,
             triangles: Vec::new(),
             facet_of,
@@ -90,19 +90,19 @@ impl Net {
         };
         let mut edges: Vec<([VertexId; 2], u32)> = Vec::with_capacity(3 * triangles.len());
         for (i, &[a, b, c]) in triangles.iter().enumerate() {
-            edges.extend([[a, b], [b, c], [c, a]].map(|edge| (rising(edge), net.facet_of[i])));
+            edges.extend([[a, b], [b, c], [c, a]].map(|edge| (rising(edge), triangulation.facet_of[i])));
         }
         edges.sort_unstable();
         for run in edges.chunk_by(|x, y| x.0 == y.0) {
             if !matches!(run, [x, y] if x.1 == y.1) {
                 let mut facets: Vec<u32> = run.iter().map(|edge| edge.1).collect();
                 facets.dedup();
-                net.creases.insert(run[0].0, facets);
+                triangulation.creases.insert(run[0].0, facets);
             }
         }
-        net.triangles = triangles;
-        (0..net.triangles.len()).for_each(|i| net.note(i as TriangleId));
-        net
+        triangulation.triangles = triangles;
+        (0..triangulation.triangles.len()).for_each(|i| triangulation.link(i as TriangleId));
+        triangulation
     }
 
     pub(super) fn corners(&self, triangle: TriangleId) -> [Point; 3] {
@@ -124,7 +124,7 @@ impl Net {
         creases
     }
 
-    fn note(&mut self, id: TriangleId) {
+    fn link(&mut self, id: TriangleId) {
         let facet = self.facet_of[id as usize];
         let [a, b, c] = self.triangles[id as usize];
         for (from, to) in [(a, b), (b, c), (c, a)] {
@@ -132,7 +132,7 @@ impl Net {
         }
     }
 
-    fn forget(&mut self, id: TriangleId) {
+    fn unlink(&mut self, id: TriangleId) {
         let facet = self.facet_of[id as usize];
         let [a, b, c] = self.triangles[id as usize];
         for (from, to) in [(a, b), (b, c), (c, a)] {
@@ -161,12 +161,12 @@ impl Net {
                 && plane.is_in_circle(at([a, b, p]), self.point(q))
             {
                 for old in [s, t] {
-                    self.forget(old);
+                    self.unlink(old);
                 }
                 self.triangles[s as usize] = [p, a, q];
                 self.triangles[t as usize] = [q, b, p];
                 for new in [s, t] {
-                    self.note(new);
+                    self.link(new);
                 }
                 todo.extend([[a, q], [q, b], [b, p], [p, a]].map(|edge| (facet, edge)));
             }
@@ -266,13 +266,13 @@ impl Net {
                     return Err(Blocked::By(rising(*edge)));
                 }
                 Some((_, triangle)) if *triangle != first => refused.push(*triangle),
-                Some(_) => return Err(Blocked::NoRoom),
+                Some(_) => return Err(Blocked::NoSpace),
             }
         }
     }
 
     fn fill(&mut self, facet: u32, cavity: &Cavity, apex: VertexId) -> Vec<TriangleId> {
-        cavity.triangles.iter().for_each(|&old| self.forget(old));
+        cavity.triangles.iter().for_each(|&old| self.unlink(old));
         let mut places = cavity.triangles.iter().copied();
         let mut inserted = Vec::with_capacity(cavity.rim.len());
         for &[a, b] in &cavity.rim {
@@ -284,7 +284,7 @@ impl Net {
             self.triangles[id as usize] = [a, b, apex];
             inserted.push(id);
         }
-        inserted.iter().for_each(|&id| self.note(id));
+        inserted.iter().for_each(|&id| self.link(id));
         inserted
     }
 }

@@ -5,7 +5,7 @@ use crate::base::{TetId, VertexId};
 use crate::mesh::TetMesh;
 
 /// Returns the ends, as forest vertices, of fixed edges that are split nevertheless.
-pub(super) fn split_though_fixed(forest: &Forest, first: &TetMesh) -> Vec<u32> {
+pub(super) fn ends_of_split_fixed_edges(forest: &Forest, first: &TetMesh) -> Vec<u32> {
     let is_split = |edge: &&[VertexId; 2]| {
         forest.root_edge(edge.map(|v| v.0)).is_some_and(|edge| forest.is_split[edge as usize])
     };
@@ -14,14 +14,14 @@ pub(super) fn split_though_fixed(forest: &Forest, first: &TetMesh) -> Vec<u32> {
 
 /// The neighbourhood of such edges: rings of tets, one more with every attempt.
 #[derive(Debug, Default)]
-pub(super) struct Near {
+pub(super) struct Neighborhood {
     is_near: Vec<bool>,
     n_rings: usize,
 }
 
-impl Near {
+impl Neighborhood {
     /// Removes the marks of tets near the given forest vertices; at least one mark is removed.
-    pub(super) fn keep_off(
+    pub(super) fn remove_marks(
         &mut self,
         forest: &Forest,
         now: &Extracted,

@@ -23,7 +23,8 @@ pub(super) fn memory(mesh: &Mesh, part: &TetPart) -> Result<Option<Memory>> {
         let values = field.values.to_i64().filter(|_| field.components == 1);
         values.ok_or_else(|| unfit(name, "is not an array of integers"))
     };
-    let [roots, paths, pieces, asked] = [whole(REFINE_ROOT)?, whole(PATH)?, whole(PIECE)?, whole(ASKED)?];
+    let [roots, paths, pieces, n_requested] =
+        [whole(REFINE_ROOT)?, whole(PATH)?, whole(PIECE)?, whole(ASKED)?];
     let reference = reference.ok_or_else(|| unfit(REFERENCE, "is missing"))?;
     let reference: Vec<Point> =
         reference.to_vectors().map_err(|_| unfit(REFERENCE, "does not have three components per point"))?;
@@ -32,7 +33,7 @@ pub(super) fn memory(mesh: &Mesh, part: &TetPart) -> Result<Option<Memory>> {
         roots: tets().map(|c| u32::try_from(roots[c]).unwrap_or(UNKNOWN)).collect(),
         paths: tets().map(|c| u64::try_from(paths[c]).unwrap_or(0)).collect(),
         pieces: tets().map(|c| u16::try_from(pieces[c]).unwrap_or(u16::MAX)).collect(),
-        asked: tets().map(|c| u8::try_from(asked[c]).unwrap_or(0)).collect(),
+        n_requested: tets().map(|c| u8::try_from(n_requested[c]).unwrap_or(0)).collect(),
         corners: part.triangle_to_cell.iter().map(|c| u8::try_from(pieces[c.index()]).unwrap_or(0)).collect(),
         reference,
     }))
@@ -44,21 +45,21 @@ fn unfit(array: &str, what: &str) -> Error {
 }
 
 /// Adds the arrays of the memory. Cells that are neither tet nor triangle get -1.
-pub(super) fn put(mesh: &mut Mesh, memory: &Memory, tets: &[CellId], triangles: &[CellId]) {
+pub(super) fn store(mesh: &mut Mesh, memory: &Memory, tets: &[CellId], triangles: &[CellId]) {
     let n = mesh.cells.len();
     let mut whole = [vec![-1; n], vec![-1; n], vec![-1; n]];
     let mut paths = vec![-1; n];
     for (t, cell) in tets.iter().map(|cell| cell.index()).enumerate() {
         whole[0][cell] = memory.roots[t] as i32;
         whole[1][cell] = i32::from(memory.pieces[t]);
-        whole[2][cell] = i32::from(memory.asked[t]);
+        whole[2][cell] = i32::from(memory.n_requested[t]);
         paths[cell] = memory.paths[t] as i64;
     }
     for (cell, corner) in triangles.iter().zip(&memory.corners) {
         whole[1][cell.index()] = i32::from(*corner);
     }
-    let [roots, pieces, asked] = whole;
-    let values: [Values; 4] = [roots.into(), paths.into(), pieces.into(), asked.into()];
+    let [roots, pieces, n_requested] = whole;
+    let values: [Values; 4] = [roots.into(), paths.into(), pieces.into(), n_requested.into()];
     for (name, values) in OF_CELLS.into_iter().zip(values) {
         mesh.set_cell_field(Field::scalars(name, values));
     }
