@@ -484,9 +484,9 @@ fn what_does_not_fit_is_refused_with_its_name_and_counts() {
     new.set_cell_field(Field::scalars("region", ids));
     let none = (vec![Id::NONE; new.points.len()], vec![Id::NONE; new.cells.len()]);
     let error = between(&old, &new, &none.0, &none.1, &single()).unwrap_err().to_string();
-    assert!(error.contains("is new in region 3, but no tet of that region went"), "{error}");
+    assert!(error.contains("is new in region 3, but no tet of that region was removed"), "{error}");
     let error = between(&old, &new, &none.0[1..], &none.1, &single()).unwrap_err().to_string();
-    assert!(error.contains("old ids were given for the"), "{error}");
+    assert!(error.contains("old ids were given, but the new mesh has"), "{error}");
 }
 
 #[test]

@@ -15,7 +15,7 @@ use crate::geometry::distance::segment_triangle;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::is_finite;
 use crate::mesh::open_edges;
-use crate::spatial::runs::{around, corners, in_runs};
+use crate::spatial::runs::{bounding_box, corners, in_runs};
 use crate::spatial::{Bounds, BoxTree};
 
 /// Whether every edge is used as often one way as the other: such a surface has an inside, and it winds
@@ -150,7 +150,7 @@ impl<'a> Rays<'a> {
     }
 
     fn boxes(&self) -> impl Iterator<Item = Bounds> {
-        (0..self.triangles.len() as u32).map(|j| around(&self.corners(j)))
+        (0..self.triangles.len() as u32).map(|j| bounding_box(&self.corners(j)))
     }
 
     /// The triangles with finite corners that the ray from `q` may pass.
@@ -196,7 +196,7 @@ fn turned(p: Point, axis: usize) -> Point {
 fn easiest_axis(boxes: &[Bounds]) -> usize {
     let size = |[low, high]: Bounds| [0, 1, 2].map(|k| high[k] - low[k]);
     let finite = || boxes.iter().filter(|bounds| bounds[0][0].is_finite());
-    let whole = size(around(&finite().copied().flatten().collect::<Vec<_>>()));
+    let whole = size(bounding_box(&finite().copied().flatten().collect::<Vec<_>>()));
     let covers = |axis: usize| -> f64 {
         let [u, v] = [1, 2].map(|k| (axis + k) % 3);
         let part = |s: Point| (s[u] / whole[u]) * (s[v] / whole[v]);

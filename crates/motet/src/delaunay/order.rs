@@ -8,7 +8,7 @@
 //! numbered them.
 
 use crate::base::{Point, Threads, mixed};
-use crate::spatial::hilbert::{Curve, KEY_BITS, cube};
+use crate::spatial::hilbert::{Curve, KEY_BITS, bounding_cube};
 
 /// The first round has about this many points.
 const FIRST_ROUND: usize = 1000;
@@ -44,7 +44,7 @@ fn last_round(n: usize) -> u32 {
 }
 
 fn keys(points: &[Point], threads: &Threads, last_round: u32) -> Vec<Keyed> {
-    let (corner, extent) = cube(points.iter().copied());
+    let (corner, extent) = bounding_cube(points.iter().copied());
     let curve = Curve::new(corner, extent);
     threads.map(points.len(), |id| {
         let round = last_round - (hash(points[id]).trailing_zeros() / 3).min(last_round);
@@ -104,7 +104,7 @@ fn sort_runs(keyed: &mut [Keyed], points: &[Point]) {
 /// Gives the run new keys along a curve through its own bounding box and sorts it; false where the box is a
 /// single point or so small that the keys could not distinguish its ends.
 fn refine(run: &mut [Keyed], points: &[Point]) -> bool {
-    let (corner, extent) = cube(run.iter().map(|k| points[k.1 as usize]));
+    let (corner, extent) = bounding_cube(run.iter().map(|k| points[k.1 as usize]));
     if !(1e-300..1e300).contains(&extent) {
         return false;
     }

@@ -10,7 +10,7 @@ use crate::geometry::vector::distance;
 use crate::mesh::Mesh;
 use crate::mesh::history::{History, Origins};
 use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, trace};
-use crate::spatial::{BoxTree, around};
+use crate::spatial::{BoxTree, bounding_box};
 
 /// Marks triangles that come from tets.
 const OF_TETS: i32 = i32::MIN;
@@ -107,7 +107,7 @@ struct There<'a> {
 impl<'a> There<'a> {
     fn new(host: &'a Mesh, removed: &'a [Labelled<4>]) -> Self {
         let is_one = removed.windows(2).all(|pair| pair[0].label == pair[1].label);
-        let bounds = |tet: &Labelled<4>| around(tet.vertices.map(|v| host.points[v.index()]));
+        let bounds = |tet: &Labelled<4>| bounding_box(tet.vertices.map(|v| host.points[v.index()]));
         let tree = (!is_one).then(|| BoxTree::new(&removed.iter().map(bounds).collect::<Vec<_>>()));
         Self { host, removed, tree }
     }

@@ -4,7 +4,7 @@ use super::sizes::Grading;
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::triangle;
 use crate::geometry::vector::{add, cross, distance, dot, scale, sub};
-use crate::spatial::{BoxTree, NearestTriangle, around};
+use crate::spatial::{BoxTree, NearestTriangle, bounding_box};
 
 /// The smallest sizes of triangles of a class agree within a factor of 2 to the power of the inverse of this.
 const CLASSES_PER_OCTAVE: f64 = 4.0;
@@ -39,7 +39,7 @@ impl<'a> SizeField<'a> {
         let mut order: Vec<(i32, u32)> = at_corners.iter().map(class).zip(0..).collect();
         order.sort_unstable();
         let class = |same: &[(i32, u32)]| {
-            let bounds = |t: &u32| around(triangles[*t as usize].map(|v| points[v.index()]));
+            let bounds = |t: &u32| bounding_box(triangles[*t as usize].map(|v| points[v.index()]));
             let triangles: Vec<u32> = same.iter().map(|of| of.1).collect();
             let least =
                 triangles.iter().map(|t| least(&at_corners[*t as usize])).fold(f64::INFINITY, f64::min);

@@ -18,7 +18,7 @@ use crate::geometry::distance::triangle_triangle;
 use crate::geometry::distance::{segment_segment, segment_triangle};
 use crate::geometry::predicates::{collinear, orient3d};
 use crate::spatial::BoxTree;
-use crate::spatial::runs::{around, corners, in_runs};
+use crate::spatial::runs::{bounding_box, corners, in_runs};
 
 /// All pairs of a triangle of `a` and one of `b` that meet in more than the vertices and edges that they
 /// share, in rising order.
@@ -51,12 +51,12 @@ pub(super) fn crossings_of(
     threads: &Threads,
     admit: impl Fn(u32, u32) -> bool + Sync + Send,
 ) -> Vec<[u32; 2]> {
-    let boxes: Vec<_> = b.iter().map(|&t| around(&corners(points, t))).collect();
+    let boxes: Vec<_> = b.iter().map(|&t| bounding_box(&corners(points, t))).collect();
     let tree = BoxTree::new(&boxes);
     in_runs(a.len(), threads, |near, run| {
         let mut found = Vec::new();
         for i in run {
-            tree.touching(around(&corners(points, a[i])), near);
+            tree.touching(bounding_box(&corners(points, a[i])), near);
             let met = near.iter().filter(|&&j| admit(i as u32, j) && cross(points, a[i], b[j as usize]));
             found.extend(met.map(|&j| [i as u32, j]));
         }

@@ -9,7 +9,7 @@ use crate::geometry::vector::{add, dot, scale, sub};
 use crate::geometry::weights;
 use crate::kernel::{Complex, VertexChange};
 use crate::mesh::TetMesh;
-use crate::spatial::{Bounds, BoxTree, around};
+use crate::spatial::{Bounds, BoxTree, bounding_box};
 
 /// The tets of a mesh before anything changes, in a search tree.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ pub(super) struct Given {
 impl Given {
     pub(super) fn new(mesh: &TetMesh) -> Self {
         let boxes: Vec<Bounds> =
-            mesh.tets.iter().map(|tet| around(tet.map(|v| mesh.points[v.index()]))).collect();
+            mesh.tets.iter().map(|tet| bounding_box(tet.map(|v| mesh.points[v.index()]))).collect();
         Self { tree: BoxTree::new(&boxes), points: mesh.points.clone(), tets: mesh.tets.clone() }
     }
 

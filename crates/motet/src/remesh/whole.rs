@@ -12,7 +12,7 @@ use crate::mesh::{CellKind, Cells, Field, Mesh, TetPart};
 use crate::remesh::held::{Held, Required};
 use crate::remesh::run::{Outcome, remesh_but};
 use crate::remesh::{Options, Report};
-use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, quadratic, trace};
+use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, quadratic_rows, trace};
 
 /// A whole mesh after remeshing, with its history and a report.
 #[derive(Debug)]
@@ -324,7 +324,7 @@ fn history(
         },
         threads,
     )?;
-    let wide = quadratic(old, &traced.vertices, threads);
+    let wide = quadratic_rows(old, &traced.vertices, threads);
     // Lines are the last cells.
     let mut cells = traced.cells;
     for &(cell, i) in &joined.new_lines {

@@ -45,13 +45,13 @@ impl Tree {
 
     fn build(&mut self, items: &mut [(Point, u32)], bounds_of: &impl Fn(u32) -> Bounds) {
         let place = self.nodes.len();
-        let [low, high] = around(items.iter().flat_map(|item| bounds_of(item.1)));
+        let [low, high] = bounding_box(items.iter().flat_map(|item| bounds_of(item.1)));
         self.nodes.push(Node { low, high, start: self.ids.len() as u32, count: items.len() as u32 });
         if items.len() <= LEAF {
             self.ids.extend(items.iter().map(|item| item.1));
             return;
         }
-        let axis = longest_side(around(items.iter().map(|item| item.0)));
+        let axis = longest_side(bounding_box(items.iter().map(|item| item.0)));
         let middle = items.len() / 2;
         items.select_nth_unstable_by(middle, |x, y| x.0[axis].total_cmp(&y.0[axis]).then(x.1.cmp(&y.1)));
         let (left, right) = items.split_at_mut(middle);
@@ -203,14 +203,14 @@ impl BoxTree {
 }
 
 /// The box around points.
-pub(crate) fn around(points: impl IntoIterator<Item = Point>) -> Bounds {
+pub(crate) fn bounding_box(points: impl IntoIterator<Item = Point>) -> Bounds {
     points.into_iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], p| {
         [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
     })
 }
 
 /// A box grown by a length on every side.
-pub(crate) fn widened([low, high]: Bounds, by: f64) -> Bounds {
+pub(crate) fn expanded([low, high]: Bounds, by: f64) -> Bounds {
     [low.map(|x| x - by), high.map(|x| x + by)]
 }
 
@@ -231,20 +231,21 @@ mod tests {
 
     fn bounds() -> impl Strategy<Value = Bounds> {
         let corner = || prop::array::uniform3((-4i8..=4).prop_map(f64::from));
-        (corner(), corner()).prop_map(|(a, b)| around([a, b]))
+        (corner(), corner()).prop_map(|(a, b)| bounding_box([a, b]))
     }
 
     proptest! {
         #[test]
-        fn the_tree_finds_what_looking_at_every_box_finds(
+        fn the_tree_finds_what_an_exhaustive_search_finds(
             boxes in prop::collection::vec(bounds(), 0..40),
-            asked in bounds(),
+            query in bounds(),
             p in prop::array::uniform3(-5.0..5.0f64),
         ) {
             let tree = BoxTree::new(&boxes);
             let mut found = vec![7];
-            tree.touching(asked, &mut found);
-            let expected: Vec<u32> = (0u32..).zip(&boxes).filter(|(_, b)| touch(**b, asked)).map(|b| b.0).collect();
+            tree.touching(query, &mut found);
+            let touched = (0u32..).zip(&boxes).filter(|(_, b)| touch(**b, query));
+            let expected: Vec<u32> = touched.map(|b| b.0).collect();
             prop_assert_eq!(found, expected);
 
             // Measures the lower corners of every other box.

@@ -54,7 +54,7 @@ impl Curve {
 }
 
 /// The smallest corner of the box around the points, and its longest side.
-pub(crate) fn cube(points: impl Iterator<Item = Point>) -> (Point, f64) {
+pub(crate) fn bounding_cube(points: impl Iterator<Item = Point>) -> (Point, f64) {
     let start = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     let (low, high) = points.fold(start, |(low, high), p| {
         (std::array::from_fn(|i| p[i].min(low[i])), std::array::from_fn(|i| p[i].max(high[i])))

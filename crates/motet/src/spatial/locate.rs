@@ -5,7 +5,7 @@
 //! set (with probability 1), and always in a Delaunay triangulation. Because no sign is rounded, a point of
 //! the hull is always found, also on facets, edges and vertices.
 
-use super::hilbert::{Curve, cube};
+use super::hilbert::{Curve, bounding_cube};
 use crate::base::{Point, TetId, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::triangle;
@@ -83,9 +83,9 @@ impl<'a> Locator<'a> {
 
     /// [`Self::locate`] for many points: neighbours one after the other, in parallel where `threads` allow.
     pub fn locate_all(&self, queries: &[Point], threads: &Threads) -> Vec<Located> {
-        let order = along_curve(queries);
+        let order = hilbert_order(queries);
         let chunk = |ids: &[u32]| -> Vec<Located> {
-            let mut hint = ids.first().map_or(TetId(0), |&id| self.near(queries[id as usize]));
+            let mut hint = ids.first().map_or(TetId(0), |&id| self.start_near(queries[id as usize]));
             let locate = |&id: &u32| {
                 let located = self.locate(queries[id as usize], hint);
                 hint = located.tet();
@@ -127,7 +127,7 @@ impl<'a> Locator<'a> {
 
     /// A start for a walk: of a few tets spread over the array, the one whose first vertex is nearest (Mücke,
     /// Saias and Zhu 1999, *Fast randomized point location without preprocessing*).
-    fn near(&self, q: Point) -> TetId {
+    fn start_near(&self, q: Point) -> TetId {
         let step = self.tets.len().div_ceil(64);
         let distance_squared = |tet: usize| {
             let arm = sub(self.points[self.tets[tet][0].index()], q);
@@ -195,8 +195,8 @@ fn is_beyond(corners: [Point; 4], i: usize, q: Point) -> bool {
 }
 
 /// Ids of the points in the order of a Hilbert curve.
-fn along_curve(points: &[Point]) -> Vec<u32> {
-    let (corner, extent) = cube(points.iter().copied());
+fn hilbert_order(points: &[Point]) -> Vec<u32> {
+    let (corner, extent) = bounding_cube(points.iter().copied());
     let curve = Curve::new(corner, extent);
     let mut keyed: Vec<(u64, u32)> =
         points.iter().enumerate().map(|(i, &p)| (curve.key(p), i as u32)).collect();

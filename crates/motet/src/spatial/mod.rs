@@ -9,7 +9,7 @@ pub mod trace;
 mod winding;
 
 pub use boxes::{Bounds, BoxTree};
-pub(crate) use boxes::{around, touch, widened};
+pub(crate) use boxes::{bounding_box, expanded, touch};
 pub use locate::{Located, Locator, OUTSIDE};
 pub use nearest::{Closest, NearestTriangle};
 pub use winding::WindingNumber;

@@ -26,9 +26,9 @@ pub(crate) fn corners(points: &[Point], triangle: [VertexId; 3]) -> [Point; 3] {
 }
 
 /// The box around points; one that touches nothing if any of them is not finite.
-pub(crate) fn around(points: &[Point]) -> Bounds {
+pub(crate) fn bounding_box(points: &[Point]) -> Bounds {
     if !points.iter().all(|&p| is_finite(p)) {
         return [[f64::NAN; 3]; 2];
     }
-    boxes::around(points.iter().copied())
+    boxes::bounding_box(points.iter().copied())
 }

@@ -14,10 +14,10 @@ use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 
 /// From this multiple of its radius on, a group of triangles is treated as one. The sum is then correct to a
 /// hundredth: the test below prints 0.0057 for a ball.
-const FAR: f64 = 4.0;
+const FAR_RATIO: f64 = 4.0;
 
 /// A group of no more triangles than this is not split.
-const FEW: usize = 8;
+const MAX_LEAF: usize = 8;
 
 /// A surface, its triangles in groups within groups.
 #[derive(Clone, Debug)]
@@ -49,23 +49,23 @@ impl WindingNumber {
         let corners = triangles.iter().map(|t| t.map(|v| points[v.index()])).collect();
         let mut tree = Self { triangles: corners, groups: Vec::new() };
         if !triangles.is_empty() {
-            tree.part(0, triangles.len());
+            tree.build_group(0, triangles.len());
         }
         tree
     }
 
     /// Makes the group of triangles `begin..end`, and those within it; returns its number.
-    fn part(&mut self, begin: usize, end: usize) -> u32 {
+    fn build_group(&mut self, begin: usize, end: usize) -> u32 {
         let number = self.groups.len();
         self.groups.push(Group::of(&self.triangles[begin..end], [begin as u32, end as u32]));
-        if end - begin > FEW {
+        if end - begin > MAX_LEAF {
             let members = &mut self.triangles[begin..end];
             let axis = longest_axis(members);
             let middle = members.len() / 2;
             let key = |t: &[Point; 3]| t[0][axis] + t[1][axis] + t[2][axis];
             members.select_nth_unstable_by(middle, |s, t| key(s).total_cmp(&key(t)));
-            self.part(begin, begin + middle);
-            self.groups[number].second = self.part(begin + middle, end);
+            self.build_group(begin, begin + middle);
+            self.groups[number].second = self.build_group(begin + middle, end);
         }
         number as u32
     }
@@ -73,20 +73,20 @@ impl WindingNumber {
     /// How often the surface goes around `p`: 1 inside a surface that faces outward, 0 outside, and something
     /// between on it.
     pub fn at(&self, p: Point) -> f64 {
-        if self.groups.is_empty() { 0.0 } else { self.of_group(0, p) / (4.0 * PI) }
+        if self.groups.is_empty() { 0.0 } else { self.solid_angle_of_group(0, p) / (4.0 * PI) }
     }
 
-    fn of_group(&self, number: u32, p: Point) -> f64 {
+    fn solid_angle_of_group(&self, number: u32, p: Point) -> f64 {
         let group = &self.groups[number as usize];
         let away = distance(group.centre, p);
-        if away > FAR * group.radius {
+        if away > FAR_RATIO * group.radius {
             return dot(group.dipole, sub(group.centre, p)) / (away * away * away);
         }
         if group.second == 0 {
             let [begin, end] = group.range;
             return self.triangles[begin as usize..end as usize].iter().map(|t| solid_angle(*t, p)).sum();
         }
-        self.of_group(number + 1, p) + self.of_group(group.second, p)
+        self.solid_angle_of_group(number + 1, p) + self.solid_angle_of_group(group.second, p)
     }
 }
 
@@ -112,7 +112,8 @@ fn longest_axis(triangles: &[[Point; 3]]) -> usize {
     (0..3).max_by(|&i, &j| extent(i).total_cmp(&extent(j))).unwrap_or(0)
 }
 
-/// The solid angle of a triangle seen from `p`, positive from behind (van Oosterom and Strackee 1983, *The solid angle of a plane triangle*).
+/// The solid angle of a triangle seen from `p`, positive from behind (van Oosterom and Strackee 1983, *The solid
+/// angle of a plane triangle*).
 fn solid_angle(triangle: [Point; 3], p: Point) -> f64 {
     let [a, b, c] = triangle.map(|q| sub(q, p));
     let [la, lb, lc] = [norm(a), norm(b), norm(c)];
@@ -127,7 +128,7 @@ mod tests {
     use crate::mesh::shapes::ball;
 
     #[test]
-    fn a_ball_is_round_its_inside_and_half_of_it_round_half() {
+    fn winding_numbers_of_a_ball_and_of_half_a_ball() {
         let surface = Surface::boundary_of(&ball(12, 2));
         let whole = WindingNumber::new(&surface.points, &surface.triangles);
         let exact = |triangles: &[[VertexId; 3]], p: Point| -> f64 {

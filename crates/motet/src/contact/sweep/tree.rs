@@ -7,7 +7,7 @@
 use super::queue::{Item, Queue};
 use crate::base::Point;
 use crate::geometry::vector::{add, scale, sub};
-use crate::spatial::{Bounds, around};
+use crate::spatial::{Bounds, bounding_box};
 
 /// Boxes in a leaf.
 const LEAF: usize = 2;
@@ -25,7 +25,7 @@ pub(super) struct MovingBox {
 impl MovingBox {
     /// The box around points, with their velocities; all must be finite.
     pub(super) fn new<const N: usize>(points: [Point; N], velocities: [Point; N]) -> Self {
-        Self { place: around(points), velocity: around(velocities) }
+        Self { place: bounding_box(points), velocity: bounding_box(velocities) }
     }
 
     /// The box grown by a length on all sides.
@@ -35,7 +35,7 @@ impl MovingBox {
     }
 
     fn joined(self, other: Self) -> Self {
-        let join = |[a, b]: Bounds, [c, d]: Bounds| around([a, b, c, d]);
+        let join = |[a, b]: Bounds, [c, d]: Bounds| bounding_box([a, b, c, d]);
         Self { place: join(self.place, other.place), velocity: join(self.velocity, other.velocity) }
     }
 
@@ -111,7 +111,7 @@ impl MovingTree {
         if boxes.len() <= LEAF {
             return;
         }
-        let [low, high] = around(boxes.iter().map(|b| b.0.centre(time)));
+        let [low, high] = bounding_box(boxes.iter().map(|b| b.0.centre(time)));
         let size = sub(high, low);
         let axis = (0..3).max_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(0);
         let key = |b: &(MovingBox, u32)| b.0.centre(time)[axis];

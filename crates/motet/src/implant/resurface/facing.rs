@@ -6,7 +6,7 @@ use crate::geometry::triangle::{area, centroid};
 use crate::geometry::vector::{add, scale};
 use crate::mesh::{Surface, cone_volume};
 use crate::preflight::{Repairs, Role, repair};
-use crate::spatial::{Bounds, WindingNumber, around};
+use crate::spatial::{Bounds, WindingNumber, bounding_box};
 
 /// A vertex is inside a part above this winding number.
 const INSIDE: f64 = 0.5;
@@ -80,7 +80,7 @@ fn parts(surface: &Surface, came: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) {
         let n_turned = triangles.iter().filter(|&&t| !runs_alike(came[t], surface.triangles[t])).count();
         closed.push(Part {
             triangles: triangles.to_vec(),
-            bounds: around(corners.as_flattened().iter().map(|v| surface.points[v.index()])),
+            bounds: bounding_box(corners.as_flattened().iter().map(|v| surface.points[v.index()])),
             volume: volume(&surface.points, &corners),
             corners,
             came_inward: 2 * n_turned > triangles.len(),

@@ -10,7 +10,7 @@ use crate::geometry::triangle::area;
 use crate::geometry::vector::{distance, in_range};
 use crate::mesh::{Surface, firsts_at_place};
 use crate::preflight::renamed;
-use crate::spatial::{BoxTree, NearestTriangle, WindingNumber, around};
+use crate::spatial::{BoxTree, NearestTriangle, WindingNumber, bounding_box};
 
 /// A point is inside above this winding number.
 const INSIDE: f64 = 0.5;
@@ -59,7 +59,7 @@ impl Old {
         Ok(Self {
             nearest: NearestTriangle::new(&surface.points, &surface.triangles, threads),
             winding: WindingNumber::new(&surface.points, &surface.triangles),
-            boxes: BoxTree::new(&corners().map(around).collect::<Vec<_>>()),
+            boxes: BoxTree::new(&corners().map(bounding_box).collect::<Vec<_>>()),
             is_closed: is_closed(&surface.triangles),
             radius: 2.0 * volume / whole,
             surface,
@@ -117,7 +117,7 @@ impl Old {
     /// rest of the difference, near open ends, is spread evenly. Several triangles that meet where the way
     /// passes through count more than once: it ends there all the same.
     pub(super) fn end(&self, way: [Point; 2], [from, to]: [f64; 2], near: &mut Vec<u32>) -> f64 {
-        self.boxes.touching(around(way), near);
+        self.boxes.touching(bounding_box(way), near);
         let mut passed: Vec<(f64, f64)> = Vec::new();
         for &t in near.iter() {
             let [a, b, c] = self.surface.corners(t as usize);

@@ -4,7 +4,7 @@ use super::obstacle::Obstacle;
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::distance::triangle_triangle::closest_below;
 use crate::geometry::vector::largest_coordinate;
-use crate::spatial::{BoxTree, around, widened};
+use crate::spatial::{BoxTree, bounding_box, expanded};
 
 /// Anything nearer than this fraction of the largest coordinate touches.
 const TOUCHES: f64 = 1e-13;
@@ -36,7 +36,8 @@ impl Elements {
         threads: &Threads,
     ) -> Self {
         let of_node = obstacle.distances(nodes, places, threads);
-        let boxes: Vec<_> = obstacle.triangles.iter().map(|t| around(t.map(|v| places[v.index()]))).collect();
+        let boxes: Vec<_> =
+            obstacle.triangles.iter().map(|t| bounding_box(t.map(|v| places[v.index()]))).collect();
         let tree = BoxTree::new(&boxes);
         let touches = TOUCHES * largest_coordinate(places);
         let place = |v: &VertexId| nodes.binary_search(v).ok();
@@ -46,7 +47,7 @@ impl Elements {
             let corners = free[i].map(|v| places[v.index()]);
             let known = free[i].iter().filter_map(place).map(|k| of_node[k]).fold(distance, f64::min);
             let mut found = Vec::new();
-            tree.touching(widened(around(corners), known), &mut found);
+            tree.touching(expanded(bounding_box(corners), known), &mut found);
             found.iter().fold(known, |least, &t| {
                 let other = obstacle.triangles[t as usize].map(|v| places[v.index()]);
                 closest_below(corners, other, least * least).map_or(least, |closest| closest.distance())

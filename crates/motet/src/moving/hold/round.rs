@@ -8,7 +8,7 @@ use crate::base::{Point, Threads, VertexId};
 use crate::contact::{SLACK, sweep_apart};
 use crate::geometry::distance::triangle_triangle::closest_below;
 use crate::geometry::vector::{add, distance, dot, largest_coordinate, norm, scale, sub};
-use crate::spatial::{BoxTree, around, touch, widened};
+use crate::spatial::{BoxTree, bounding_box, expanded, touch};
 
 /// Elements that fall short of their distance by this fraction of it are pushed back, ...
 const TOO_NEAR: f64 = 1e-13;
@@ -89,8 +89,8 @@ impl<'a> Round<'a> {
         };
         let elements: Vec<Element> = elements.all.iter().filter(may_come_near).copied().collect();
         let way = elements.iter().flat_map(|e| e.corners).map(|v| start[v.index()]);
-        let near = widened(around(way), farthest + least);
-        let corners = |t: &[VertexId; 3]| around(t.map(|v| start[v.index()]));
+        let near = expanded(bounding_box(way), farthest + least);
+        let corners = |t: &[VertexId; 3]| bounding_box(t.map(|v| start[v.index()]));
         let others: Vec<_> = obstacle.triangles.iter().filter(|t| touch(corners(t), near)).copied().collect();
         let tree = BoxTree::new(&others.iter().map(corners).collect::<Vec<_>>());
         let rounding = ROUNDING * largest_coordinate(start).max(largest_coordinate(wanted));
@@ -242,7 +242,7 @@ impl<'a> Round<'a> {
     /// The triangles of the obstacle that may be within reach.
     fn around(&self, here: [Point; 3], reach: f64) -> Vec<u32> {
         let mut found = Vec::new();
-        self.tree.touching(widened(around(here), reach), &mut found);
+        self.tree.touching(expanded(bounding_box(here), reach), &mut found);
         found
     }
 

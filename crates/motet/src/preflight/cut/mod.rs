@@ -23,8 +23,8 @@ use crate::base::{Csr, Point, Threads, VertexId, rising};
 use crate::geometry::vector::distance;
 use crate::preflight::crossing::crossings_of;
 use crate::preflight::renamed;
-use crate::spatial::runs::{around, corners, in_runs};
-use crate::spatial::{BoxTree, widened};
+use crate::spatial::runs::{bounding_box, corners, in_runs};
+use crate::spatial::{BoxTree, expanded};
 use common::{Common, NumberedTriangle};
 pub(crate) use meeting::{Meeting, MeetingKind};
 use points::Points;
@@ -136,7 +136,8 @@ impl Cut {
     /// The pairs of pieces that have to be divided. `None` if there are too many.
     fn pairs(&self, rule: &Rule, threads: &Threads) -> Option<Vec<Pair>> {
         let corners = |i: usize| corners(&self.points, self.pieces[i].0);
-        let boxes: Vec<_> = (0..self.pieces.len()).map(|i| widened(around(&corners(i)), rule.near)).collect();
+        let boxes: Vec<_> =
+            (0..self.pieces.len()).map(|i| expanded(bounding_box(&corners(i)), rule.near)).collect();
         let (tree, n_found) = (BoxTree::new(&boxes), AtomicUsize::new(0));
         let triangle = |i: usize| {
             let (vertices, number) = (self.pieces[i].0, i as u32);
@@ -146,7 +147,7 @@ impl Cut {
         let found = in_runs(self.pieces.len(), threads, |touching, run| {
             let mut found = Vec::new();
             for i in run {
-                tree.touching(around(&corners(i)), touching);
+                tree.touching(bounding_box(&corners(i)), touching);
                 for &j in
                     touching.iter().filter(|&&j| i < j as usize && (rule.admits)(group(i), group(j as usize)))
                 {
@@ -213,7 +214,7 @@ fn joined(points: &[Point], pieces: &[([VertexId; 3], u32)], rule: &Rule) -> Vec
     let (tree, mut touching) = (BoxTree::new(&boxes), Vec::new());
     let mut vertex_to_kept: Vec<VertexId> = (0..points.len()).map(VertexId::new).collect();
     for &v in &used {
-        tree.touching(widened([points[v]; 2], rule.near), &mut touching);
+        tree.touching(expanded([points[v]; 2], rule.near), &mut touching);
         let admits =
             |w: usize| groups.list(v).iter().any(|&g| groups.list(w).iter().any(|&h| (rule.admits)(g, h)));
         let off = |w: usize| distance(points[v], points[w]);

@@ -18,7 +18,7 @@ use crate::preflight::crossing::own_crossings;
 use crate::preflight::cut::{Cut, Meeting, MeetingKind, Rule};
 use crate::preflight::single::{Shape, shapes};
 use crate::preflight::surfaces::Role;
-use crate::spatial::{BoxTree, WindingNumber, around};
+use crate::spatial::{BoxTree, WindingNumber, bounding_box};
 
 /// The result of dividing: all points, the origins of the new ones, the vertex that each given one has
 /// become, and the pieces.
@@ -115,7 +115,7 @@ fn at_open_edges(points: &[Point], open: &[([VertexId; 2], u32)], near: f64) -> 
     let (mut touching, mut found) = (Vec::new(), Vec::new());
     for &(edge, t) in open {
         let [from, to] = edge.map(at);
-        let [low, high] = around([from, to]);
+        let [low, high] = bounding_box([from, to]);
         tree.touching([low.map(|x| x - near), high.map(|x| x + near)], &mut touching);
         let is_on = |v: VertexId| {
             let p = at(v);

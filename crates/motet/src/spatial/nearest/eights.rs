@@ -15,16 +15,16 @@ const U: f64 = 1.0 / 16_777_216.0;
 /// coordinate of the point. Coordinates are rounded: `sqrt(3) U` for the point and for the surface. A
 /// triangle: three scalar products of vectors up to `3 sqrt(3)` long in all, 5 U of that, `26 U`; with the
 /// point at `s`, its difference to a point of the triangle is off by `(3 s + 11) U` per axis, and that point
-/// lies off the triangle by `6 U` per axis. A turned box: 3 U of `sqrt(3)` for the point and as much for its
-/// sides, `18 U` along the three axes.
+/// lies off the triangle by `6 U` per axis. An oriented box: 3 U of `sqrt(3)` for the point and as much for
+/// its sides, `18 U` along the three axes.
 pub(super) const ROUNDING: f64 = 32.0 * U;
 
 /// The relative rounding error of the square of a bound.
-pub(super) const ROUNDING_OF_SQUARE: f64 = 16.0 * U;
+pub(super) const SQUARE_ROUNDING: f64 = 16.0 * U;
 
 /// The largest coordinate for slabs: the square of a normal times a corner, `24 x^3`, must not overflow 32
 /// bits.
-pub(super) const MOST_OF_SLABS: f64 = 1e5;
+pub(super) const MAX_SLAB_COORDINATE: f64 = 1e5;
 
 /// Eight axis-aligned boxes. A box with `low` above `high` is empty.
 #[derive(Clone, Copy, Debug)]
@@ -144,7 +144,7 @@ impl Triangles {
                 (low, high) = (x.min(low), x.max(high));
             }
         }
-        [low.least(), high.most()]
+        [low.reduce_min(), high.reduce_max()]
     }
 
     /// Squared lower bounds of the distances from `p` to each triangle, up to rounding (mostly equal to the
@@ -177,18 +177,18 @@ impl Triangles {
             let height1 = v1 * (v1 * bb - pb - pb);
             let height2 = w2 * (w2 * cc - pc - pc);
             let height3 = v3.mul_add(v3 * bb + (w3 * bc - pb) + (w3 * bc - pb), w3 * (w3 * cc - pc - pc));
-            let is_first = |x: Lanes<S>, y: Lanes<S>| height1.if_below(height2, x, y);
+            let is_first = |x: Lanes<S>, y: Lanes<S>| height1.select_below(height2, x, y);
             let (mut v, mut w) = (is_first(v1, zero), is_first(zero, w2));
             let height = is_first(height1, height2);
-            v = height3.if_below(height, v3, v);
-            w = height3.if_below(height, w3, w);
+            v = height3.select_below(height, v3, v);
+            w = height3.select_below(height, w3, w);
             let per_area = one / (bb * cc - bc * bc);
             let v0 = (cc * pb - bc * pc) * per_area;
             let w0 = (bb * pc - bc * pb) * per_area;
             let least = v0.min(w0).min(one - v0 - w0);
             // NaN, from triangles without area, is not above zero.
-            v = zero.if_below(least, v0, v);
-            w = zero.if_below(least, w0, w);
+            v = zero.select_below(least, v0, v);
+            w = zero.select_below(least, w0, w);
             let mut u = [zero; 3];
             for axis in 0..3 {
                 u[axis] = ap[axis] - v * ab[axis] - w * ac[axis];
@@ -196,18 +196,18 @@ impl Triangles {
             let nearest_corner = dot(ap, u) - dot(ab, u).max(dot(ac, u)).max(zero);
             // Also disregards lengths that underflow.
             let square = dot(u, u) + Lanes::splat(simd, 1e-30);
-            above = square.if_below(above, square, above);
+            above = square.select_below(above, square, above);
             let along = nearest_corner.max(zero);
             (along * along / square).store(&mut out, i);
         }
-        (out, above.least())
+        (out, above.reduce_min())
     }
 
     /// Squared lower bounds of the distances of each triangle from another one, up to rounding.
     ///
     /// Triangles are at least as far apart as their projections onto any direction. Two directions are tried:
     /// the normal of the other triangle, and the vector between the centroids. No coordinate may be above
-    /// [`MOST_OF_SLABS`].
+    /// [`MAX_SLAB_COORDINATE`].
     #[inline(always)]
     pub(super) fn slabs_squared<S: Simd>(&self, simd: S, other: [[f32; 3]; 3]) -> Eight {
         let mut out = [0.0; 8];

@@ -53,7 +53,7 @@ impl<S: Simd> Lanes<S> {
 
     /// The absolute value.
     #[inline(always)]
-    pub(super) fn size(self) -> Self {
+    pub(super) fn abs(self) -> Self {
         Self(self.0, self.0.abs_f32s(self.1))
     }
 
@@ -71,19 +71,19 @@ impl<S: Simd> Lanes<S> {
 
     /// The smallest of this part.
     #[inline(always)]
-    pub(super) fn least(self) -> f32 {
+    pub(super) fn reduce_min(self) -> f32 {
         self.0.reduce_min_f32s(self.1)
     }
 
     /// The largest of this part.
     #[inline(always)]
-    pub(super) fn most(self) -> f32 {
+    pub(super) fn reduce_max(self) -> f32 {
         self.0.reduce_max_f32s(self.1)
     }
 
     /// `yes` where this is below `limit`; elsewhere, and where either is NaN, `no`.
     #[inline(always)]
-    pub(super) fn if_below(self, limit: Self, yes: Self, no: Self) -> Self {
+    pub(super) fn select_below(self, limit: Self, yes: Self, no: Self) -> Self {
         let mask = self.0.less_than_f32s(self.1, limit.1);
         Self(self.0, self.0.select_f32s(mask, yes.1, no.1))
     }

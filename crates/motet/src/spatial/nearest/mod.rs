@@ -3,10 +3,11 @@
 mod eights;
 mod lanes;
 mod nearby;
+mod node;
+mod oriented;
 mod packed;
 mod pairs;
 mod search;
-mod turned;
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -14,8 +15,8 @@ use rayon::prelude::*;
 use crate::base::{Point, Threads, VertexId};
 use nearby::Nearby;
 use packed::Packed;
-use pairs::{Pairs, Reach};
-use search::{Admit, All, Search, Where};
+use pairs::{PairSearch, Reach};
+use search::{Admit, All, Filtered, Search};
 
 /// The result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +51,7 @@ const NO_GUESS: u32 = u32::MAX;
 const RUN: usize = 256;
 
 /// Groups of eight leaves whose pairs one thread examines at a time.
-const EIGHTS: usize = 16;
+const EIGHTS_PER_TASK: usize = 16;
 
 impl NearestTriangle {
     /// Builds the tree, in `O(n log n)`.
@@ -83,7 +84,7 @@ impl NearestTriangle {
     /// The point of the surface closest to `p`, if it is no farther than `distance`; `None` if everything is
     /// beyond.
     pub fn closest_within(&self, p: Point, distance: f64) -> Option<Closest> {
-        Arch::new().dispatch(One { tree: &self.tree, p, reach: distance * distance, admit: All })
+        Arch::new().dispatch(SingleSearch { tree: &self.tree, p, reach: distance * distance, admit: All })
     }
 
     /// The closest of those triangles within `distance` that `admit` admits. `admit` receives the index of a
@@ -98,8 +99,8 @@ impl NearestTriangle {
         distance: f64,
         admit: impl FnMut(u32, &Closest) -> bool,
     ) -> Option<Closest> {
-        let admit = Where(admit);
-        Arch::new().dispatch(One { tree: &self.tree, p, reach: distance * distance, admit })
+        let admit = Filtered(admit);
+        Arch::new().dispatch(SingleSearch { tree: &self.tree, p, reach: distance * distance, admit })
     }
 
     /// The points of the surface closest to each of many points, as by [`closest`](Self::closest).
@@ -117,13 +118,13 @@ impl NearestTriangle {
         threads: &Threads,
     ) -> Vec<Option<Closest>> {
         let order = match guesses {
-            None => packed::along_curve(points, threads),
+            None => packed::hilbert_order(points, threads),
             Some(guesses) => {
                 assert_eq!(points.len(), guesses.len(), "a guess for each point");
-                self.tree.along_places(guesses)
+                self.tree.order_by_place(guesses)
             }
         };
-        let runs = order.chunks(RUN).map(|order| Run { tree: &self.tree, points, guesses, order });
+        let runs = order.chunks(RUN).map(|order| SearchRun { tree: &self.tree, points, guesses, order });
         let arch = Arch::new();
         let Some(pool) = threads.pool() else {
             // Each run is stored at once, so that the next one reuses its memory.
@@ -156,32 +157,32 @@ impl NearestTriangle {
         threads: &Threads,
         pair: impl Fn(&mut T, u32, u32, f64) -> Option<f64> + Sync,
     ) -> Option<(f64, u32, u32)> {
-        let (reach, arch, n) = (Reach::new(start), Arch::new(), self.tree.turned.len());
+        let (reach, arch, n) = (Reach::new(start), Arch::new(), self.tree.oriented.len());
         let run = |state: &mut T, eights| {
             let pair = |i: u32, j: u32, bound: f64| pair(state, i, j, bound);
-            arch.dispatch(Pairs { from: &self.tree, to: &other.tree, eights, reach: &reach, pair })
+            arch.dispatch(PairSearch { from: &self.tree, to: &other.tree, eights, reach: &reach, pair })
         };
         let nearer = |x: (f64, u32, u32), y| if y < x { y } else { x };
         match threads.pool() {
             None => run(&mut T::default(), 0..n),
             Some(pool) => pool.install(|| {
-                let runs = (0..n.div_ceil(EIGHTS)).into_par_iter();
-                let runs = runs.map(|k| k * EIGHTS..n.min((k + 1) * EIGHTS));
+                let runs = (0..n.div_ceil(EIGHTS_PER_TASK)).into_par_iter();
+                let runs = runs.map(|k| k * EIGHTS_PER_TASK..n.min((k + 1) * EIGHTS_PER_TASK));
                 runs.map_init(T::default, run).flatten().reduce_with(nearer)
             }),
         }
     }
 }
 
-/// One search, compiled for the instruction set of the machine, as is [`Run`] for many.
-struct One<'a, A> {
+/// One search, compiled for the instruction set of the machine, as is [`SearchRun`] for many.
+struct SingleSearch<'a, A> {
     tree: &'a Packed,
     p: Point,
     reach: f64,
     admit: A,
 }
 
-impl<A: Admit> WithSimd for One<'_, A> {
+impl<A: Admit> WithSimd for SingleSearch<'_, A> {
     type Output = Option<Closest>;
 
     #[inline(always)]
@@ -193,7 +194,7 @@ impl<A: Admit> WithSimd for One<'_, A> {
 }
 
 #[derive(Clone, Copy)]
-struct Run<'a> {
+struct SearchRun<'a> {
     tree: &'a Packed,
     points: &'a [Point],
     guesses: Option<&'a [u32]>,
@@ -201,7 +202,7 @@ struct Run<'a> {
     order: &'a [u32],
 }
 
-impl WithSimd for Run<'_> {
+impl WithSimd for SearchRun<'_> {
     type Output = Vec<Option<Closest>>;
 
     #[inline(always)]
@@ -210,13 +211,13 @@ impl WithSimd for Run<'_> {
         let mut found = Vec::with_capacity(self.order.len());
         for &i in self.order {
             let guess = match self.guesses {
-                Some(guesses) if self.tree.knows(guesses[i as usize]) => guesses[i as usize],
+                Some(guesses) if self.tree.has_triangle(guesses[i as usize]) => guesses[i as usize],
                 _ => last,
             };
             let p = self.points[i as usize];
             let mut closest = None;
             if let Some(mut search) = Search::new(self.tree, simd, p, f64::INFINITY, All) {
-                search.begin_at(guess);
+                search.try_first(guess);
                 search.descend_nearby(&mut nearby);
                 closest = search.finish();
             }

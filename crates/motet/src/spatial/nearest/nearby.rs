@@ -8,8 +8,8 @@
 use pulp::Simd;
 
 use super::eights::Boxes;
+use super::node::{Node, STACK_SIZE, put_nearest_on_top};
 use super::packed::Packed;
-use super::search::{Node, OPEN, put_nearest_on_top};
 
 /// The number of groups of eight boxes.
 pub(super) const N_EIGHTS: usize = 2;
@@ -18,8 +18,9 @@ const N: usize = 8 * N_EIGHTS;
 /// More than the relative rounding error of a length.
 const ROUNDING: f64 = 1e-6;
 
-/// A part that served fewer than `FEW` searches did not pay off; the next `PAUSE` searches do without one.
-const FEW: u32 = 4;
+/// A part that served fewer than `MIN_SERVED` searches did not pay off; the next `PAUSE` searches do without
+/// one.
+const MIN_SERVED: u32 = 4;
 const PAUSE: u32 = 32;
 
 /// The boxes around eight leaves each that are nearest to a place.
@@ -40,7 +41,7 @@ impl Nearby {
             reach: -1.0,
             boxes: [Boxes::EMPTY; N_EIGHTS],
             nodes: [0; N],
-            n_served: FEW,
+            n_served: MIN_SERVED,
             n_without: 0,
         }
     }
@@ -54,7 +55,7 @@ impl Nearby {
             self.n_served += 1;
             return true;
         }
-        if self.n_served < FEW {
+        if self.n_served < MIN_SERVED {
             self.n_without += 1;
             if self.n_without < PAUSE {
                 return false;
@@ -80,7 +81,7 @@ impl Nearby {
             let is_there = bound < f32::INFINITY;
             let [low, high] = if is_there { tree.boxes[node].get(lane) } else { Boxes::EMPTY.get(0) };
             self.boxes[i / 8].set(i % 8, (low, high));
-            self.nodes[i] = if is_there { tree.first_within[node] + lane as u32 } else { 0 };
+            self.nodes[i] = if is_there { tree.first_child[node] + lane as u32 } else { 0 };
         }
         self.centre = p;
         self.reach = f64::from(Node::of(nearest[N]).1).sqrt() * (1.0 - ROUNDING);
@@ -92,7 +93,7 @@ impl Nearby {
 #[inline(always)]
 fn nearest<S: Simd>(tree: &Packed, simd: S, p: [f32; 3]) -> [u64; N + 1] {
     let mut nearest = [Node(0, f32::INFINITY).packed(); N + 1];
-    let mut open = [0; OPEN];
+    let mut open = [0; STACK_SIZE];
     let mut n_open = 1;
     while n_open > 0 {
         n_open -= 1;
@@ -102,13 +103,13 @@ fn nearest<S: Simd>(tree: &Packed, simd: S, p: [f32; 3]) -> [u64; N + 1] {
         }
         let node = Node::of(next).0;
         let bounds = tree.boxes[node as usize].distances_squared(simd, p);
-        let first = tree.first_within[node as usize];
+        let first = tree.first_child[node as usize];
         let start = n_open;
         for lane in 0..8 {
             let bound = bounds[lane as usize];
             if (first as usize) < tree.boxes.len() {
                 let x = Node(first + lane, bound).packed();
-                if x < nearest[N] && n_open < OPEN {
+                if x < nearest[N] && n_open < STACK_SIZE {
                     open[n_open] = x;
                     n_open += 1;
                 }

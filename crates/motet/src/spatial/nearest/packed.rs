@@ -8,14 +8,14 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::eights::{Boxes, Triangles, larger, smaller};
-use super::turned::TurnedBoxes;
+use super::oriented::OrientedBoxes;
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::vector::{add, is_finite, scale, sub};
-use crate::spatial::around;
-use crate::spatial::hilbert::{Curve, KEY_BITS, cube};
+use crate::spatial::bounding_box;
+use crate::spatial::hilbert::{Curve, KEY_BITS, bounding_cube};
 
 /// Coordinates in a frame are clamped to this, 2^30.
-pub(super) const FARTHEST: f64 = 1_073_741_824.0;
+pub(super) const MAX_COORDINATE: f64 = 1_073_741_824.0;
 
 /// The shift (subtract `centre`) and the factor (multiply by `scale`) that bring all coordinates between -1
 /// and 1.
@@ -30,7 +30,7 @@ pub(super) struct Frame {
 impl Frame {
     /// The frame of the finite points. Its scale is a power of two, so that multiplying does not round.
     fn around(points: &[Point]) -> Self {
-        let [low, high] = around(points.iter().copied().filter(|p| is_finite(*p)));
+        let [low, high] = bounding_box(points.iter().copied().filter(|p| is_finite(*p)));
         let half = (0..3).map(|k| 0.5 * high[k] - 0.5 * low[k]).fold(0.0, f64::max);
         let centre = [0, 1, 2].map(|k| 0.5 * low[k] + 0.5 * high[k]);
         let centre = if is_finite(centre) { centre } else { [0.0; 3] };
@@ -46,21 +46,21 @@ impl Frame {
     pub(super) fn of(&self, p: Point) -> [f32; 3] {
         let x = scale(sub(p, self.centre), self.scale);
         [
-            x[0].clamp(-FARTHEST, FARTHEST) as f32,
-            x[1].clamp(-FARTHEST, FARTHEST) as f32,
-            x[2].clamp(-FARTHEST, FARTHEST) as f32,
+            x[0].clamp(-MAX_COORDINATE, MAX_COORDINATE) as f32,
+            x[1].clamp(-MAX_COORDINATE, MAX_COORDINATE) as f32,
+            x[2].clamp(-MAX_COORDINATE, MAX_COORDINATE) as f32,
         ]
     }
 
     /// Converts a place in units of the frame back to a point.
     #[inline(always)]
-    pub(super) fn back(&self, x: [f32; 3]) -> Point {
+    pub(super) fn to_point(&self, x: [f32; 3]) -> Point {
         add(scale(x.map(f64::from), 1.0 / self.scale), self.centre)
     }
 }
 
 /// Boxes of the lowest level, each with 512 triangles, that a thread fits at a time.
-const BOXES: usize = 8;
+const BOXES_PER_TASK: usize = 8;
 
 /// The tree. A triangle is known by its *place* in the order; leaf `i` has places `8 i` to `8 i + 7`.
 #[derive(Clone, Debug)]
@@ -82,20 +82,20 @@ pub(super) struct Packed {
     /// For each leaf, a bit for each triangle whose corners are finite.
     pub(super) is_sound: Vec<u8>,
     /// The boxes around the leaves.
-    pub(super) turned: Vec<TurnedBoxes>,
+    pub(super) oriented: Vec<OrientedBoxes>,
     /// All boxes above, from the root down to those around eight leaves each.
     pub(super) boxes: Vec<Boxes>,
     /// Where in `boxes` each level starts, from the lowest up.
     levels: Vec<usize>,
-    /// The first child of each of `boxes`, numbered through all `boxes`, then `turned`, then leaves.
-    pub(super) first_within: Vec<u32>,
+    /// The first child of each of `boxes`, numbered through all `boxes`, then `oriented`, then leaves.
+    pub(super) first_child: Vec<u32>,
     /// Points in units of the frame; kept as a buffer, since memory that was written before is cheaper.
     framed: Vec<[f32; 3]>,
 }
 
 impl Packed {
     pub(super) fn new(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Self {
-        let ids = by_halves(points, triangles, threads);
+        let ids = spatial_order(points, triangles, threads);
         let mut id_to_place = vec![0; ids.len()];
         for (&id, place) in ids.iter().zip(0..) {
             id_to_place[id as usize] = place;
@@ -118,8 +118,8 @@ impl Packed {
             own.push(triangle);
         }
         let n_leaves = ids.len().div_ceil(8);
-        let n_turned = n_leaves.div_ceil(8);
-        let (levels, n_boxes) = levels(n_turned);
+        let n_oriented = n_leaves.div_ceil(8);
+        let (levels, n_boxes) = levels(n_oriented);
         let mut tree = Self {
             frame: Frame::around(&[]),
             ids,
@@ -131,9 +131,9 @@ impl Packed {
             n_points,
             leaves: vec![Triangles::NONE; n_leaves],
             is_sound: vec![0; n_leaves],
-            turned: vec![TurnedBoxes::EMPTY; n_turned],
+            oriented: vec![OrientedBoxes::EMPTY; n_oriented],
             boxes: vec![Boxes::EMPTY; n_boxes],
-            first_within: first_within(&levels, n_boxes),
+            first_child: first_child(&levels, n_boxes),
             levels,
         };
         tree.fit(points, threads);
@@ -168,27 +168,30 @@ impl Packed {
 
     fn fit_leaves(&mut self, threads: &Threads) {
         let arch = Arch::new();
-        let fit = |triangles, leaves, is_sound, turned, boxes| {
-            arch.dispatch(FitLeaves { triangles, framed: &self.framed, leaves, is_sound, turned, boxes });
+        let fit = |triangles, leaves, is_sound, oriented, boxes| {
+            arch.dispatch(FitLeaves { triangles, framed: &self.framed, leaves, is_sound, oriented, boxes });
         };
         let boxes = &mut self.boxes[self.levels[0]..];
         let Some(pool) = threads.pool() else {
-            return fit(&self.triangles, &mut self.leaves, &mut self.is_sound, &mut self.turned, boxes);
+            return fit(&self.triangles, &mut self.leaves, &mut self.is_sound, &mut self.oriented, boxes);
         };
-        let (leaves, is_sound) =
-            (self.leaves.par_chunks_mut(64 * BOXES), self.is_sound.par_chunks_mut(64 * BOXES));
-        let (turned, boxes) = (self.turned.par_chunks_mut(8 * BOXES), boxes.par_chunks_mut(BOXES));
-        let triangles = self.triangles.par_chunks(512 * BOXES);
-        let parts = triangles.zip(leaves).zip(is_sound).zip(turned).zip(boxes);
+        let (leaves, is_sound) = (
+            self.leaves.par_chunks_mut(64 * BOXES_PER_TASK),
+            self.is_sound.par_chunks_mut(64 * BOXES_PER_TASK),
+        );
+        let (oriented, boxes) =
+            (self.oriented.par_chunks_mut(8 * BOXES_PER_TASK), boxes.par_chunks_mut(BOXES_PER_TASK));
+        let triangles = self.triangles.par_chunks(512 * BOXES_PER_TASK);
+        let parts = triangles.zip(leaves).zip(is_sound).zip(oriented).zip(boxes);
         pool.install(|| {
-            parts.for_each(|((((t, leaves), is_sound), turned), b)| fit(t, leaves, is_sound, turned, b))
+            parts.for_each(|((((t, leaves), is_sound), oriented), b)| fit(t, leaves, is_sound, oriented, b))
         });
     }
 
     /// The box around eight leaves.
     #[inline(always)]
-    pub(super) fn around_turned(&self, turned: usize) -> [[f32; 3]; 2] {
-        self.boxes[self.levels[0] + turned / 8].get(turned % 8)
+    pub(super) fn around_oriented(&self, oriented: usize) -> [[f32; 3]; 2] {
+        self.boxes[self.levels[0] + oriented / 8].get(oriented % 8)
     }
 
     /// The box around the sound triangles of a leaf; computed, since it is not stored.
@@ -197,13 +200,13 @@ impl Packed {
         self.leaves[leaf].boxes(simd).around_some(self.is_sound[leaf].into())
     }
 
-    pub(super) fn knows(&self, id: u32) -> bool {
+    pub(super) fn has_triangle(&self, id: u32) -> bool {
         (id as usize) < self.ids.len()
     }
 
     /// Indices into `triangles` in the order of the triangles' places; those of ids that do not exist come
     /// last.
-    pub(super) fn along_places(&self, triangles: &[u32]) -> Vec<u32> {
+    pub(super) fn order_by_place(&self, triangles: &[u32]) -> Vec<u32> {
         let place =
             |&id: &u32| self.id_to_place.get(id as usize).map_or(u64::from(u32::MAX), |&place| place.into());
         sorted_by_key(triangles.iter().map(place))
@@ -219,7 +222,7 @@ impl Packed {
             + size_of_val(&self.leaves[..])
             + size_of_val(&self.is_sound[..])
             + size_of_val(&self.boxes[..])
-            + size_of_val(&self.turned[..])
+            + size_of_val(&self.oriented[..])
             + size_of_val(&self.framed[..])
     }
 
@@ -236,7 +239,7 @@ struct FitLeaves<'a> {
     framed: &'a [[f32; 3]],
     leaves: &'a mut [Triangles],
     is_sound: &'a mut [u8],
-    turned: &'a mut [TurnedBoxes],
+    oriented: &'a mut [OrientedBoxes],
     boxes: &'a mut [Boxes],
 }
 
@@ -245,11 +248,11 @@ impl WithSimd for FitLeaves<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
-        for i in 0..self.turned.len() {
+        for i in 0..self.oriented.len() {
             let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
             for leaf in 8 * i..self.leaves.len().min(8 * i + 8) {
                 let around = self.fit_leaf(leaf);
-                self.turned[i].set(simd, leaf % 8, &self.leaves[leaf], self.is_sound[leaf]);
+                self.oriented[i].set(simd, leaf % 8, &self.leaves[leaf], self.is_sound[leaf]);
                 for axis in 0..3 {
                     low[axis] = smaller(around.0[axis], low[axis]);
                     high[axis] = larger(around.1[axis], high[axis]);
@@ -292,8 +295,8 @@ impl FitLeaves<'_> {
 
 /// Where each level starts, from the lowest up (the root is first in memory), and how many groups of eight
 /// boxes there are.
-fn levels(n_turned: usize) -> (Vec<usize>, usize) {
-    let mut counts = vec![n_turned.div_ceil(8)];
+fn levels(n_oriented: usize) -> (Vec<usize>, usize) {
+    let mut counts = vec![n_oriented.div_ceil(8)];
     while counts[counts.len() - 1] > 1 {
         counts.push(counts[counts.len() - 1].div_ceil(8));
     }
@@ -304,7 +307,7 @@ fn levels(n_turned: usize) -> (Vec<usize>, usize) {
 }
 
 /// The first child of each group of eight boxes.
-fn first_within(levels: &[usize], n_boxes: usize) -> Vec<u32> {
+fn first_child(levels: &[usize], n_boxes: usize) -> Vec<u32> {
     let mut first = vec![0; n_boxes];
     let mut start_below = n_boxes;
     let mut end = n_boxes;
@@ -332,9 +335,9 @@ fn ordered(bits: u32) -> i32 {
 /// down to eights.
 ///
 /// A Hilbert curve takes a third of the time, but searches then examine twice as many boxes.
-fn by_halves(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Vec<u32> {
+fn spatial_order(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Vec<u32> {
     let used = || triangles.iter().map(|t| points[t[0].index()]).filter(|p| is_finite(*p));
-    let (corner, extent) = cube(used());
+    let (corner, extent) = bounding_cube(used());
     let per_extent = 1.0 / extent.max(1e-300);
     let middle = |t: &[VertexId; 3]| {
         let corners = t.map(|v| scale(sub(points[v.index()], corner), per_extent).map(|x| x as f32));
@@ -369,7 +372,7 @@ fn middle_of_longest([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
 }
 
 /// Up to this many items are halved by one thread.
-const SHARED: usize = 2048;
+const MAX_SERIAL_ITEMS: usize = 2048;
 
 /// Sorts by halving. The first half has eight times a power of two items, so that leaves and boxes of leaves
 /// are halves, too.
@@ -399,7 +402,7 @@ fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>, is_shared: bool) {
     let (mut below, mut above) = (high, low);
     (below[axis], above[axis]) = (cut, cut);
     let is_known = known.is_none();
-    let is_shared = is_shared && left.len() > SHARED;
+    let is_shared = is_shared && left.len() > MAX_SERIAL_ITEMS;
     let mut left = || halve(left, is_known.then_some([low, below]), is_shared);
     let mut right = || halve(right, is_known.then_some([above, high]), is_shared);
     if is_shared {
@@ -411,9 +414,9 @@ fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>, is_shared: bool) {
 }
 
 /// Indices of the points in their order along a Hilbert curve through the finite ones.
-pub(super) fn along_curve(points: &[Point], threads: &Threads) -> Vec<u32> {
+pub(super) fn hilbert_order(points: &[Point], threads: &Threads) -> Vec<u32> {
     assert!(points.len() < 1 << (64 - KEY_BITS), "{} are too many", points.len());
-    let (corner, extent) = cube(points.iter().copied().filter(|p| is_finite(*p)));
+    let (corner, extent) = bounding_cube(points.iter().copied().filter(|p| is_finite(*p)));
     let curve = Curve::new(corner, extent);
     sorted_by_key(threads.map(points.len(), |i| curve.key(points[i])).into_iter())
 }

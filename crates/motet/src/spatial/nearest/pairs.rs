@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use pulp::{Simd, WithSimd};
 
-use super::eights::{Boxes, MOST_OF_SLABS, ROUNDING, Triangles, larger};
+use super::eights::{Boxes, MAX_SLAB_COORDINATE, ROUNDING, Triangles, larger};
 use super::lanes::at_most;
-use super::packed::{FARTHEST, Packed};
-use super::search::{ROUNDING_OF_EXACT, UNDERFLOW, bound};
+use super::packed::{MAX_COORDINATE, Packed};
+use super::search::{EXACT_ROUNDING, UNDERFLOW, bound};
 use crate::geometry::vector::{scale, sub};
 
 /// The square of the smallest distance so far, shared by all threads. A thread that reads it late examines
@@ -37,7 +37,7 @@ impl Reach {
 }
 
 /// The search from some groups of eight leaves of `from`.
-pub(super) struct Pairs<'a, F> {
+pub(super) struct PairSearch<'a, F> {
     pub(super) from: &'a Packed,
     pub(super) to: &'a Packed,
     pub(super) eights: Range<usize>,
@@ -46,7 +46,7 @@ pub(super) struct Pairs<'a, F> {
     pub(super) pair: F,
 }
 
-impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for Pairs<'_, F> {
+impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for PairSearch<'_, F> {
     type Output = Option<(f64, u32, u32)>;
 
     #[inline(always)]
@@ -61,11 +61,16 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for Pairs<'_, F> {
             let all = nearby.iter().fold(0, |all, (_, leaves)| all | leaves);
             for lane in (0..8).filter(|lane| all >> lane & 1 == 1) {
                 let own = self.leaf(simd, 8 * eight + lane);
-                for &(turned, _) in nearby.iter().filter(|(_, leaves)| leaves >> lane & 1 == 1) {
-                    let bounds = self.to.turned[turned].distances_squared_to(simd, own.around);
+                for &(oriented, _) in nearby.iter().filter(|(_, leaves)| leaves >> lane & 1 == 1) {
+                    let bounds = self.to.oriented[oriented].distances_squared_to(simd, own.around);
                     let mut near = at_most(simd, &bounds, self.bound(own.rounding));
                     while near != 0 {
-                        self.look_into(simd, &own, 8 * turned + near.trailing_zeros() as usize, &mut best);
+                        self.examine_leaves(
+                            simd,
+                            &own,
+                            8 * oriented + near.trailing_zeros() as usize,
+                            &mut best,
+                        );
                         near &= near - 1;
                     }
                 }
@@ -75,13 +80,13 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for Pairs<'_, F> {
     }
 }
 
-impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
-    /// Finds those of `to.turned` that are near eight leaves of `from`, with a bit for each of the eight that
-    /// they are near.
+impl<F: FnMut(u32, u32, f64) -> Option<f64>> PairSearch<'_, F> {
+    /// Finds those of `to.oriented` that are near eight leaves of `from`, with a bit for each of the eight
+    /// that they are near.
     #[inline(always)]
     fn descend<S: Simd>(&self, simd: S, eight: usize, open: &mut Vec<u32>, nearby: &mut Vec<(usize, u32)>) {
         nearby.clear();
-        let around = self.framed(self.from.around_turned(eight));
+        let around = self.framed(self.from.around_oriented(eight));
         let bound = self.bound(self.rounding(around));
         let mut leaves = None;
         open.push(0);
@@ -90,22 +95,22 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
             if let Some(boxes) = self.to.boxes.get(node) {
                 let mut near = at_most(simd, &boxes.distances_squared_to(simd, around), bound);
                 while near != 0 {
-                    open.push(self.to.first_within[node] + near.trailing_zeros());
+                    open.push(self.to.first_child[node] + near.trailing_zeros());
                     near &= near - 1;
                 }
                 continue;
             }
-            let turned = node - self.to.boxes.len();
+            let oriented = node - self.to.boxes.len();
             // Not a closure, which would not be compiled for the instruction set in use.
             let own = match leaves {
                 None => self.leaves(simd, eight),
                 Some(known) => known,
             };
             leaves = Some(own);
-            let bounds = own.distances_squared_to(simd, self.to.around_turned(turned));
+            let bounds = own.distances_squared_to(simd, self.to.around_oriented(oriented));
             let near = at_most(simd, &bounds, bound);
             if near != 0 {
-                nearby.push((turned, near));
+                nearby.push((oriented, near));
             }
         }
     }
@@ -129,8 +134,8 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
         let triangles = self.triangles(leaf);
         let (is_sound, boxes) = (u32::from(self.from.is_sound[leaf]), triangles.boxes(simd));
         let around = boxes.around_some(is_sound);
-        let is_far = around.iter().flatten().any(|x| f64::from(x.abs()) > MOST_OF_SLABS);
-        let (flat, _) = self.from.turned[leaf / 8].flat(leaf % 8);
+        let is_far = around.iter().flatten().any(|x| f64::from(x.abs()) > MAX_SLAB_COORDINATE);
+        let (flat, _) = self.from.oriented[leaf / 8].flat(leaf % 8);
         let (rounding, ends) = (self.rounding(around), triangles.along(simd, flat));
         Leaf { place: leaf, is_sound, triangles, boxes, around, flat, ends, rounding, is_far }
     }
@@ -146,7 +151,7 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
         for corner in &mut out.corners {
             for (axis, shift) in corner.iter_mut().zip(shift) {
                 for x in axis {
-                    *x = (f64::from(*x) * ratio + shift).clamp(-FARTHEST, FARTHEST) as f32;
+                    *x = (f64::from(*x) * ratio + shift).clamp(-MAX_COORDINATE, MAX_COORDINATE) as f32;
                 }
             }
         }
@@ -158,7 +163,7 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
     fn rounding(&self, around: [[f32; 3]; 2]) -> f64 {
         let (from, to) = (&self.from.frame, &self.to.frame);
         let size = around.iter().flatten().fold(0.0, |most: f64, x| most.max(f64::from(x.abs())));
-        let exact = (ROUNDING_OF_EXACT * (from.largest + to.largest) + UNDERFLOW) * to.scale;
+        let exact = (EXACT_ROUNDING * (from.largest + to.largest) + UNDERFLOW) * to.scale;
         ROUNDING * (1.0 + size + to.scale / from.scale) + exact
     }
 
@@ -171,13 +176,19 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
 
     /// Calls `pair` for those pairs of triangles of two leaves whose bounds are within reach.
     #[inline(always)]
-    fn look_into<S: Simd>(&mut self, simd: S, own: &Leaf, other: usize, best: &mut Option<(f64, u32, u32)>) {
+    fn examine_leaves<S: Simd>(
+        &mut self,
+        simd: S,
+        own: &Leaf,
+        other: usize,
+        best: &mut Option<(f64, u32, u32)>,
+    ) {
         let others = &self.to.leaves[other];
         let bound = self.bound(own.rounding);
         if !own.is_far {
-            let (flat, ends) = self.to.turned[other / 8].flat(other % 8);
-            if apart_squared(own.triangles.along(simd, flat), ends) > bound
-                || apart_squared(others.along(simd, own.flat), own.ends) > bound
+            let (flat, ends) = self.to.oriented[other / 8].flat(other % 8);
+            if interval_distance_squared(own.triangles.along(simd, flat), ends) > bound
+                || interval_distance_squared(others.along(simd, own.flat), own.ends) > bound
             {
                 return;
             }
@@ -220,13 +231,13 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
     /// Converts a box from the frame of `from` to that of `to`.
     #[inline(always)]
     fn framed(&self, corners: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
-        corners.map(|x| self.to.frame.of(self.from.frame.back(x)))
+        corners.map(|x| self.to.frame.of(self.from.frame.to_point(x)))
     }
 }
 
 /// The squared distance of two intervals; 0 where they overlap.
 #[inline(always)]
-fn apart_squared([a, b]: [f32; 2], [c, d]: [f32; 2]) -> f32 {
+fn interval_distance_squared([a, b]: [f32; 2], [c, d]: [f32; 2]) -> f32 {
     let apart = larger(larger(c - b, a - d), 0.0);
     apart * apart
 }

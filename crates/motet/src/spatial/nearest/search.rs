@@ -3,63 +3,35 @@
 use pulp::Simd;
 
 use super::Closest;
-use super::eights::{ROUNDING, ROUNDING_OF_SQUARE};
+use super::eights::{ROUNDING, SQUARE_ROUNDING};
 use super::lanes::at_most;
 use super::nearby::{N_EIGHTS, Nearby};
+use super::node::{Node, STACK_SIZE, put_nearest_on_top};
 use super::packed::Packed;
 use crate::base::Point;
 use crate::geometry::triangle;
 use crate::geometry::vector::{dot, is_finite, sub};
 
-/// The size of the stack. A tree over 2^31 triangles has eleven levels, each of which leaves up to seven
-/// boxes behind.
-pub(super) const OPEN: usize = 8 * 12;
-
 /// How many triangles may wait for an exact computation. For a point near a tube there are two or three.
-const WAITING: usize = 16;
+const MAX_WAITING: usize = 16;
 
 /// The rounding error of exact distances, relative to the largest coordinates: `triangle::closest` is off by
 /// less than ten units in the last place of those. With this allowance, the tree leaves out nothing that an
 /// exhaustive search would find.
-pub(super) const ROUNDING_OF_EXACT: f64 = 32.0 * f64::EPSILON;
+pub(super) const EXACT_ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// Distances below this may have squares that underflow, and all count as equal.
 pub(super) const UNDERFLOW: f64 = 1e-150;
 
 /// Bounds are kept below this, so that empty boxes, which are infinitely far off, are beyond them.
-const MOST: f64 = 1e38;
+const MAX_BOUND: f64 = 1e38;
 
 /// Points at least this far off in the frame may have been clamped.
 const FAR: f64 = 1e9;
 
-/// A node of the tree, or the place of a triangle, with a lower bound of its squared distance.
-pub(super) struct Node(pub(super) u32, pub(super) f32);
-
-impl Node {
-    /// Packs the node into an integer, ordered by the bound: bits of positive numbers rise as the numbers do.
-    #[inline(always)]
-    pub(super) fn packed(self) -> u64 {
-        u64::from(self.1.to_bits()) << 32 | u64::from(self.0)
-    }
-
-    #[inline(always)]
-    pub(super) fn of(packed: u64) -> Self {
-        Self(packed as u32, f32::from_bits((packed >> 32) as u32))
-    }
-}
-
-/// Moves the nearest node to the end; each of the others moves by at most one place.
-#[inline(always)]
-pub(super) fn put_nearest_on_top(nodes: &mut [u64]) {
-    for i in 1..nodes.len() {
-        let (x, y) = (nodes[i - 1], nodes[i]);
-        (nodes[i - 1], nodes[i]) = (x.max(y), x.min(y));
-    }
-}
-
 /// Removes the least of the first `n`; `None` if there are none.
 #[inline(always)]
-fn take_least(all: &mut [u64; WAITING], n: &mut usize) -> Option<Node> {
+fn pop_min(all: &mut [u64; MAX_WAITING], n: &mut usize) -> Option<Node> {
     if *n == 0 {
         return None;
     }
@@ -93,9 +65,9 @@ impl Admit for All {
 }
 
 /// Counts the triangles for which the function returns true.
-pub(super) struct Where<F>(pub(super) F);
+pub(super) struct Filtered<F>(pub(super) F);
 
-impl<F: FnMut(u32, &Closest) -> bool> Admit for Where<F> {
+impl<F: FnMut(u32, &Closest) -> bool> Admit for Filtered<F> {
     const ALL: bool = false;
 
     #[inline(always)]
@@ -125,10 +97,10 @@ pub(super) struct Search<'a, S, A> {
     /// The squared distance beyond which nothing counts.
     reach: f64,
     /// The least upper bound so far, squared.
-    above: f32,
+    upper: f32,
     /// A leaf that was examined already.
     seen: usize,
-    waiting: [u64; WAITING],
+    waiting: [u64; MAX_WAITING],
     n_waiting: usize,
     best: Option<Closest>,
 }
@@ -146,7 +118,7 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
         let size = largest(largest(p[0].abs(), p[1].abs()), p[2].abs());
         let [x, y, z] = framed.map(|x| f64::from(x.abs()));
         let framed_size = largest(largest(x, y), z);
-        let exact = (ROUNDING_OF_EXACT * (size + tree.frame.largest) + UNDERFLOW) * tree.frame.scale;
+        let exact = (EXACT_ROUNDING * (size + tree.frame.largest) + UNDERFLOW) * tree.frame.scale;
         let rounding = ROUNDING * (1.0 + framed_size) + exact;
         let bound = bound(reach.sqrt() * tree.frame.scale + rounding);
         Some(Self {
@@ -159,9 +131,9 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
             rounding,
             is_near: framed_size < FAR,
             reach,
-            above: f32::INFINITY,
+            upper: f32::INFINITY,
             seen: usize::MAX,
-            waiting: [0; WAITING],
+            waiting: [0; MAX_WAITING],
             n_waiting: 0,
             best: None,
         })
@@ -170,9 +142,9 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
     /// Examines the leaf of triangle `id` first: the nearer it is, the more this saves. Ids that do not exist
     /// are ignored.
     #[inline(always)]
-    pub(super) fn begin_at(&mut self, id: u32) {
+    pub(super) fn try_first(&mut self, id: u32) {
         if let Some(&place) = self.tree.id_to_place.get(id as usize) {
-            self.look_into(place as usize / 8);
+            self.visit_leaf(place as usize / 8);
             self.seen = place as usize / 8;
         }
     }
@@ -180,13 +152,13 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
     /// Computes the distances still waiting, and returns the nearest triangle.
     #[inline(always)]
     pub(super) fn finish(&mut self) -> Option<Closest> {
-        self.look_at_waiting();
+        self.measure_waiting();
         self.best.filter(|best| best.distance_squared.is_finite())
     }
 
     /// Computes the exact distance of the triangle at `place`, and keeps it if it is the nearest so far.
     #[inline(always)]
-    fn look_at(&mut self, place: usize) {
+    fn measure(&mut self, place: usize) {
         let corners = self.tree.corners(place);
         let weights = triangle::closest(corners, self.p);
         let point = triangle::at(corners, weights);
@@ -210,26 +182,26 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
     }
 
     #[inline(always)]
-    fn look_at_waiting(&mut self) {
-        while let Some(Node(place, bound)) = take_least(&mut self.waiting, &mut self.n_waiting) {
+    fn measure_waiting(&mut self) {
+        while let Some(Node(place, bound)) = pop_min(&mut self.waiting, &mut self.n_waiting) {
             if bound > self.bound {
                 self.n_waiting = 0;
                 return;
             }
-            self.look_at(place as usize);
+            self.measure(place as usize);
         }
     }
 
     /// Searches from the root.
     #[inline(always)]
     pub(super) fn descend(&mut self) {
-        self.descend_from([0; OPEN], 1);
+        self.descend_from([0; STACK_SIZE], 1);
     }
 
     /// Searches from the boxes nearby if they suffice, else from the root.
     #[inline(always)]
     pub(super) fn descend_nearby(&mut self, nearby: &mut Nearby) {
-        let mut open = [0; OPEN];
+        let mut open = [0; STACK_SIZE];
         let mut n_open = 1;
         if nearby.serves(self.tree, self.simd, self.framed, self.bound) {
             n_open = 0;
@@ -249,9 +221,9 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
     }
 
     #[inline(always)]
-    fn descend_from(&mut self, mut open: [u64; OPEN], mut n_open: usize) {
+    fn descend_from(&mut self, mut open: [u64; STACK_SIZE], mut n_open: usize) {
         let n_boxes = self.tree.boxes.len();
-        let n_above = n_boxes + self.tree.turned.len();
+        let n_above = n_boxes + self.tree.oriented.len();
         while n_open > 0 {
             n_open -= 1;
             let Node(node, bound) = Node::of(open[n_open]);
@@ -260,21 +232,18 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
             }
             let node = node as usize;
             let (bounds, first) = if node < n_boxes {
-                (
-                    self.tree.boxes[node].distances_squared(self.simd, self.framed),
-                    self.tree.first_within[node],
-                )
+                (self.tree.boxes[node].distances_squared(self.simd, self.framed), self.tree.first_child[node])
             } else if node < n_above {
-                let turned = &self.tree.turned[node - n_boxes];
+                let oriented = &self.tree.oriented[node - n_boxes];
                 let first = n_above + 8 * (node - n_boxes);
-                (turned.distances_squared(self.simd, self.framed), first as u32)
+                (oriented.distances_squared(self.simd, self.framed), first as u32)
             } else {
-                self.look_into(node - n_above);
+                self.visit_leaf(node - n_above);
                 continue;
             };
             let mut near = at_most(self.simd, &bounds, self.bound);
             let start = n_open;
-            while near != 0 && n_open < OPEN {
+            while near != 0 && n_open < STACK_SIZE {
                 let lane = near.trailing_zeros();
                 near &= near - 1;
                 open[n_open] = Node(first + lane, bounds[lane as usize & 7]).packed();
@@ -287,14 +256,14 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
     /// Queues those triangles of a leaf that may be near enough. If not all triangles count, the queue is
     /// emptied after each leaf.
     #[inline(always)]
-    fn look_into(&mut self, leaf: usize) {
+    fn visit_leaf(&mut self, leaf: usize) {
         if leaf == self.seen {
             return;
         }
-        let (bounds, above) = self.tree.leaves[leaf].bounds_squared(self.simd, self.framed);
-        if A::ALL && self.is_near && above < self.above {
-            self.above = above;
-            let distance = f64::from(above).sqrt() * (1.0 + ROUNDING_OF_SQUARE);
+        let (bounds, upper) = self.tree.leaves[leaf].bounds_squared(self.simd, self.framed);
+        if A::ALL && self.is_near && upper < self.upper {
+            self.upper = upper;
+            let distance = f64::from(upper).sqrt() * (1.0 + SQUARE_ROUNDING);
             let bound = bound(distance + 2.0 * self.rounding);
             self.bound = if bound < self.bound { bound } else { self.bound };
         }
@@ -302,14 +271,14 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
         while near != 0 {
             let lane = near.trailing_zeros() as usize & 7;
             near &= near - 1;
-            if self.n_waiting == WAITING {
-                self.look_at_waiting();
+            if self.n_waiting == MAX_WAITING {
+                self.measure_waiting();
             }
             self.waiting[self.n_waiting] = Node((8 * leaf + lane) as u32, bounds[lane]).packed();
             self.n_waiting += 1;
         }
         if !A::ALL {
-            self.look_at_waiting();
+            self.measure_waiting();
         }
     }
 }
@@ -317,6 +286,6 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
 /// The threshold for squares of bounds, for a distance; it allows for the rounding of the squares.
 #[inline(always)]
 pub(super) fn bound(distance: f64) -> f32 {
-    let bound = distance * distance * (1.0 + 2.0 * ROUNDING_OF_SQUARE);
-    if bound < MOST { bound as f32 } else { MOST as f32 }
+    let bound = distance * distance * (1.0 + 2.0 * SQUARE_ROUNDING);
+    if bound < MAX_BOUND { bound as f32 } else { MAX_BOUND as f32 }
 }

@@ -1,6 +1,6 @@
 //! The whole history between two meshes, given which vertices and cells are the same.
 
-use super::{ChangedVertex, Labelled, LocalChange, quadratic, trace};
+use super::{ChangedVertex, Labelled, LocalChange, quadratic_rows, trace};
 use crate::base::{CellId, Error, Id, Result, Threads, VertexId};
 use crate::mesh::history::{History, Origins};
 use crate::mesh::{CellKind, Labels, Mesh};
@@ -33,23 +33,23 @@ pub fn between(
             cells[cell.index()] = Id::NONE;
         }
     }
-    let mut goes = vec![true; old.cells.len()];
-    cells.iter().filter(|&&c| c != Id::NONE).for_each(|c| goes[c.index()] = false);
-    let comes: Vec<bool> = cells.iter().map(|&c| c == Id::NONE).collect();
-    check_kinds(new, &comes)?;
+    let mut is_removed = vec![true; old.cells.len()];
+    cells.iter().filter(|&&c| c != Id::NONE).for_each(|c| is_removed[c.index()] = false);
+    let is_new: Vec<bool> = cells.iter().map(|&c| c == Id::NONE).collect();
+    check_kinds(new, &is_new)?;
     let traced = trace(
         &LocalChange {
             old_points: &old.points,
             new_points: &new.points,
-            removed_tets: &labelled(old, &goes, CellKind::TETRA, old.regions()),
-            new_tets: &labelled(new, &comes, CellKind::TETRA, new.regions()),
-            removed_triangles: &labelled(old, &goes, CellKind::TRIANGLE, old.patches()),
-            new_triangles: &labelled(new, &comes, CellKind::TRIANGLE, new.patches()),
+            removed_tets: &labelled(old, &is_removed, CellKind::TETRA, old.regions()),
+            new_tets: &labelled(new, &is_new, CellKind::TETRA, new.regions()),
+            removed_triangles: &labelled(old, &is_removed, CellKind::TRIANGLE, old.patches()),
+            new_triangles: &labelled(new, &is_new, CellKind::TRIANGLE, new.patches()),
             changed_vertices: &changed_vertices,
         },
         threads,
     )?;
-    let wide = quadratic(old, &traced.vertices, threads);
+    let wide = quadratic_rows(old, &traced.vertices, threads);
     Ok(History {
         vertices: Origins::new(old.points.len(), vertices, traced.vertices)?.with_quadratic(wide)?,
         cells: Origins::new(old.cells.len(), cells, traced.cells)?,
@@ -93,25 +93,27 @@ fn labelled<const N: usize>(
 fn check<I: Id>(to_old: &[I], n_new: usize, n_old: usize, what: &str) -> Result<()> {
     if to_old.len() != n_new {
         return Err(Error::input(format!(
-            "{} old ids were given for the {n_new} {what} ids of the new mesh",
+            "{} old ids were given, but the new mesh has {n_new} {what} ids",
             to_old.len()
         )));
     }
     match to_old.iter().position(|&old| old != I::NONE && old.place() >= n_old) {
         None => Ok(()),
-        Some(i) => Err(Error::input(format!("was {}, but the old mesh has {n_old}", to_old[i]))
-            .at(format!("{what} {i}"))),
+        Some(i) => {
+            Err(Error::input(format!("has the old id {}, but the old mesh has only {n_old}", to_old[i]))
+                .at(format!("{what} {i}")))
+        }
     }
 }
 
-fn check_kinds(new: &Mesh, comes: &[bool]) -> Result<()> {
+fn check_kinds(new: &Mesh, is_new: &[bool]) -> Result<()> {
     let can = |kind: CellKind| kind == CellKind::TETRA || kind == CellKind::TRIANGLE;
-    match new.cells.iter().find(|(cell, kind, _)| comes[cell.index()] && !can(*kind)) {
+    match new.cells.iter().find(|(cell, kind, _)| is_new[cell.index()] && !can(*kind)) {
         None => Ok(()),
         Some((cell, kind, _)) => {
             Err(Error::input(format!("is a new {}, but only tets and triangles can be traced", kind.label()))
                 .at(format!("cell {cell}"))
-                .remedy("say which old cell it comes from"))
+                .remedy("give the old cell that it comes from"))
         }
     }
 }

@@ -19,7 +19,7 @@ mod triangles;
 mod vertices;
 
 pub use between::between;
-pub(crate) use quadratic::quadratic;
+pub(crate) use quadratic::quadratic_rows;
 
 use crate::base::{CellId, Point, Result, Threads, VertexId};
 use crate::mesh::history::{Ledger, Rows};

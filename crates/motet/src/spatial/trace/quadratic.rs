@@ -26,11 +26,11 @@ use crate::mesh::{CellKind, Mesh};
 
 /// The most that the negative shares of a row may sum to. A row with more is scaled down towards the row for
 /// linear fields, since it could amplify round-off.
-const NEGATIVE: f64 = 0.5;
+const MAX_NEGATIVE: f64 = 0.5;
 
 /// A fit is rejected if less than this fraction of one of its nine terms is independent of the terms before
 /// it.
-const INDEPENDENT: f64 = 1e-6;
+const MIN_INDEPENDENT: f64 = 1e-6;
 
 /// No tet.
 const NONE: u32 = u32::MAX;
@@ -39,14 +39,14 @@ const NONE: u32 = u32::MAX;
 /// fields, each over vertices of `old` that share a tet. The result does not depend on the number of threads.
 ///
 /// Panics when a vertex id is beyond the points.
-pub(crate) fn quadratic(old: &Mesh, rows: &Rows<VertexId>, threads: &Threads) -> Rows<VertexId> {
-    let around = Around::new(old, rows);
+pub(crate) fn quadratic_rows(old: &Mesh, rows: &Rows<VertexId>, threads: &Threads) -> Rows<VertexId> {
+    let near = Neighborhood::new(old, rows);
     let mut jobs: BTreeMap<(VertexId, u32), Vec<u32>> = BTreeMap::new();
     let mut wanted = Vec::new();
     for (&id, row) in rows.ids().iter().zip(rows.iter()) {
-        if let Some(host) = around.host(row.from) {
+        if let Some(host) = near.host(row.from) {
             let key = |&corner: &VertexId| {
-                let side = around.side(&[corner], &[host]);
+                let side = near.side(&[corner], &[host]);
                 let key = (corner, side.iter().copied().min().unwrap_or(host));
                 jobs.entry(key).or_insert(side);
                 key
@@ -55,7 +55,7 @@ pub(crate) fn quadratic(old: &Mesh, rows: &Rows<VertexId>, threads: &Threads) ->
         }
     }
     let jobs: Vec<_> = jobs.into_iter().collect();
-    let gradients = map(&jobs, threads, |((corner, _), side)| around.gradient(*corner, side));
+    let gradients = map(&jobs, threads, |((corner, _), side)| near.gradient(*corner, side));
     let gradient = |key: &(VertexId, u32)| {
         let place = jobs.binary_search_by_key(key, |job| job.0).ok()?;
         gradients[place].as_ref()
@@ -66,7 +66,7 @@ pub(crate) fn quadratic(old: &Mesh, rows: &Rows<VertexId>, threads: &Threads) ->
         if let Some(gradients) = gradients {
             let linear: Vec<(VertexId, f64)> =
                 row.from.iter().copied().zip(row.shares.iter().copied()).collect();
-            found.push_signed(id, &widened(&old.points, &linear, &gradients), row.main);
+            found.push_signed(id, &with_gradient_term(&old.points, &linear, &gradients), row.main);
         }
     }
     found
@@ -77,8 +77,12 @@ pub(crate) fn quadratic(old: &Mesh, rows: &Rows<VertexId>, threads: &Threads) ->
 type Gradient = Vec<(VertexId, Point)>;
 
 /// The row for linear fields with the gradient term added, scaled down where negative shares exceed
-/// [`NEGATIVE`].
-fn widened(points: &[Point], linear: &[(VertexId, f64)], gradients: &[&Gradient]) -> Vec<(VertexId, f64)> {
+/// [`MAX_NEGATIVE`].
+fn with_gradient_term(
+    points: &[Point],
+    linear: &[(VertexId, f64)],
+    gradients: &[&Gradient],
+) -> Vec<(VertexId, f64)> {
     let place = [0, 1, 2].map(|k| linear.iter().map(|&(v, share)| share * points[v.index()][k]).sum::<f64>());
     let mut term: Vec<(VertexId, f64)> = Vec::new();
     for (&(corner, share), gradient) in linear.iter().zip(gradients) {
@@ -95,11 +99,11 @@ fn widened(points: &[Point], linear: &[(VertexId, f64)], gradients: &[&Gradient]
     };
     let row = with(1.0);
     let negative: f64 = row.iter().map(|&(_, share)| (-share).max(0.0)).sum();
-    if negative > NEGATIVE { with(NEGATIVE / negative) } else { row }
+    if negative > MAX_NEGATIVE { with(MAX_NEGATIVE / negative) } else { row }
 }
 
 /// The tets of a mesh near some of its vertices: all that touch one of these vertices or a neighbour of one.
-struct Around<'a> {
+struct Neighborhood<'a> {
     points: &'a [Point],
     tets: Vec<[VertexId; 4]>,
     /// For each tet, the tets across the facets opposite its corners; `NONE` where the facet is a wall.
@@ -110,7 +114,7 @@ struct Around<'a> {
     at: Csr<u32>,
 }
 
-impl<'a> Around<'a> {
+impl<'a> Neighborhood<'a> {
     fn new(mesh: &'a Mesh, rows: &Rows<VertexId>) -> Self {
         let mut is_near = vec![false; mesh.points.len()];
         rows.iter().flat_map(|row| row.from).for_each(|v| is_near[v.index()] = true);
@@ -257,7 +261,7 @@ fn cholesky(matrix: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
             let rest = matrix[i][j] - known;
             if i != j {
                 factor[i][j] = rest / factor[j][j];
-            } else if rest > INDEPENDENT * matrix[i][i] {
+            } else if rest > MIN_INDEPENDENT * matrix[i][i] {
                 factor[i][i] = rest.sqrt();
             } else {
                 return None;
@@ -311,7 +315,7 @@ mod tests {
 
     fn compare(mesh: &Mesh, value: impl Fn(Point) -> f64) -> usize {
         let linear = one_a_tet(mesh);
-        let rows = quadratic(mesh, &linear, &Threads::single());
+        let rows = quadratic_rows(mesh, &linear, &Threads::single());
         for (&id, row) in rows.ids().iter().zip(rows.iter()) {
             let of = linear.of(id).expect("the row that it was made of");
             let place = [0, 1, 2].map(|k| at(mesh, &of, |p| p[k]));
@@ -375,7 +379,7 @@ mod tests {
         let mesh = shaken(6);
         let mut history = History::identity(mesh.points.len(), mesh.cells.len());
         let linear = one_a_tet(&mesh);
-        let rows = quadratic(&mesh, &linear, &Threads::single());
+        let rows = quadratic_rows(&mesh, &linear, &Threads::single());
         let kept = vec![VertexId::NONE; linear.len()];
         let origins = Origins::new(mesh.points.len(), kept, linear).unwrap();
         history.vertices = origins.with_quadratic(rows).unwrap();

@@ -9,10 +9,10 @@ use crate::geometry::tet;
 use crate::geometry::vector::{dot, sub};
 use crate::mesh::history::RegionLedger;
 use crate::spatial::BoxTree;
-use crate::spatial::boxes::around;
+use crate::spatial::boxes::bounding_box;
 
 /// A new tet of which no larger fraction than this is covered by removed tets counts as outside.
-const OUTSIDE: f64 = 1e-12;
+const MIN_COVERED: f64 = 1e-12;
 
 /// The removed tets, ready for searching.
 pub(super) struct Removed<'a> {
@@ -24,7 +24,7 @@ pub(super) struct Removed<'a> {
 impl<'a> Removed<'a> {
     pub(super) fn new(points: &[Point], tets: &'a [Labelled<4>]) -> Self {
         let solids: Vec<Solid> = tets.iter().map(|t| solid(points, t)).collect();
-        let boxes: Vec<_> = solids.iter().map(|s| around(s.corners())).collect();
+        let boxes: Vec<_> = solids.iter().map(|s| bounding_box(s.corners())).collect();
         Self { tets, solids, tree: BoxTree::new(&boxes) }
     }
 
@@ -76,27 +76,28 @@ pub(super) fn trace(
 fn parts(change: &LocalChange<'_>, removed: &Removed<'_>, tet: &Labelled<4>) -> Result<Parts> {
     let solid = solid(change.new_points, tet);
     let mut candidates = Vec::new();
-    removed.tree.touching(around(solid.corners()), &mut candidates);
+    removed.tree.touching(bounding_box(solid.corners()), &mut candidates);
     let mut overlaps: Vec<(usize, f64)> = Vec::new();
     for i in candidates.into_iter().map(|i| i as usize).filter(|&i| removed.tets[i].label == tet.label) {
         overlaps.extend(solid.real_overlap(&removed.solids[i]).map(|volume| (i, volume)));
     }
     let covered: f64 = overlaps.iter().map(|o| o.1).sum();
     let volume = solid.volume();
-    if covered > OUTSIDE * volume {
+    if covered > MIN_COVERED * volume {
         let largest = overlaps.iter().fold((0, 0.0), |best, &o| if o.1 > best.1 { o } else { best });
         return Ok(Parts { volume, overlaps, main: largest.0 });
     }
     let nearest = removed.nearest(tet::centroid(solid.corners()), Some(tet.label));
-    let (main, _) = nearest.ok_or_else(|| nothing_near(tet))?;
+    let (main, _) = nearest.ok_or_else(|| no_source(tet))?;
     Ok(Parts { volume, overlaps: vec![(main, 1.0)], main })
 }
 
-fn nothing_near(tet: &Labelled<4>) -> Error {
-    Error::input(format!("is new in region {}, but no tet of that region went", tet.label))
+fn no_source(tet: &Labelled<4>) -> Error {
+    Error::input(format!("is new in region {}, but no tet of that region was removed", tet.label))
         .at(format!("cell {}", tet.cell))
         .remedy(
-            "values never cross from one region to another: give the tets that it replaces, with its region",
+            "values are not carried from one region to another: list the removed tets that it \
+             replaces, in the same region",
         )
 }
 

@@ -25,14 +25,14 @@ pub(super) fn trace(change: &LocalChange<'_>) -> Result<Vec<CellRow>> {
         let nearest = patches
             .get(&new.label)
             .and_then(|(search, removed)| search.closest(centre).map(|found| removed[found.triangle].cell));
-        let old = nearest.ok_or_else(|| nothing_near(new))?;
+        let old = nearest.ok_or_else(|| no_source(new))?;
         Ok((new.cell, vec![(old, 1.0)], old))
     };
     change.new_triangles.iter().map(row).collect()
 }
 
-fn nothing_near(new: &Labelled<3>) -> Error {
-    Error::input(format!("is new on patch {}, but no triangle of that patch went", new.label))
+fn no_source(new: &Labelled<3>) -> Error {
+    Error::input(format!("is new on patch {}, but no triangle of that patch was removed", new.label))
         .at(format!("cell {}", new.cell))
-        .remedy("give the triangles that it replaces, with its patch")
+        .remedy("list the removed triangles that it replaces, on the same patch")
 }

@@ -6,7 +6,7 @@ use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::tet;
 use crate::geometry::vector::{distance, norm, sub};
 use crate::mesh::history::Rows;
-use crate::spatial::boxes::around;
+use crate::spatial::boxes::bounding_box;
 
 /// A place outside a tet by no more than this fraction of the size of the tet's box counts as on the tet.
 const ROUND_OFF: f64 = 1e-12;
@@ -50,14 +50,12 @@ fn place(removed: &Removed<'_>, p: Point, vertex: VertexId) -> Result<Place> {
     }
     let Some((tet, weights)) = removed.nearest(p, None) else {
         let n = removed.tets.len();
-        return Err(Error::input(format!(
-            "is new at {p:?}, which is nowhere near any of the {n} tets that went"
-        ))
-        .at(format!("vertex {vertex}"))
-        .remedy("give the tets that its tets replace"));
+        return Err(Error::input(format!("is new at {p:?}, which is not near any of the {n} removed tets"))
+            .at(format!("vertex {vertex}"))
+            .remedy("list the removed tets that the tets at this vertex replace"));
     };
     let corners = removed.solids[tet].corners();
-    let [low, high] = around(corners);
+    let [low, high] = bounding_box(corners);
     let beyond = distance(tet::at(corners, weights), p);
     let outside = if beyond > ROUND_OFF * norm(sub(high, low)) { beyond } else { 0.0 };
     Ok(Place { tet, weights, outside })

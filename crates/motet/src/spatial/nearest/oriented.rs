@@ -6,20 +6,20 @@ use pulp::Simd;
 use super::eights::{Boxes, Triangles};
 use super::lanes::{Eight, Lanes, cross, dot, load, parts, splat, sub};
 
-/// Eight boxes, each turned to lie flat around its triangles: `low <= turn x <= high`. A box with `low` above
-/// `high` is empty.
+/// Eight boxes, each oriented to lie flat around its triangles: `low <= axes x <= high`. A box with `low`
+/// above `high` is empty.
 ///
 /// A flat piece of a surface that lies askew fills a thick axis-aligned box. For a point near a tube, 3
 /// leaves are examined; with axis-aligned boxes it would be 8.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(super) struct TurnedBoxes {
-    turn: [[Eight; 3]; 3],
+pub(super) struct OrientedBoxes {
+    axes: [[Eight; 3]; 3],
     sides: Boxes,
 }
 
-impl TurnedBoxes {
-    pub(super) const EMPTY: Self = Self { turn: [[[0.0; 8]; 3]; 3], sides: Boxes::EMPTY };
+impl OrientedBoxes {
+    pub(super) const EMPTY: Self = Self { axes: [[[0.0; 8]; 3]; 3], sides: Boxes::EMPTY };
 
     /// Squared distances from `p` to each box, up to rounding: 0 inside, infinite for an empty box.
     #[inline(always)]
@@ -31,7 +31,7 @@ impl TurnedBoxes {
             let (low, high) = (load(simd, &self.sides.low, i), load(simd, &self.sides.high, i));
             let mut outside = [zero; 3];
             for axis in 0..3 {
-                let x = dot(load(simd, &self.turn[axis], i), p);
+                let x = dot(load(simd, &self.axes[axis], i), p);
                 outside[axis] = (low[axis] - x).max(x - high[axis]).max(zero);
             }
             dot(outside, outside).store(&mut out, i);
@@ -40,7 +40,7 @@ impl TurnedBoxes {
     }
 
     /// Squared lower bounds of the distances from an axis-aligned box to each box, up to rounding: how far
-    /// apart they are along the axes of the turned one.
+    /// apart they are along the axes of the oriented one.
     ///
     /// The other directions that could separate two boxes (Gottschalk, Lin and Manocha 1996, *OBBTree*) are
     /// left out.
@@ -54,9 +54,9 @@ impl TurnedBoxes {
             let (low, high) = (load(simd, &self.sides.low, i), load(simd, &self.sides.high, i));
             let mut outside = [zero; 3];
             for axis in 0..3 {
-                let turn = load(simd, &self.turn[axis], i);
-                let x = dot(turn, middle);
-                let reach = dot([turn[0].size(), turn[1].size(), turn[2].size()], half);
+                let row = load(simd, &self.axes[axis], i);
+                let x = dot(row, middle);
+                let reach = dot([row[0].abs(), row[1].abs(), row[2].abs()], half);
                 outside[axis] = (low[axis] - x - reach).max(x - reach - high[axis]).max(zero);
             }
             dot(outside, outside).store(&mut out, i);
@@ -67,16 +67,16 @@ impl TurnedBoxes {
     /// The direction in which a box is flat, of length at most 1, and the ends of the box along it.
     #[inline(always)]
     pub(super) fn flat(&self, lane: usize) -> ([f32; 3], [f32; 2]) {
-        (self.turn[2].map(|x| x[lane]), [self.sides.low[2][lane], self.sides.high[2][lane]])
+        (self.axes[2].map(|x| x[lane]), [self.sides.low[2][lane], self.sides.high[2][lane]])
     }
 
     /// Makes box `lane` the one around the sound ones of eight triangles.
     #[inline(always)]
     pub(super) fn set<S: Simd>(&mut self, simd: S, lane: usize, triangles: &Triangles, is_sound: u8) {
-        let turn = turn(simd, triangles, is_sound);
-        for (axis, row) in turn.into_iter().enumerate() {
+        let axes = orientation(simd, triangles, is_sound);
+        for (axis, row) in axes.into_iter().enumerate() {
             for (k, &x) in row.iter().enumerate() {
-                self.turn[axis][k][lane] = x;
+                self.axes[axis][k][lane] = x;
             }
             let [low, high] = triangles.along(simd, row);
             self.sides.low[axis][lane] = low;
@@ -89,7 +89,7 @@ impl TurnedBoxes {
 /// normal; the direction across both; and the normal of all sound triangles together. With the normal of the
 /// first triangle alone, the box is twice as thick, and searches take 6 % longer.
 #[inline(always)]
-fn turn<S: Simd>(simd: S, triangles: &Triangles, is_sound: u8) -> [[f32; 3]; 3] {
+fn orientation<S: Simd>(simd: S, triangles: &Triangles, is_sound: u8) -> [[f32; 3]; 3] {
     // Below 1 by more than the rounding of what follows.
     const SHORT: f32 = 1.0 - 4e-6;
     let product = |x: [f32; 3], y: [f32; 3]| x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
@@ -111,8 +111,8 @@ fn turn<S: Simd>(simd: S, triangles: &Triangles, is_sound: u8) -> [[f32; 3]; 3] 
     // False for triangles without area, and for NaN.
     let is_right = |x, y| product(x, y).abs() < 1e-6;
     let is_long = |x| product(x, x) > 0.9;
-    let is_turn = is_right(along, normal) && is_right(along, across) && is_right(normal, across);
-    if is_turn && is_long(along) && is_long(normal) && is_long(across) {
+    let is_orthogonal = is_right(along, normal) && is_right(along, across) && is_right(normal, across);
+    if is_orthogonal && is_long(along) && is_long(normal) && is_long(across) {
         [along, across, normal]
     } else {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
@@ -130,7 +130,7 @@ fn area_vector<S: Simd>(simd: S, triangles: &Triangles) -> [f32; 3] {
         let ac = sub(load(simd, &triangles.corners[2], i), a);
         let area = cross(ab, ac);
         for axis in 0..3 {
-            out[axis] += area[axis].if_below(infinite, area[axis], zero).sum();
+            out[axis] += area[axis].select_below(infinite, area[axis], zero).sum();
         }
     }
     out
