@@ -232,6 +232,6 @@ fn a_room_of_what_is_not_there_is_refused() {
     for others in [vec![2], vec![0, 7], vec![1]] {
         two[1].room = Room::Of(others);
         let error = Contact::new(points.clone(), two.clone(), Options::default(), &Threads::single());
-        assert!(error.unwrap_err().to_string().contains("body 1 is told to be the room of body"));
+        assert!(error.unwrap_err().to_string().contains("body 1 cannot be the room of body"));
     }
 }

@@ -4,10 +4,10 @@ use std::sync::Mutex;
 
 use serde::Serialize;
 
-use super::along::Ways;
-use super::body::{Prepared, Seen};
+use super::body::{BodyView, PreparedBody};
 use super::handle::Contact;
 use super::rule::Rule;
+use super::surface_graph::PathSearch;
 use super::sweep::{Sweep, sweep, sweep_own};
 use crate::base::{Error, Point, Result, Threads};
 use crate::geometry::distance::triangle_triangle;
@@ -49,14 +49,14 @@ impl Contact {
     /// horizon is not positive.
     pub fn look_ahead(&self, velocity: &[Point], horizon: f64, threads: &Threads) -> Result<Ahead> {
         self.check_velocity(velocity, horizon)?;
-        let vertices = |body: &Prepared| vec![f64::INFINITY; body.vertices.len()];
+        let vertices = |body: &PreparedBody| vec![f64::INFINITY; body.vertices.len()];
         let mut ahead = Ahead { first: None, times: self.bodies.iter().map(vertices).collect() };
-        for (ids, along, options) in self.asked() {
-            let bodies = self.seen(ids);
-            let rule = Rule::new(&self.points, bodies, along, &options);
-            let kept = Mutex::new(Vec::<Ways>::new());
+        for (ids, graph, options) in self.measured_pairs() {
+            let bodies = self.view(ids);
+            let rule = Rule::new(&self.points, bodies, graph, &options);
+            let kept = Mutex::new(Vec::<PathSearch>::new());
             let take = || kept.lock().ok().and_then(|mut kept| kept.pop()).unwrap_or_default();
-            let give = |ways| kept.lock().map(|mut kept| kept.push(ways)).unwrap_or_default();
+            let give = |paths| kept.lock().map(|mut kept| kept.push(paths)).unwrap_or_default();
             let admit = |i: u32, j: u32| {
                 if !rule.may_admit([i, j]) {
                     return false;
@@ -64,9 +64,9 @@ impl Contact {
                 rule.admits_all() || {
                     let corners = (rule.a.corners(&self.points, i), rule.b.corners(&self.points, j));
                     let closest = triangle_triangle::closest(corners.0, corners.1);
-                    let mut ways = take();
-                    let is_admitted = rule.admits([i, j], &closest, &mut ways);
-                    give(ways);
+                    let mut paths = take();
+                    let is_admitted = rule.admits([i, j], &closest, &mut paths);
+                    give(paths);
                     is_admitted
                 }
             };
@@ -86,7 +86,7 @@ impl Contact {
     /// When `dt` is not positive and finite, and as [`look_ahead`](Self::look_ahead).
     pub fn look_ahead_to(&self, next: &[Point], dt: f64, threads: &Threads) -> Result<Ahead> {
         if !(dt > 0.0 && dt.is_finite()) {
-            return Err(Error::options(format!("a time step of {dt}")).remedy("give a positive one"));
+            return Err(Error::options(format!("the time step is {dt}")).remedy("give a positive time step"));
         }
         let velocity: Vec<Point> =
             next.iter().zip(self.points()).map(|(to, from)| scale(sub(*to, *from), 1.0 / dt)).collect();
@@ -96,25 +96,25 @@ impl Contact {
     fn check_velocity(&self, velocity: &[Point], horizon: f64) -> Result<()> {
         if velocity.len() != self.points.len() {
             return Err(Error::input(format!(
-                "{} velocities, expected {}",
+                "got {} velocities, expected {}",
                 velocity.len(),
                 self.points.len()
             ))
-            .remedy("give one for each point"));
+            .remedy("give one velocity for each point"));
         }
         let mut used = self.bodies.iter().flat_map(|body| &body.vertices);
         if let Some(v) = used.find(|v| !is_finite(velocity[v.index()])) {
-            return Err(Error::input("a velocity that is no finite number").at(format!("point {v}")));
+            return Err(Error::input("the velocity is not finite").at(format!("point {v}")));
         }
         match horizon > 0.0 {
             true => Ok(()),
-            false => Err(Error::options(format!("a horizon of {horizon}")).remedy("give a positive time")),
+            false => Err(Error::options(format!("the horizon is {horizon}")).remedy("give a positive time")),
         }
     }
 }
 
 impl Ahead {
-    fn take(&mut self, ids: [u32; 2], bodies: [Seen<'_>; 2], found: Sweep) {
+    fn take(&mut self, ids: [u32; 2], bodies: [BodyView<'_>; 2], found: Sweep) {
         let first = found.first.map(|f| FirstContact {
             time: f.time,
             bodies: ids,

@@ -3,7 +3,6 @@
 use std::ops::Deref;
 
 use super::input::check_finite;
-use super::room::Room;
 use super::side::Side;
 use crate::base::{CellId, Csr, Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle;
@@ -22,6 +21,21 @@ pub struct Body {
     pub triangles: Vec<[VertexId; 3]>,
     /// Whether it is the wall of a room, such as a vessel, that contains others. Detected by default.
     pub room: Room,
+}
+
+/// Whether a body is the wall of a room that contains others: the sign of its distances to these is reversed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Room {
+    /// Of each body most of whose area it encloses at first, if it is closed, shares no vertex with that
+    /// body, and does not lie in it likewise. The default.
+    #[default]
+    Found,
+    /// Of no body.
+    No,
+    /// Of all other bodies, except for rooms that enclose it.
+    Yes,
+    /// Of these bodies, by their indices in the list of bodies.
+    Of(Vec<u32>),
 }
 
 impl Body {
@@ -66,7 +80,7 @@ impl Body {
 /// answers do not depend on how a file numbers a surface. Places and answers are those of the vertices as
 /// they were given.
 #[derive(Clone, Debug)]
-pub(super) struct Prepared {
+pub(super) struct PreparedBody {
     pub(super) name: String,
     pub(super) triangles: Vec<[VertexId; 3]>,
     /// The triangles of the body with joined ids: vertices that are one at a seam share theirs.
@@ -85,7 +99,7 @@ pub(super) struct Prepared {
     /// For each vertex, the index of the first one with the same joined id.
     first_places: Vec<u32>,
     /// Whether each vertex is on an edge that only one triangle uses; empty unless
-    /// [`get_ready_to_face`](Self::get_ready_to_face) was called.
+    /// [`prepare_facing`](Self::prepare_facing) was called.
     pub(super) is_rim: Vec<bool>,
     /// On which side of its triangles the outside of a closed body is.
     outside: Side,
@@ -96,23 +110,23 @@ pub(super) struct Prepared {
 
 /// A body as seen by another one.
 #[derive(Clone, Copy)]
-pub(super) struct Seen<'a> {
-    pub(super) body: &'a Prepared,
+pub(super) struct BodyView<'a> {
+    pub(super) body: &'a PreparedBody,
     /// Where the other one may be: outside a closed body, inside a room, on both sides of an open one.
     pub(super) free: Side,
     /// Whether the body is the room of the other one.
     pub(super) is_room: bool,
 }
 
-impl Deref for Seen<'_> {
-    type Target = Prepared;
+impl Deref for BodyView<'_> {
+    type Target = PreparedBody;
 
-    fn deref(&self) -> &Prepared {
+    fn deref(&self) -> &PreparedBody {
         self.body
     }
 }
 
-impl Prepared {
+impl PreparedBody {
     /// `vertices` are those of the body, in ascending order; `joined` gives the joined id of every point.
     pub(super) fn new(
         body: Body,
@@ -161,9 +175,9 @@ impl Prepared {
     }
 
     /// The body as seen by another one, or by itself; `is_room` if it is the room of that one.
-    pub(super) fn seen(&self, is_room: bool) -> Seen<'_> {
-        let free = if is_room { self.outside.turned() } else { self.outside };
-        Seen { body: self, free, is_room }
+    pub(super) fn view(&self, is_room: bool) -> BodyView<'_> {
+        let free = if is_room { self.outside.opposite() } else { self.outside };
+        BodyView { body: self, free, is_room }
     }
 
     /// The triangles at a vertex, given by its index in the list of vertices; in ascending order.
@@ -173,7 +187,7 @@ impl Prepared {
 
     /// For each vertex, the one to use where only its place matters: the joined one as long as both are at
     /// one place.
-    pub(super) fn asked(&self, points: &[Point]) -> Vec<VertexId> {
+    pub(super) fn representatives(&self, points: &[Point]) -> Vec<VertexId> {
         let pairs = self.vertices.iter().zip(&self.ids);
         pairs.map(|(&v, &id)| if points[v.index()] == points[id.index()] { id } else { v }).collect()
     }
@@ -210,7 +224,7 @@ impl Prepared {
 
     /// Computes what decides which directions lead into free space: the rim, and all normals, now and
     /// whenever points move.
-    pub(super) fn get_ready_to_face(&mut self, points: &[Point]) {
+    pub(super) fn prepare_facing(&mut self, points: &[Point]) {
         let firsts = |t: &[u32; 3]| t.map(|k| self.first_places[k as usize]);
         let is_rim = rim(&self.places.iter().map(firsts).collect::<Vec<_>>(), self.vertices.len());
         self.is_rim = self.first_places.iter().map(|&k| is_rim[k as usize]).collect();
@@ -226,7 +240,7 @@ impl Prepared {
     }
 
     /// Whether the bodies have a vertex in common.
-    pub(super) fn is_joined(&self, other: &Self) -> bool {
+    pub(super) fn shares_vertex_with(&self, other: &Self) -> bool {
         let [few, many] = if self.ids.len() <= other.ids.len() { [self, other] } else { [other, self] };
         few.ids.iter().any(|v| many.places_of(*v).next().is_some())
     }

@@ -2,14 +2,14 @@
 
 use std::sync::OnceLock;
 
-use super::along::Along;
-use super::answer::{BodyGaps, Gaps, Nearest, Warned};
-use super::body::{Body, Prepared, Seen};
+use super::body::{Body, BodyView, PreparedBody, Room};
 use super::input::vertices_of;
 use super::options::Options;
 use super::pair::{self, Guesses};
-use super::room::{self, Room, Within};
+use super::results::{BodyGaps, Gaps, Nearest, Warned};
+use super::room::{self, Within};
 use super::side::Side;
+use super::surface_graph::SurfaceGraph;
 use crate::base::{Error, Point, Result, Sets, Threads, VertexId};
 use crate::geometry::vector::distance;
 use crate::mesh;
@@ -25,13 +25,13 @@ const OWN_WARNINGS: f64 = 4.0;
 #[derive(Clone, Debug)]
 pub struct Contact {
     pub(super) points: Vec<Point>,
-    pub(super) bodies: Vec<Prepared>,
+    pub(super) bodies: Vec<PreparedBody>,
     /// The rooms as given, for each body.
-    told: Vec<Room>,
+    given_rooms: Vec<Room>,
     /// Which bodies lie in which rooms.
     rooms: Vec<Within>,
     /// Built when it is first needed.
-    along: OnceLock<Along>,
+    graph: OnceLock<SurfaceGraph>,
     options: Options,
     /// The pairs that are measured, and whether they have vertices in common, so that neighbours must be left
     /// out.
@@ -51,26 +51,27 @@ impl Contact {
     /// that does not exist.
     pub fn new(points: Vec<Point>, bodies: Vec<Body>, options: Options, threads: &Threads) -> Result<Self> {
         check(&bodies, &options)?;
-        let told: Vec<Room> = bodies.iter().map(|body| body.room.clone()).collect();
-        room::check(&told)?;
+        let given_rooms: Vec<Room> = bodies.iter().map(|body| body.room.clone()).collect();
+        room::check(&given_rooms)?;
         let vertices = |body: &Body| vertices_of(&format!("surface {}", body.name), &body.triangles, &points);
         let vertices = bodies.iter().map(vertices).collect::<Result<Vec<_>>>()?;
         let joined = joined(&points, &bodies, threads);
         let mut bodies = threads.each(bodies.into_iter().zip(vertices).collect(), |(body, vertices)| {
-            Prepared::new(body, vertices, &points, &joined, threads)
+            PreparedBody::new(body, vertices, &points, &joined, threads)
         });
-        let rooms = room::within(&points, &bodies, &told, threads);
+        let rooms = room::within(&points, &bodies, &given_rooms, threads);
         let n = bodies.len() as u32;
         let all = (0..n).flat_map(|a| (a..n).map(move |b| [a, b])).filter(|[a, b]| a != b || options.own);
-        let is_joined = |[a, b]: [u32; 2]| a == b || bodies[a as usize].is_joined(&bodies[b as usize]);
+        let is_joined =
+            |[a, b]: [u32; 2]| a == b || bodies[a as usize].shares_vertex_with(&bodies[b as usize]);
         let pairs: Vec<_> = all.map(|pair| (pair, is_joined(pair))).collect();
         for &([a, b], is_joined) in &pairs {
             if is_joined || options.facing {
-                [a, b].iter().for_each(|&id| bodies[id as usize].get_ready_to_face(&points));
+                [a, b].iter().for_each(|&id| bodies[id as usize].prepare_facing(&points));
             }
         }
         let guesses = vec![Guesses::default(); pairs.len()];
-        Ok(Self { points, bodies, told, rooms, along: OnceLock::new(), options, pairs, guesses })
+        Ok(Self { points, bodies, given_rooms, rooms, graph: OnceLock::new(), options, pairs, guesses })
     }
 
     /// Takes over points that moved; the triangles stay.
@@ -80,8 +81,8 @@ impl Contact {
     /// is taken over.
     pub fn refit(&mut self, points: &[Point], threads: &Threads) -> Result<()> {
         if points.len() != self.points.len() {
-            return Err(Error::input(format!("{} points, expected {}", points.len(), self.points.len()))
-                .remedy("give all points in the same order as at first"));
+            return Err(Error::input(format!("got {} points, expected {}", points.len(), self.points.len()))
+                .remedy("give all points in their original order"));
         }
         self.bodies.iter().try_for_each(|body| body.check(points))?;
         self.points.copy_from_slice(points);
@@ -118,7 +119,7 @@ impl Contact {
     /// On which side of a body its gaps are: outside a closed one, inside a room; on both sides of one that
     /// is open, or a room within another.
     pub fn side(&self, body: u32) -> Side {
-        self.seen_alone(body).free
+        self.view_alone(body).free
     }
 
     /// Which bodies lie in which rooms, by room, then by body: as given, or as found by [`Contact::new`].
@@ -129,39 +130,40 @@ impl Contact {
     /// What a body is the room of, for a handle of the same bodies with other triangles, so that they remain
     /// rooms of the same.
     pub fn room(&self, body: u32) -> Room {
-        match &self.told[body as usize] {
+        match &self.given_rooms[body as usize] {
             Room::Found => Room::Of(self.rooms.iter().filter(|w| w.room == body).map(|w| w.body).collect()),
-            told => told.clone(),
+            given => given.clone(),
         }
     }
 
     /// Two bodies as seen by each other.
-    pub(super) fn seen(&self, [a, b]: [u32; 2]) -> [Seen<'_>; 2] {
+    pub(super) fn view(&self, [a, b]: [u32; 2]) -> [BodyView<'_>; 2] {
         let is_room = |room: u32, body: u32| self.rooms.iter().any(|w| w.room == room && w.body == body);
         match a == b {
-            true => [self.seen_alone(a); 2],
+            true => [self.view_alone(a); 2],
             false => {
-                [self.bodies[a as usize].seen(is_room(a, b)), self.bodies[b as usize].seen(is_room(b, a))]
+                [self.bodies[a as usize].view(is_room(a, b)), self.bodies[b as usize].view(is_room(b, a))]
             }
         }
     }
 
     /// A body as seen by itself.
-    fn seen_alone(&self, body: u32) -> Seen<'_> {
-        let is_room = self.told[body as usize] == Room::Yes || self.rooms.iter().any(|w| w.room == body);
+    fn view_alone(&self, body: u32) -> BodyView<'_> {
+        let is_room =
+            self.given_rooms[body as usize] == Room::Yes || self.rooms.iter().any(|w| w.room == body);
         let is_within = self.rooms.iter().any(|w| w.body == body);
-        let seen = self.bodies[body as usize].seen(is_room);
-        if is_room && is_within { Seen { free: Side::Both, ..seen } } else { seen }
+        let view = self.bodies[body as usize].view(is_room);
+        if is_room && is_within { BodyView { free: Side::Both, ..view } } else { view }
     }
 
     /// Measures the gap at every vertex, and the nearest points of every pair.
     pub fn measure(&mut self, threads: &Threads) -> Gaps {
-        let new = |body: &Prepared| BodyGaps::new(&body.vertices, &self.points);
+        let new = |body: &PreparedBody| BodyGaps::new(&body.vertices, &self.points);
         let mut bodies: Vec<BodyGaps> = self.bodies.iter().map(new).collect();
         let pairs = self.for_each_pair(|scene, guesses| {
             let (gap, sides) = scene.measure(guesses, threads);
             for (side, id) in sides.into_iter().zip(scene.ids) {
-                side.put(scene, &mut bodies[id as usize]);
+                side.merge_into(scene, &mut bodies[id as usize]);
             }
             gap
         });
@@ -171,14 +173,14 @@ impl Contact {
     /// The nearest points of every pair of bodies and nothing else, as a solver needs them at every
     /// iteration; `None` if nothing is within reach.
     pub fn nearest(&mut self, threads: &Threads) -> Vec<([u32; 2], Option<Nearest>)> {
-        self.for_each_pair(|scene, guesses| (scene.ids, scene.nearest_alone(guesses, threads)))
+        self.for_each_pair(|scene, guesses| (scene.ids, scene.nearest_only(guesses, threads)))
     }
 
     fn for_each_pair<T>(&mut self, mut of: impl FnMut(&pair::Scene<'_>, &mut Guesses) -> T) -> Vec<T> {
         let mut guesses = std::mem::take(&mut self.guesses);
-        let scenes = self.asked().zip(&mut guesses).map(|((ids, along, options), guesses)| {
-            let bodies = self.seen(ids);
-            of(&pair::Scene { points: &self.points, bodies, ids, along, options }, guesses)
+        let scenes = self.measured_pairs().zip(&mut guesses).map(|((ids, graph, options), guesses)| {
+            let bodies = self.view(ids);
+            of(&pair::Scene { points: &self.points, bodies, ids, graph, options }, guesses)
         });
         let answers = scenes.collect();
         self.guesses = guesses;
@@ -198,7 +200,7 @@ impl Contact {
                 while let Some(&place) = group.get(next) {
                     next += 1;
                     let own = self.bodies[id as usize].ids[place];
-                    let around = self.along().neighbors(own).iter().map(|v| VertexId(*v));
+                    let around = self.graph().neighbors(own).iter().map(|v| VertexId(*v));
                     for near in around.chain([own]).flat_map(|v| self.bodies[id as usize].places_of(v)) {
                         if std::mem::take(&mut is_open[near]) {
                             group.push(near);
@@ -222,20 +224,20 @@ impl Contact {
     }
 
     /// The edges of all bodies: only warnings and surfaces with vertices in common need them.
-    fn along(&self) -> &Along {
+    fn graph(&self) -> &SurfaceGraph {
         let triangles = self.bodies.iter().flat_map(|body| &body.joined);
-        self.along.get_or_init(|| Along::new(self.points.len(), triangles))
+        self.graph.get_or_init(|| SurfaceGraph::new(self.points.len(), triangles))
     }
 
     /// Each pair, with the paths along the surface if the bodies have vertices in common, and the options
     /// that it is measured with.
-    pub(super) fn asked(&self) -> impl Iterator<Item = ([u32; 2], Option<&Along>, Options)> {
+    pub(super) fn measured_pairs(&self) -> impl Iterator<Item = ([u32; 2], Option<&SurfaceGraph>, Options)> {
         let own = match self.options.own {
             true => Options { within: self.own_reach(), ..self.options },
             false => self.options,
         };
         self.pairs.iter().map(move |&([a, b], is_joined)| {
-            ([a, b], is_joined.then(|| self.along()), if a == b { own } else { self.options })
+            ([a, b], is_joined.then(|| self.graph()), if a == b { own } else { self.options })
         })
     }
 
@@ -262,8 +264,11 @@ fn joined(points: &[Point], bodies: &[Body], threads: &Threads) -> Vec<VertexId>
 
 fn check(bodies: &[Body], options: &Options) -> Result<()> {
     if bodies.is_empty() || bodies.len() == 1 && !options.own {
-        return Err(Error::options(format!("{} surface, and contact is between two", bodies.len()))
-            .remedy("give another surface, or ask for contact of the surface with itself"));
+        return Err(Error::options(format!(
+            "{} surface given, but contact is measured between two",
+            bodies.len()
+        ))
+        .remedy("give another surface, or enable contact of the surface with itself"));
     }
     if bodies.len() > u32::MAX as usize {
         return Err(Error::options("too many surfaces"));

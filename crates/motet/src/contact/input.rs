@@ -19,9 +19,9 @@ pub(super) fn vertices_of(
     }
     let is_beyond = |t: &[VertexId; 3]| t.iter().copied().find(|v| v.index() >= points.len());
     if let Some((i, v)) = (0..).zip(triangles).find_map(|(i, t): (usize, _)| Some((i, is_beyond(t)?))) {
-        return Err(Error::input(format!("names point {v}, and there are {} points", points.len()))
+        return Err(Error::input(format!("names point {v}, but there are only {} points", points.len()))
             .at(format!("{name}, triangle {i}"))
-            .remedy("give all points that the triangles are about"));
+            .remedy("give all points that the triangles use"));
     }
     let mut is_used = vec![false; points.len()];
     triangles.as_flattened().iter().for_each(|v| is_used[v.index()] = true);
@@ -41,10 +41,8 @@ pub(super) fn check_finite(
 ) -> Result<()> {
     match vertices.find(|v| !is_finite(points[v.index()])) {
         None => Ok(()),
-        Some(v) => {
-            Err(Error::input(format!("a coordinate that is no finite number: {:?}", points[v.index()]))
-                .at(format!("{name}, point {v}"))
-                .remedy("remove the point and its triangles, or give it a place"))
-        }
+        Some(v) => Err(Error::input(format!("a coordinate is not finite: {:?}", points[v.index()]))
+            .at(format!("{name}, point {v}"))
+            .remedy("remove the point and its triangles, or give it finite coordinates")),
     }
 }

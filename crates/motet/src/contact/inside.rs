@@ -44,45 +44,45 @@ pub fn inside(
     crossings: &[[u32; 2]],
     threads: &Threads,
 ) -> Vec<bool> {
-    let places = places(points, vertices, a, b, crossings, threads);
-    places.into_iter().map(|place| place == Place::Inside).collect()
+    let locations = locations(points, vertices, a, b, crossings, threads);
+    locations.into_iter().map(|location| location == Location::Inside).collect()
 }
 
 /// Where a vertex is relative to a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum Location {
     Inside,
     On,
     Outside,
 }
 
 /// Where each of `vertices` is relative to the surface `b`; arguments are those of [`inside`].
-pub(super) fn places(
+pub(super) fn locations(
     points: &[Point],
     vertices: &[VertexId],
     a: &[[VertexId; 3]],
     b: &[[VertexId; 3]],
     crossings: &[[u32; 2]],
     threads: &Threads,
-) -> Vec<Place> {
+) -> Vec<Location> {
     let mut is_on = vec![false; points.len()];
     b.as_flattened().iter().for_each(|v| is_on[v.index()] = true);
     let part = parts(points.len(), a, crossings, &is_on);
-    let mut asked: Vec<u32> =
+    let mut queries: Vec<u32> =
         vertices.iter().filter(|v| !is_on[v.index()]).map(|v| part[v.index()]).collect();
-    asked.sort_unstable();
-    asked.dedup();
-    let rays = Rays::new(points, b, asked.len());
-    let answers = in_runs(asked.len(), threads, |near, run| {
-        run.map(|i| match rays.winding(points[asked[i] as usize], near) {
-            None => Place::On,
-            Some(0) => Place::Outside,
-            Some(_) => Place::Inside,
+    queries.sort_unstable();
+    queries.dedup();
+    let rays = Rays::new(points, b, queries.len());
+    let answers = in_runs(queries.len(), threads, |near, run| {
+        run.map(|i| match rays.winding(points[queries[i] as usize], near) {
+            None => Location::On,
+            Some(0) => Location::Outside,
+            Some(_) => Location::Inside,
         })
         .collect()
     });
-    let of_part = |part| asked.binary_search(&part).map_or(Place::Outside, |i| answers[i]);
-    vertices.iter().map(|v| if is_on[v.index()] { Place::On } else { of_part(part[v.index()]) }).collect()
+    let of_part = |part| queries.binary_search(&part).map_or(Location::Outside, |i| answers[i]);
+    vertices.iter().map(|v| if is_on[v.index()] { Location::On } else { of_part(part[v.index()]) }).collect()
 }
 
 /// The smallest vertex of each vertex's part: corners of triangles that cross nothing belong together, except
@@ -94,35 +94,35 @@ fn parts(n_points: usize, a: &[[VertexId; 3]], crossings: &[[u32; 2]], is_on: &[
             *is_cut = true;
         }
     }
-    let mut above: Vec<u32> = (0..n_points as u32).collect();
+    let mut parent: Vec<u32> = (0..n_points as u32).collect();
     for (triangle, _) in a.iter().zip(is_cut).filter(|(_, is_cut)| !is_cut) {
         for k in 0..3 {
             let edge = [triangle[k], triangle[(k + 1) % 3]];
             if edge.iter().all(|v| !is_on[v.index()]) {
-                let [u, v] = edge.map(|v| top(&mut above, v.0));
-                above[u.max(v) as usize] = u.min(v);
+                let [u, v] = edge.map(|v| find_root(&mut parent, v.0));
+                parent[u.max(v) as usize] = u.min(v);
             }
         }
     }
     // The entry above has a smaller id, so it is done already.
     for v in 0..n_points {
-        above[v] = above[above[v] as usize];
+        parent[v] = parent[parent[v] as usize];
     }
-    above
+    parent
 }
 
 /// The root of `v`; halves the path on the way (Tarjan and van Leeuwen 1984, *Worst-case analysis of set
 /// union algorithms*).
-fn top(above: &mut [u32], mut v: u32) -> u32 {
-    while above[v as usize] != v {
-        above[v as usize] = above[above[v as usize] as usize];
-        v = above[v as usize];
+fn find_root(parent: &mut [u32], mut v: u32) -> u32 {
+    while parent[v as usize] != v {
+        parent[v as usize] = parent[parent[v as usize] as usize];
+        v = parent[v as usize];
     }
     v
 }
 
 /// Up to this many rays examine every triangle: building a tree takes as long as 22 rays without it.
-const FEW: usize = 16;
+const MAX_RAYS_WITHOUT_TREE: usize = 16;
 
 /// A surface that rays pass through, along an axis that is called x.
 struct Rays<'a> {
@@ -137,8 +137,8 @@ struct Rays<'a> {
 impl<'a> Rays<'a> {
     fn new(points: &'a [Point], triangles: &'a [[VertexId; 3]], n_rays: usize) -> Self {
         let mut rays = Self { points, triangles, tree: None, axis: 0 };
-        if n_rays > FEW {
-            rays.axis = easiest_axis(&rays.boxes().collect::<Vec<_>>());
+        if n_rays > MAX_RAYS_WITHOUT_TREE {
+            rays.axis = sparsest_axis(&rays.boxes().collect::<Vec<_>>());
             rays.tree = Some(BoxTree::new(&rays.boxes().collect::<Vec<_>>()));
         }
         rays
@@ -146,7 +146,7 @@ impl<'a> Rays<'a> {
 
     /// The corners, with axes permuted so that rays run along x.
     fn corners(&self, j: u32) -> [Point; 3] {
-        corners(self.points, self.triangles[j as usize]).map(|p| turned(p, self.axis))
+        corners(self.points, self.triangles[j as usize]).map(|p| permuted(p, self.axis))
     }
 
     fn boxes(&self) -> impl Iterator<Item = Bounds> {
@@ -172,7 +172,7 @@ impl<'a> Rays<'a> {
         if !is_finite(q) {
             return Some(0);
         }
-        let q = turned(q, self.axis);
+        let q = permuted(q, self.axis);
         self.near(q, near);
         let mut winding = 0;
         for &j in near.iter() {
@@ -180,20 +180,20 @@ impl<'a> Rays<'a> {
             if triangle.iter().any(|p| p[0] <= q[0]) && segment_triangle::meet([q, q], triangle) {
                 return None;
             }
-            winding += passage(q, triangle);
+            winding += crossing_sign(q, triangle);
         }
         Some(winding)
     }
 }
 
 /// A cyclic permutation of the axes, which keeps handedness.
-fn turned(p: Point, axis: usize) -> Point {
+fn permuted(p: Point, axis: usize) -> Point {
     [0, 1, 2].map(|k| p[(axis + k) % 3])
 }
 
 /// The axis along which a ray meets the fewest boxes: the one for which their areas add up to the least part
 /// of the whole.
-fn easiest_axis(boxes: &[Bounds]) -> usize {
+fn sparsest_axis(boxes: &[Bounds]) -> usize {
     let size = |[low, high]: Bounds| [0, 1, 2].map(|k| high[k] - low[k]);
     let finite = || boxes.iter().filter(|bounds| bounds[0][0].is_finite());
     let whole = size(bounding_box(&finite().copied().flatten().collect::<Vec<_>>()));
@@ -207,7 +207,7 @@ fn easiest_axis(boxes: &[Bounds]) -> usize {
 }
 
 /// What the ray from `q` along x adds to the winding number at a triangle that does not contain `q`.
-fn passage(q: Point, [a, b, c]: [Point; 3]) -> i64 {
+fn crossing_sign(q: Point, [a, b, c]: [Point; 3]) -> i64 {
     let turn = turn(a, b, q);
     if turn == 0 || turn != self::turn(b, c, q) || turn != self::turn(c, a, q) {
         return 0;

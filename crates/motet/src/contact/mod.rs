@@ -25,7 +25,8 @@
 //!     room: Room::Found,
 //! };
 //! let options = Options { warn: Some(0.2), ..Options::default() };
-//! let mut contact = Contact::new(points, vec![body("lower", 0), body("upper", 3)], options, &Threads::single())?;
+//! let bodies = vec![body("lower", 0), body("upper", 3)];
+//! let mut contact = Contact::new(points, bodies, options, &Threads::single())?;
 //! let gaps = contact.measure(&Threads::single());
 //! assert!((gaps.least() - 0.1).abs() < 1e-15);
 //! assert!(gaps.is_warned());
@@ -33,8 +34,6 @@
 //! ```
 
 mod ahead;
-mod along;
-mod answer;
 mod between;
 mod body;
 mod facing;
@@ -44,18 +43,20 @@ mod inside;
 mod nearest;
 mod options;
 mod pair;
+mod results;
 mod room;
 mod rule;
 mod side;
+mod surface_graph;
 mod sweep;
 
 pub use ahead::{Ahead, FirstContact};
-pub use answer::{BodyGaps, Gaps, NONE, Nearest, PairGap, Warned};
 pub use between::{Between, BetweenOptions, GapKind, GapTet, Least, VertexPair, paper};
-pub use body::Body;
+pub use body::{Body, Room};
 pub use handle::Contact;
 pub use inside::{inside, is_closed};
 pub use options::Options;
-pub use room::{Room, Within};
+pub use results::{BodyGaps, Gaps, NONE, Nearest, PairGap, Warned};
+pub use room::Within;
 pub use side::Side;
 pub use sweep::{SLACK, Sweep, Touch, sweep, sweep_apart, sweep_own};

@@ -6,9 +6,9 @@
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-use super::along::Ways;
-use super::answer::Nearest;
+use super::results::Nearest;
 use super::rule::Rule;
+use super::surface_graph::PathSearch;
 use crate::base::Threads;
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::triangle;
@@ -22,14 +22,14 @@ pub(super) fn nearest(rule: &Rule<'_>, start: f64, threads: &Threads) -> Option<
     let is_own = std::ptr::eq(rule.a.body, rule.b.body);
     let corners = |[i, j]: [u32; 2]| (rule.a.corners(rule.points, i), rule.b.corners(rule.points, j));
     let bound = start * (1.0 + SLACK) + f64::MIN_POSITIVE;
-    let measured = |ways: &mut Ways, i: u32, j: u32, bound: f64| {
+    let measured = |paths: &mut PathSearch, i: u32, j: u32, bound: f64| {
         if is_own && i >= j || !rule.may_admit([i, j]) {
             return None;
         }
         let (a, b) = corners([i, j]);
         // A pair at the bound counts as well: among equally near pairs, the first one is found.
         let found = triangle_triangle::closest_below(a, b, bound.next_up())?;
-        rule.admits([i, j], &found, ways).then_some(found.distance_squared)
+        rule.admits([i, j], &found, paths).then_some(found.distance_squared)
     };
     let (_, i, j) = rule.a.tree.closest_pair(&rule.b.tree, bound, threads, measured)?;
     let (a, b) = corners([i, j]);
@@ -50,21 +50,21 @@ pub(super) fn distance_squared(rule: &Rule<'_>, [i, j]: [u32; 2]) -> Option<f64>
         return None;
     }
     let found = triangle_triangle::closest(rule.a.corners(rule.points, i), rule.b.corners(rule.points, j));
-    rule.admits([i, j], &found, &mut Ways::default()).then_some(found.distance_squared)
+    rule.admits([i, j], &found, &mut PathSearch::default()).then_some(found.distance_squared)
 }
 
 /// Marks the triangles of both surfaces that are nearer to the other than `warn`; pairs of marked triangles
 /// are not measured.
 pub(super) fn mark_nearer(rule: &Rule<'_>, warn: f64, near: [&[AtomicBool]; 2], threads: &Threads) {
     let is_own = std::ptr::eq(rule.a.body, rule.b.body);
-    rule.a.tree.closest_pair(&rule.b.tree, warn * warn, threads, |ways: &mut Ways, i, j, bound| {
+    rule.a.tree.closest_pair(&rule.b.tree, warn * warn, threads, |paths: &mut PathSearch, i, j, bound| {
         let flags = [&near[0][i as usize], &near[1][j as usize]];
         if is_own && i >= j || flags.iter().all(|flag| flag.load(Relaxed)) || !rule.may_admit([i, j]) {
             return None;
         }
         let (a, b) = (rule.a.corners(rule.points, i), rule.b.corners(rule.points, j));
         let found = triangle_triangle::closest_below(a, b, bound)?;
-        if rule.admits([i, j], &found, ways) {
+        if rule.admits([i, j], &found, paths) {
             flags.iter().for_each(|flag| flag.store(true, Relaxed));
         }
         None

@@ -9,7 +9,8 @@ use crate::base::{Error, Result};
 pub struct Options {
     /// Warn of gaps below this; no warnings by default.
     pub warn: Option<f64>,
-    /// Whether each body is measured against itself as well (a flap that folds, loops of a coil). Off by default.
+    /// Whether each body is measured against itself as well (a flap that folds, loops of a coil). Off by
+    /// default.
     pub own: bool,
     /// How far to search; larger gaps are infinite. No limit by default; with [`own`](Self::own) a limit
     /// saves time, since a surface that nowhere faces itself is searched to the end.
@@ -38,7 +39,8 @@ impl Options {
         ];
         for (what, length) in lengths {
             if let Some(length) = length.filter(|length| length.is_nan() || *length < 0.0) {
-                return Err(Error::options(format!("{what} is {length}")).remedy("give a positive number"));
+                return Err(Error::options(format!("{what} is {length}"))
+                    .remedy("give a number that is not negative"));
             }
         }
         Ok(())

@@ -3,14 +3,14 @@
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-use super::along::{Along, Ways};
-use super::answer::{BodyGaps, Nearest, PairGap};
-use super::body::Seen;
+use super::body::BodyView;
 use super::inside::inside;
 use super::nearest::{distance_squared, mark_nearer, nearest};
 use super::options::Options;
+use super::results::{BodyGaps, Nearest, PairGap};
 use super::rule::Rule;
 use super::side::Side;
+use super::surface_graph::{PathSearch, SurfaceGraph};
 use crate::base::{Point, Threads};
 use crate::geometry::vector::{scale, sub};
 use crate::preflight::{crossings, own_crossings};
@@ -37,14 +37,14 @@ fn triangles(found: &[Option<Closest>]) -> Vec<u32> {
 /// Two bodies at one time.
 pub(super) struct Scene<'a> {
     pub(super) points: &'a [Point],
-    pub(super) bodies: [Seen<'a>; 2],
+    pub(super) bodies: [BodyView<'a>; 2],
     pub(super) ids: [u32; 2],
-    pub(super) along: Option<&'a Along>,
+    pub(super) graph: Option<&'a SurfaceGraph>,
     pub(super) options: Options,
 }
 
 /// What was measured of one body against the other.
-pub(super) struct Half {
+pub(super) struct OneWay {
     /// Which of the two bodies.
     own: usize,
     found: Vec<Option<Closest>>,
@@ -60,11 +60,11 @@ impl Scene<'_> {
     }
 
     fn rule(&self, own: usize) -> Rule<'_> {
-        Rule::new(self.points, [self.bodies[own], self.bodies[1 - own]], self.along, &self.options)
+        Rule::new(self.points, [self.bodies[own], self.bodies[1 - own]], self.graph, &self.options)
     }
 
     /// Measures the pair; for a body with itself, nothing is found for the second half.
-    pub(super) fn measure(&self, guesses: &mut Guesses, threads: &Threads) -> (PairGap, Vec<Half>) {
+    pub(super) fn measure(&self, guesses: &mut Guesses, threads: &Threads) -> (PairGap, Vec<OneWay>) {
         let found = [0, 1].map(|own| match self.is_own() && own == 1 {
             true => Vec::new(),
             false => self.of_vertices(own, &mut guesses.of_vertices[own], threads),
@@ -76,7 +76,7 @@ impl Scene<'_> {
         let mut sides = threads.each(vec![0, 1], |own| self.side(own, &crossings, threads));
         for (side, found) in sides.iter_mut().zip(found) {
             side.found = found;
-            self.look_again_where_wrong(side);
+            self.measure_depths(side);
         }
         self.warn(nearest.as_ref(), &mut sides, threads);
         let count = |flags: &[bool]| flags.iter().filter(|&&flag| flag).count();
@@ -85,7 +85,7 @@ impl Scene<'_> {
             nearest,
             crossings,
             n_wrong: [0, 1].map(|own| count(&sides[own].is_wrong)),
-            depth: sides.iter().map(Half::depth).fold(0.0, f64::max),
+            depth: sides.iter().map(OneWay::depth).fold(0.0, f64::max),
             n_warned: [0, 1].map(|own| count(&sides[own].is_near)),
         };
         (gap, sides)
@@ -93,7 +93,7 @@ impl Scene<'_> {
 
     /// The nearest points and nothing else. The pair that was nearest last time bounds the search; the first
     /// time, some vertex does.
-    pub(super) fn nearest_alone(&self, guesses: &mut Guesses, threads: &Threads) -> Option<Nearest> {
+    pub(super) fn nearest_only(&self, guesses: &mut Guesses, threads: &Threads) -> Option<Nearest> {
         let rule = self.rule(0);
         let place = || self.points[rule.a.vertices[0].index()];
         let start = match guesses.pair {
@@ -143,13 +143,13 @@ impl Scene<'_> {
         threads: &Threads,
     ) -> Vec<Option<Closest>> {
         let within = self.options.within;
-        in_runs(rule.a.vertices.len(), threads, |ways: &mut Ways, run| {
+        in_runs(rule.a.vertices.len(), threads, |paths: &mut PathSearch, run| {
             let (mut last, mut found) = (u32::MAX, Vec::with_capacity(run.len()));
             for i in run {
                 let place = self.points[rule.a.vertices[i].index()];
                 let guess = guesses.get(i).map_or(last, |&guess| guess);
-                let bound = rule.distance(i, guess, ways).map_or(within, |d| within.min(d * SLACK));
-                let closest = rule.b.tree.closest_where(place, bound, rule.at_vertex(i, ways));
+                let bound = rule.distance(i, guess, paths).map_or(within, |d| within.min(d * SLACK));
+                let closest = rule.b.tree.closest_where(place, bound, rule.at_vertex(i, paths));
                 last = closest.map_or(u32::MAX, |closest| closest.triangle as u32);
                 found.push(closest);
             }
@@ -162,20 +162,21 @@ impl Scene<'_> {
     fn crossings(&self, nearest: Option<&Nearest>, threads: &Threads) -> Vec<[u32; 2]> {
         let [a, b] = [0, 1].map(|k| &self.bodies[k].joined);
         let is_apart = nearest.is_none_or(|nearest| nearest.distance > 0.0);
-        match (self.is_own(), self.along.is_some()) {
+        match (self.is_own(), self.graph.is_some()) {
             (true, _) => own_crossings(self.points, a, threads),
             (_, false) if is_apart => Vec::new(),
             _ => crossings(self.points, a, b, threads),
         }
     }
 
-    fn side(&self, own: usize, crossings: &[[u32; 2]], threads: &Threads) -> Half {
+    fn side(&self, own: usize, crossings: &[[u32; 2]], threads: &Threads) -> OneWay {
         let rule = self.rule(own);
-        let mut side = Half { own, found: Vec::new(), is_wrong: Vec::new(), is_near: Vec::new() };
-        if rule.b.is_closed && !self.is_own() && self.along.is_none() {
+        let mut side = OneWay { own, found: Vec::new(), is_wrong: Vec::new(), is_near: Vec::new() };
+        if rule.b.is_closed && !self.is_own() && self.graph.is_none() {
             let crossings: Vec<_> = crossings.iter().map(|pair| [pair[own], pair[1 - own]]).collect();
             let (own, other) = (&rule.a.joined, &rule.b.joined);
-            let is_inside = inside(self.points, &rule.a.asked(self.points), own, other, &crossings, threads);
+            let is_inside =
+                inside(self.points, &rule.a.representatives(self.points), own, other, &crossings, threads);
             side.is_wrong = is_inside.into_iter().map(|inside| inside != rule.b.is_room).collect();
         }
         side
@@ -183,7 +184,7 @@ impl Scene<'_> {
 
     /// Finds the depth of vertices that are where they must not be: their distance from the surface,
     /// whichever way that faces and however far it is.
-    fn look_again_where_wrong(&self, side: &mut Half) {
+    fn measure_depths(&self, side: &mut OneWay) {
         let rule = self.rule(side.own);
         for (i, found) in side.found.iter_mut().enumerate() {
             if side.is_wrong.get(i) == Some(&true) && (found.is_none() || !rule.admits_all()) {
@@ -193,7 +194,7 @@ impl Scene<'_> {
     }
 
     /// Marks the triangles nearer than the warning distance.
-    fn warn(&self, nearest: Option<&Nearest>, sides: &mut [Half], threads: &Threads) {
+    fn warn(&self, nearest: Option<&Nearest>, sides: &mut [OneWay], threads: &Threads) {
         let Some(warn) = self.options.warn else { return };
         let near = self.bodies.map(|body| body.triangles.iter().map(|_| false.into()).collect());
         let both = [&near[0], &near[usize::from(!self.is_own())]].map(|near: &Vec<AtomicBool>| &near[..]);
@@ -210,7 +211,7 @@ impl Scene<'_> {
 
     /// Marks the triangles around vertices that are near, and the triangles nearest to these: most of all
     /// that are near.
-    fn mark_around(&self, side: &Half, warn: f64, near: [&[AtomicBool]; 2]) {
+    fn mark_around(&self, side: &OneWay, warn: f64, near: [&[AtomicBool]; 2]) {
         let own = self.bodies[side.own];
         for (i, found) in side.found.iter().enumerate() {
             if let Some(found) = found.filter(|found| found.distance_squared < warn * warn) {
@@ -221,14 +222,14 @@ impl Scene<'_> {
     }
 }
 
-impl Half {
+impl OneWay {
     fn depth(&self) -> f64 {
         let wrong = self.found.iter().zip(&self.is_wrong).filter(|(_, wrong)| **wrong);
         wrong.filter_map(|(found, _)| *found).map(|found| found.distance_squared.sqrt()).fold(0.0, f64::max)
     }
 
     /// Takes over those gaps that are smaller than the known ones.
-    pub(super) fn put(&self, scene: &Scene<'_>, gaps: &mut BodyGaps) {
+    pub(super) fn merge_into(&self, scene: &Scene<'_>, gaps: &mut BodyGaps) {
         let (own, other) = (scene.bodies[self.own], scene.bodies[1 - self.own]);
         for (i, found) in self.found.iter().enumerate() {
             let Some(found) = found else { continue };

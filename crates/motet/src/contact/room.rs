@@ -8,30 +8,15 @@
 
 use serde::Serialize;
 
-use super::body::Prepared;
-use super::inside::{Place, places};
+use super::body::{PreparedBody, Room};
+use super::inside::{Location, locations};
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::area;
 use crate::mesh::bounds;
 use crate::preflight::crossings;
 
 /// A surface is the room of a body if it encloses more than this fraction of the body's area.
-const MOST: f64 = 0.5;
-
-/// Whether a body is the wall of a room that contains others: the sign of its distances to these is reversed.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Room {
-    /// Of each body most of whose area it encloses at first, if it is closed, shares no vertex with that
-    /// body, and does not lie in it likewise. The default.
-    #[default]
-    Found,
-    /// Of no body.
-    No,
-    /// Of all other bodies, except for rooms that enclose it.
-    Yes,
-    /// Of these bodies, by their indices in the list of bodies.
-    Of(Vec<u32>),
-}
+const MIN_SHARE: f64 = 0.5;
 
 /// A body that lies in another, which is its room.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -52,35 +37,39 @@ pub(super) fn check(rooms: &[Room]) -> Result<()> {
     for (own, room) in rooms.iter().enumerate() {
         let Room::Of(others) = room else { continue };
         if let Some(other) = others.iter().find(|&&b| b as usize >= rooms.len() || b as usize == own) {
-            return Err(Error::options(format!("body {own} is told to be the room of body {other}")).remedy(
-                format!("there are {} bodies, numbered from 0; give others than itself", rooms.len()),
-            ));
+            return Err(Error::options(format!("body {own} cannot be the room of body {other}"))
+                .remedy(format!("give other bodies, numbered from 0 to {}", rooms.len() - 1)));
         }
     }
     Ok(())
 }
 
 /// All pairs of a room and a body in it, by room, then by body.
-pub(super) fn within(points: &[Point], bodies: &[Prepared], told: &[Room], threads: &Threads) -> Vec<Within> {
+pub(super) fn within(
+    points: &[Point],
+    bodies: &[PreparedBody],
+    given: &[Room],
+    threads: &Threads,
+) -> Vec<Within> {
     let ids = || 0..bodies.len() as u32;
     let pairs = ids().flat_map(|room| ids().map(move |body| [room, body])).filter(|[a, b]| a != b);
     let share = |room: u32, body: u32| {
         let [room, body] = [room, body].map(|id| &bodies[id as usize]);
-        if body.is_joined(room) { 0.0 } else { share_within(points, body, room, threads) }
+        if body.shares_vertex_with(room) { 0.0 } else { share_within(points, body, room, threads) }
     };
     let within = |[room, body]: [u32; 2]| {
-        let told_within = Within { room, body, share: None };
-        match &told[room as usize] {
+        let as_given = Within { room, body, share: None };
+        match &given[room as usize] {
             Room::No => None,
-            Room::Of(others) => others.contains(&body).then_some(told_within),
+            Room::Of(others) => others.contains(&body).then_some(as_given),
             Room::Yes => {
-                let is_in_it = told[body as usize] == Room::Yes && share(body, room) > MOST;
-                (!is_in_it).then_some(told_within)
+                let is_in_it = given[body as usize] == Room::Yes && share(body, room) > MIN_SHARE;
+                (!is_in_it).then_some(as_given)
             }
             Room::Found => {
                 let inside = share(room, body);
-                let is_found = inside > MOST && share(body, room) <= MOST;
-                is_found.then_some(Within { share: Some(inside), ..told_within })
+                let is_found = inside > MIN_SHARE && share(body, room) <= MIN_SHARE;
+                is_found.then_some(Within { share: Some(inside), ..as_given })
             }
         }
     };
@@ -89,20 +78,20 @@ pub(super) fn within(points: &[Point], bodies: &[Prepared], told: &[Room], threa
 
 /// The fraction of a body's area inside a closed surface. The rest is outside; what lies on the surface does
 /// not count. Each corner stands for a third of its triangle.
-fn share_within(points: &[Point], body: &Prepared, room: &Prepared, threads: &Threads) -> f64 {
+fn share_within(points: &[Point], body: &PreparedBody, room: &PreparedBody, threads: &Threads) -> f64 {
     if !room.is_closed || !may_enclose(points, room, body) {
         return 0.0;
     }
     let crossings = crossings(points, &body.triangles, &room.triangles, threads);
     let own = body.joined_vertices();
-    let places = places(points, &own, &body.joined, &room.joined, &crossings, threads);
+    let locations = locations(points, &own, &body.joined, &room.joined, &crossings, threads);
     let (mut inside, mut outside) = (0.0, 0.0);
     for (t, triangle) in (0..).zip(&body.joined) {
         let third = area(body.corners(points, t)) / 3.0;
         for v in triangle {
-            match own.binary_search(v).map(|i| places[i]) {
-                Ok(Place::Inside) => inside += third,
-                Ok(Place::Outside) => outside += third,
+            match own.binary_search(v).map(|i| locations[i]) {
+                Ok(Location::Inside) => inside += third,
+                Ok(Location::Outside) => outside += third,
                 _ => {}
             }
         }
@@ -111,7 +100,7 @@ fn share_within(points: &[Point], body: &Prepared, room: &Prepared, threads: &Th
 }
 
 /// Whether the room's box meets that of the body.
-fn may_enclose(points: &[Point], room: &Prepared, body: &Prepared) -> bool {
+fn may_enclose(points: &[Point], room: &PreparedBody, body: &PreparedBody) -> bool {
     let of = |vertices: &[VertexId]| vertices.iter().map(|v| points[v.index()]).collect::<Vec<_>>();
     let boxes = [room, body].map(|body| bounds(&of(&body.vertices)));
     let [Some([low, high]), Some([from, to])] = boxes else { return false };

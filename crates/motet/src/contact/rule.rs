@@ -1,9 +1,9 @@
 //! Which places count as a gap, and which are only neighbours or lie behind a wall.
 
-use super::along::{Along, Ways};
-use super::body::{Prepared, Seen};
+use super::body::{BodyView, PreparedBody};
 use super::facing::{Sight, may_face, see_each_other};
 use super::options::Options;
+use super::surface_graph::{PathSearch, SurfaceGraph};
 use crate::base::{Point, VertexId};
 use crate::geometry::distance::Closest;
 use crate::geometry::triangle;
@@ -14,10 +14,10 @@ use crate::spatial;
 #[derive(Clone, Copy)]
 pub(super) struct Rule<'a> {
     pub(super) points: &'a [Point],
-    pub(super) a: Seen<'a>,
-    pub(super) b: Seen<'a>,
+    pub(super) a: BodyView<'a>,
+    pub(super) b: BodyView<'a>,
     /// Paths along the surface, if the bodies have vertices in common.
-    along: Option<&'a Along>,
+    graph: Option<&'a SurfaceGraph>,
     facing: bool,
     fold: f64,
 }
@@ -25,11 +25,11 @@ pub(super) struct Rule<'a> {
 impl<'a> Rule<'a> {
     pub(super) fn new(
         points: &'a [Point],
-        [a, b]: [Seen<'a>; 2],
-        along: Option<&'a Along>,
+        [a, b]: [BodyView<'a>; 2],
+        graph: Option<&'a SurfaceGraph>,
         options: &Options,
     ) -> Self {
-        Self { points, a, b, along, facing: options.facing || along.is_some(), fold: options.fold }
+        Self { points, a, b, graph, facing: options.facing || graph.is_some(), fold: options.fold }
     }
 
     /// Whether everything counts.
@@ -41,14 +41,14 @@ impl<'a> Rule<'a> {
     pub(super) fn at_vertex(
         self,
         place: usize,
-        ways: &mut Ways,
+        paths: &mut PathSearch,
     ) -> impl FnMut(u32, &spatial::Closest) -> bool {
         let vertex = self.a.ids[place];
         let start = self.points[self.a.vertices[place].index()];
         let sight = Sight::new(self.points, self.a, place);
         move |j, found| {
             let corners = self.b.joined[j as usize];
-            if self.along.is_some() && corners.contains(&vertex) {
+            if self.graph.is_some() && corners.contains(&vertex) {
                 return false;
             }
             let way = sub(found.point, start);
@@ -59,16 +59,17 @@ impl<'a> Rule<'a> {
                 return false;
             }
             let length = self.fold * found.distance_squared.sqrt();
-            self.is_gap(vertex, (corners, found.point), length, ways)
+            self.is_gap(vertex, (corners, found.point), length, paths)
         }
     }
 
     /// Whether some triangle has all these vertices: places on them are neighbours, however long the path
     /// along its edges.
     fn is_in_one_triangle(&self, own: &[VertexId], other: &[VertexId]) -> bool {
-        let is_all_of =
-            |body: &Prepared, t: u32| own.iter().chain(other).all(|v| body.joined[t as usize].contains(v));
-        self.along.is_some()
+        let is_all_of = |body: &PreparedBody, t: u32| {
+            own.iter().chain(other).all(|v| body.joined[t as usize].contains(v))
+        };
+        self.graph.is_some()
             && [self.a, self.b].into_iter().any(|body| {
                 let place = own.first().and_then(|v| body.places_of(*v).next());
                 place.is_some_and(|place| body.star(place).iter().any(|&t| is_all_of(&body, t)))
@@ -77,7 +78,7 @@ impl<'a> Rule<'a> {
 
     /// The distance of a vertex of the first body from a triangle of the second; `None` if that does not
     /// count.
-    pub(super) fn distance(&self, place: usize, j: u32, ways: &mut Ways) -> Option<f64> {
+    pub(super) fn distance(&self, place: usize, j: u32, paths: &mut PathSearch) -> Option<f64> {
         let p = self.points[self.a.vertices[place].index()];
         let corners = self.b.triangles.get(j as usize)?.map(|v| self.points[v.index()]);
         let weights = triangle::closest(corners, p);
@@ -85,16 +86,22 @@ impl<'a> Rule<'a> {
         let off = sub(point, p);
         let distance_squared = dot(off, off);
         let found = spatial::Closest { triangle: j as usize, weights, point, distance_squared };
-        self.at_vertex(place, ways)(j, &found).then(|| distance_squared.sqrt())
+        self.at_vertex(place, paths)(j, &found).then(|| distance_squared.sqrt())
     }
 
     /// Whether a place is farther than `length` along the surface.
-    fn is_gap(&self, from: VertexId, to: ([VertexId; 3], Point), length: f64, ways: &mut Ways) -> bool {
-        self.along.is_none_or(|along| !along.is_within(self.points, from, to, length, ways))
+    fn is_gap(
+        &self,
+        from: VertexId,
+        to: ([VertexId; 3], Point),
+        length: f64,
+        paths: &mut PathSearch,
+    ) -> bool {
+        self.graph.is_none_or(|graph| !graph.is_within(self.points, from, to, length, paths))
     }
 
     /// Whether two triangles count as near to each other.
-    pub(super) fn admits(&self, [i, j]: [u32; 2], found: &Closest<3, 3>, ways: &mut Ways) -> bool {
+    pub(super) fn admits(&self, [i, j]: [u32; 2], found: &Closest<3, 3>, paths: &mut PathSearch) -> bool {
         if self.admits_all() {
             return true;
         }
@@ -109,14 +116,14 @@ impl<'a> Rule<'a> {
         }
         let heaviest = (1..3).fold(0, |best, k| if found.on_a[k] > found.on_a[best] { k } else { best });
         let first = distance(from, self.points[own[heaviest].index()]);
-        self.is_gap(own[heaviest], (other, to), self.fold * found.distance() - first, ways)
+        self.is_gap(own[heaviest], (other, to), self.fold * found.distance() - first, paths)
     }
 
     /// Whether two triangles are worth measuring: not the same, without a common vertex, and not turned away
     /// from each other.
     pub(super) fn may_admit(&self, [i, j]: [u32; 2]) -> bool {
         let (own, other) = (self.a.joined[i as usize], self.b.joined[j as usize]);
-        let is_joined = self.along.is_some() && own.iter().any(|v| other.contains(v));
+        let is_joined = self.graph.is_some() && own.iter().any(|v| other.contains(v));
         !is_joined && (!self.facing || may_face(self.points, [self.a, self.b], [i, j]))
     }
 }

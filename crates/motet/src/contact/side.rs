@@ -15,7 +15,7 @@ pub enum Side {
 
 impl Side {
     /// The opposite side; [`Both`](Self::Both) remains.
-    pub(super) fn turned(self) -> Self {
+    pub(super) fn opposite(self) -> Self {
         match self {
             Self::Both => Self::Both,
             Self::Outside => Self::Inside,

@@ -198,8 +198,8 @@ impl Between {
     pub fn update(&mut self, points: &[Point], threads: &Threads) -> Result<()> {
         if points.len() != self.gap.len() {
             let (had, has) = (self.gap.len(), points.len());
-            return Err(Error::input(format!("{has} points, where {had} were triangulated"))
-                .remedy("measure a surface with other vertices anew"));
+            return Err(Error::input(format!("got {has} points, but {had} were triangulated"))
+                .remedy("build a new measurement for surfaces with other vertices"));
         }
         check_finite("the bodies", self.sites.vertices.iter().map(|(_, v, _)| *v), points)?;
         self.measure(points, threads);

@@ -30,8 +30,8 @@ pub(super) struct Sites {
 /// The vertices that the bodies use, each once, in ascending order.
 pub(super) fn used_vertices(points: &[Point], bodies: &[Vec<[VertexId; 3]>]) -> Result<Vec<VertexId>> {
     if bodies.is_empty() {
-        return Err(Error::input("a measure of gaps needs a body, and there is none")
-            .remedy("give the triangles of each body as a list of their own"));
+        return Err(Error::input("there is no body to measure gaps of")
+            .remedy("give the triangles of each body as a separate list"));
     }
     let mut used = vec![false; points.len()];
     for (b, triangles) in bodies.iter().enumerate() {

@@ -68,32 +68,35 @@ pub fn sweep(
     threads: &Threads,
 ) -> Sweep {
     let times = [infinite(a.len()), infinite(b.len())];
-    let all = All::between(points, velocity, [a, b], [&times[0], &times[1]], horizon, admit);
+    let all = SweepJob::between(points, velocity, [a, b], [&times[0], &times[1]], horizon, admit);
     let first = all.run(threads);
     Sweep { first, times: times.map(plain) }
 }
 
 /// For each triangle of `a`, a time before which it comes no nearer to surface `b` than its length in
-/// `apart`, if every point moves with its velocity from time 0 to `horizon`; infinite if it does not up to
-/// the horizon. Triangles that are nearer at the start must keep [`SLACK`] of their distance then; so those
-/// that move apart are free to.
+/// `clearance`, if every point moves with its velocity from time 0 to `horizon`; infinite if it does not up
+/// to the horizon. Triangles that are nearer at the start must keep [`SLACK`] of their distance then; so
+/// those that move apart are free to.
 ///
 /// Times are as safe and as close to the truth as those of [`sweep`], and the same pairs are left out.
 ///
-/// Panics when a triangle names a point beyond `points` or `velocity`, or `apart` does not have one length
-/// for each triangle of `a`.
+/// Panics when a triangle names a point beyond `points` or `velocity`, or `clearance` does not have one
+/// length for each triangle of `a`.
 pub fn sweep_apart(
     points: &[Point],
     velocity: &[Point],
     [a, b]: [&[[VertexId; 3]]; 2],
-    apart: &[f64],
+    clearance: &[f64],
     horizon: f64,
     threads: &Threads,
 ) -> Vec<f64> {
-    assert_eq!(a.len(), apart.len(), "a length for each triangle");
+    assert_eq!(a.len(), clearance.len(), "a length for each triangle");
     let times = [infinite(a.len()), infinite(b.len())];
     let every = |_, _| true;
-    let all = All { apart, ..All::between(points, velocity, [a, b], [&times[0], &times[1]], horizon, every) };
+    let all = SweepJob {
+        clearance,
+        ..SweepJob::between(points, velocity, [a, b], [&times[0], &times[1]], horizon, every)
+    };
     all.search(0, &all.tree(1, |_| true), threads);
     let [times, _] = times;
     plain(times)
@@ -112,8 +115,8 @@ pub fn sweep_own(
     threads: &Threads,
 ) -> Sweep {
     let times = infinite(triangles.len());
-    let between = All::between(points, velocity, [triangles; 2], [times.as_slice(); 2], horizon, admit);
-    let all = All { is_own: true, ..between };
+    let between = SweepJob::between(points, velocity, [triangles; 2], [times.as_slice(); 2], horizon, admit);
+    let all = SweepJob { is_own: true, ..between };
     let first = all.run(threads);
     let times = plain(times);
     Sweep { first, times: [times.clone(), times] }
@@ -135,20 +138,20 @@ fn read(time: &AtomicU64) -> f64 {
 }
 
 /// The arguments and the times of a sweep.
-struct All<'a, F> {
+struct SweepJob<'a, F> {
     points: &'a [Point],
     velocity: &'a [Point],
     /// The two surfaces, and the times of their triangles; twice the same for a surface against itself.
     surfaces: [&'a [[VertexId; 3]]; 2],
     times: [&'a Times; 2],
     /// How far apart triangles of the first surface have to stay; empty if they only must not touch.
-    apart: &'a [f64],
+    clearance: &'a [f64],
     is_own: bool,
     horizon: f64,
     admit: F,
 }
 
-impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
+impl<'a, F: Fn(u32, u32) -> bool + Sync> SweepJob<'a, F> {
     /// A sweep of two surfaces that only must not touch.
     fn between(
         points: &'a [Point],
@@ -158,7 +161,7 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
         horizon: f64,
         admit: F,
     ) -> Self {
-        Self { points, velocity, surfaces, times, apart: &[], is_own: false, horizon, admit }
+        Self { points, velocity, surfaces, times, clearance: &[], is_own: false, horizon, admit }
     }
 
     /// Finds all times, and returns the pair that touches first.
@@ -187,17 +190,17 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
     /// Finds the times of all triangles of one surface.
     fn search(&self, side: usize, other: &MovingTree, threads: &Threads) {
         in_runs(self.surfaces[side].len(), threads, |queue: &mut Queue, run| {
-            run.for_each(|i| self.follow(side, i as u32, other, queue));
+            run.for_each(|i| self.find_time(side, i as u32, other, queue));
             Vec::<()>::new()
         });
     }
 
     /// Finds the time of triangle `own` of one surface: examines what comes first, and stops when all that is
     /// left comes later.
-    fn follow(&self, side: usize, own: u32, other: &MovingTree, queue: &mut Queue) {
+    fn find_time(&self, side: usize, own: u32, other: &MovingTree, queue: &mut Queue) {
         let known = &self.times[side][own as usize];
-        let apart = if side == 0 { self.apart_of(own) } else { 0.0 };
-        let searched = self.box_of(self.surfaces[side][own as usize]).map(|b| b.widened(apart));
+        let clearance = if side == 0 { self.clearance_of(own) } else { 0.0 };
+        let searched = self.box_of(self.surfaces[side][own as usize]).map(|b| b.expanded(clearance));
         other.begin(&searched, queue);
         while let Some((time, item)) = queue.pop() {
             let bound = read(known);
@@ -211,7 +214,7 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
                     if self.is_joined(pair) {
                         continue;
                     }
-                    let later = self.pair(pair).start(time);
+                    let later = self.pair(pair).quick_bound(time);
                     if later < bound && later <= self.horizon {
                         queue.push(later, Item::Triangle(id));
                     }
@@ -221,7 +224,7 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
                     if !(self.admit)(pair[0], pair[1]) {
                         continue;
                     }
-                    if let Some(time) = self.pair(pair).time(time, bound, self.horizon) {
+                    if let Some(time) = self.pair(pair).contact_time(time, bound, self.horizon) {
                         for (times, id) in self.times.into_iter().zip(pair) {
                             times[id as usize].fetch_min(time.to_bits(), Ordering::Relaxed);
                         }
@@ -253,7 +256,9 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
                 return None;
             }
             let pair = self.pair(ids);
-            let found = pair.time(pair.start(start), beyond, self.horizon).filter(|&found| found == time)?;
+            let found = pair
+                .contact_time(pair.quick_bound(start), beyond, self.horizon)
+                .filter(|&found| found == time)?;
             let [i, j] = ids;
             (self.admit)(i, j).then(|| Touch { time: found, triangles: ids, place: pair.place(found) })
         })
@@ -267,11 +272,11 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
 
     fn pair(&self, [i, j]: [u32; 2]) -> Pair {
         let of = |t: [VertexId; 3]| t.map(|v| (self.points[v.index()], self.velocity[v.index()]));
-        Pair::new(of(self.surfaces[0][i as usize]), of(self.surfaces[1][j as usize]), self.apart_of(i))
+        Pair::new(of(self.surfaces[0][i as usize]), of(self.surfaces[1][j as usize]), self.clearance_of(i))
     }
 
-    fn apart_of(&self, i: u32) -> f64 {
-        self.apart.get(i as usize).copied().unwrap_or(0.0)
+    fn clearance_of(&self, i: u32) -> f64 {
+        self.clearance.get(i as usize).copied().unwrap_or(0.0)
     }
 
     /// The moving box of a triangle; `None` if a corner or velocity is not finite.

@@ -25,19 +25,19 @@ const ROUNDING: f64 = 1e-14;
 /// triangles, whichever is less. A contact at a hundredth of the fastest speed is then correct to a
 /// ten-thousandth, and a grazing one, where the distance falls as the square of the time left, to a
 /// thousandth.
-const ENOUGH: f64 = 1e-6;
+const CONTACT_TOLERANCE: f64 = 1e-6;
 
 /// The mean is two steps per pair. Where triangles rotate fast and close slowly, each step covers the same
 /// small fraction of what is left: 100 steps were too few for 2 of 13,000 random pairs (27 % too early at
 /// worst), 1000 for none (4e-5 too early).
-const MOST_STEPS: usize = 1000;
+const MAX_STEPS: usize = 1000;
 
 /// Triangles that must stay apart, but are nearer at the start than allowed, must keep this fraction of their
 /// distance then.
 pub const SLACK: f64 = 0.75;
 
 /// Triangles that must stay apart count as in contact at most this fraction of that distance too early.
-const FAR: f64 = 0.01;
+const MAX_EARLY: f64 = 0.01;
 
 /// Squares above this have all their digits.
 const SMALLEST_SQUARE: f64 = 1e-290;
@@ -53,13 +53,13 @@ pub(super) struct Pair {
     /// The larger of the sizes of the two triangles.
     width: f64,
     /// They are in contact when their distance is at most this.
-    apart: f64,
+    clearance: f64,
 }
 
 impl Pair {
     /// `a` and `b` are corners with their velocities. They are in contact when their distance is at most
-    /// `apart`, but see [`SLACK`].
-    pub(super) fn new(a: [(Point, Point); 3], b: [(Point, Point); 3], apart: f64) -> Self {
+    /// `clearance`, but see [`SLACK`].
+    pub(super) fn new(a: [(Point, Point); 3], b: [(Point, Point); 3], clearance: f64) -> Self {
         let origin = a[0];
         let places = [a, b].map(|t| t.map(|x| sub(x.0, origin.0)));
         let velocities = [a, b].map(|t| t.map(|x| sub(x.1, origin.1)));
@@ -69,21 +69,21 @@ impl Pair {
             .iter()
             .map(|t| largest_coordinate(&[sub(t[1], t[0]), sub(t[2], t[0])]))
             .fold(0.0, f64::max);
-        Self { origin, places, velocities, size, speed, width, apart }.within_slack()
+        Self { origin, places, velocities, size, speed, width, clearance }.within_slack()
     }
 
     fn within_slack(self) -> Self {
-        if self.apart == 0.0 {
+        if self.clearance == 0.0 {
             return self;
         }
-        let near = self.closest_within(0.0, self.apart);
-        Self { apart: near.map_or(self.apart, |near| SLACK * near.distance()), ..self }
+        let near = self.closest_within(0.0, self.clearance);
+        Self { clearance: near.map_or(self.clearance, |near| SLACK * near.distance()), ..self }
     }
 
     /// The most that triangles that must stay apart may be from contact when they stop: a small part of that
     /// distance.
     fn tolerance(&self) -> f64 {
-        if self.apart > 0.0 { FAR * self.apart } else { f64::INFINITY }
+        if self.clearance > 0.0 { MAX_EARLY * self.clearance } else { f64::INFINITY }
     }
 
     /// The largest relative speed of two vertices: no two points of the triangles have a larger one.
@@ -95,37 +95,39 @@ impl Pair {
 
     /// A time before which there is no contact, given that there is none before `start`: by the slab between
     /// the centres, a cheap test that often suffices.
-    pub(super) fn start(&self, start: f64) -> f64 {
+    pub(super) fn quick_bound(&self, start: f64) -> f64 {
         let [a, b] = self.places.map(|[p, q, r]| add(add(p, q), r));
-        self.closed_at(0.0, sub(b, a)).max(start)
+        self.slab_closes_at(0.0, sub(b, a)).max(start)
     }
 
-    /// A time before which there is no contact, given that there is none before [`start`](Self::start).
-    /// `None` if it is not below `bound` or is beyond the horizon. Otherwise `bound` changes nothing: the
-    /// search ends early only at a step that would have gone beyond it.
-    pub(super) fn time(&self, start: f64, bound: f64, horizon: f64) -> Option<f64> {
+    /// A time before which there is no contact, given that there is none before
+    /// [`quick_bound`](Self::quick_bound). `None` if it is not below `bound` or is beyond the horizon.
+    /// Otherwise `bound` changes nothing: the search ends early only at a step that would have gone beyond
+    /// it.
+    pub(super) fn contact_time(&self, start: f64, bound: f64, horizon: f64) -> Option<f64> {
         let is_late = |time: f64| time >= bound || time > horizon;
         let last = bound.min(horizon);
         let fastest = self.fastest();
         let mut time = start;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if is_late(time) {
                 return None;
             }
             let rounding = ROUNDING * (self.size + time * self.speed);
-            let touching = rounding + (ENOUGH * self.width.min(time * fastest)).min(self.tolerance());
+            let touching =
+                rounding + (CONTACT_TOLERANCE * self.width.min(time * fastest)).min(self.tolerance());
             // From farther than this, the next step goes beyond `last`, with a margin for rounding.
             let reach = (last - time) * fastest * (1.0 + 4.0 * ROUNDING) + 2.0 * rounding;
-            let near = self.closest_within(time, self.apart + reach.max(2.0 * touching))?;
-            let distance = near.distance() - self.apart;
+            let near = self.closest_within(time, self.clearance + reach.max(2.0 * touching))?;
+            let distance = near.distance() - self.clearance;
             if distance <= touching {
                 break;
             }
             let at_least = time + (distance - rounding) / fastest * (1.0 - ROUNDING);
-            let next = self.closed_at(time, near.offset).max(at_least);
+            let next = self.slab_closes_at(time, near.offset).max(at_least);
             // Also false for NaN.
-            let goes_on = next > time;
-            if !goes_on {
+            let progressed = next > time;
+            if !progressed {
                 break;
             }
             time = next;
@@ -160,13 +162,13 @@ impl Pair {
 
     /// Until when a slab perpendicular to `direction` stays between the triangles, from `time` on; `time` if
     /// there is none.
-    fn closed_at(&self, time: f64, direction: Point) -> f64 {
+    fn slab_closes_at(&self, time: f64, direction: Point) -> f64 {
         // At most 1 in each coordinate, so that only sizes count.
         let largest = direction.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let along = direction.map(|x| x / largest);
         let at = self.at(time).map(|t| t.map(|p| dot(p, along)));
         let speeds = self.velocities.map(|t| t.map(|v| dot(v, along)));
-        let rounding = ROUNDING * (self.size + time * self.speed) + self.apart * norm(along);
+        let rounding = ROUNDING * (self.size + time * self.speed) + self.clearance * norm(along);
         let mut left = f64::INFINITY;
         for (p, u) in at[0].iter().zip(speeds[0]) {
             for (q, v) in at[1].iter().zip(speeds[1]) {

@@ -29,12 +29,12 @@ impl MovingBox {
     }
 
     /// The box grown by a length on all sides.
-    pub(super) fn widened(self, by: f64) -> Self {
+    pub(super) fn expanded(self, by: f64) -> Self {
         let [low, high] = self.place;
         Self { place: [low.map(|x| x - by), high.map(|x| x + by)], ..self }
     }
 
-    fn joined(self, other: Self) -> Self {
+    fn union(self, other: Self) -> Self {
         let join = |[a, b]: Bounds, [c, d]: Bounds| bounding_box([a, b, c, d]);
         Self { place: join(self.place, other.place), velocity: join(self.velocity, other.velocity) }
     }
@@ -105,7 +105,7 @@ impl MovingTree {
     /// Builds a subtree: boxes are halved across the longest side of the box of their centres until few are
     /// left.
     fn build(&mut self, boxes: &mut [(MovingBox, u32)], start: u32, time: f64) {
-        let whole = boxes[1..].iter().fold(boxes[0].0, |whole, b| whole.joined(b.0));
+        let whole = boxes[1..].iter().fold(boxes[0].0, |whole, b| whole.union(b.0));
         let place = self.nodes.len();
         self.nodes.push(Node { around: whole, start, count: boxes.len() as u32 });
         if boxes.len() <= LEAF {
@@ -123,20 +123,20 @@ impl MovingTree {
         self.build(right, start + middle as u32, time);
     }
 
-    /// Prepares `queue` for the boxes that touch `asked`.
-    pub(super) fn begin(&self, asked: &Option<MovingBox>, queue: &mut Queue) {
+    /// Prepares `queue` for the boxes that touch `query`.
+    pub(super) fn begin(&self, query: &Option<MovingBox>, queue: &mut Queue) {
         queue.clear();
-        if asked.is_some() && !self.nodes.is_empty() {
+        if query.is_some() && !self.nodes.is_empty() {
             queue.push(0.0, Item::Node(0));
         }
     }
 
-    /// Replaces a node by those of its contents that touch `asked` before `bound`.
-    pub(super) fn open(&self, node: u32, asked: &Option<MovingBox>, bound: f64, queue: &mut Queue) {
-        let Some(asked) = asked else { return };
+    /// Replaces a node by those of its contents that touch `query` before `bound`.
+    pub(super) fn open(&self, node: u32, query: &Option<MovingBox>, bound: f64, queue: &mut Queue) {
+        let Some(query) = query else { return };
         let Node { start, count, .. } = self.nodes[node as usize];
         let mut put = |around: &MovingBox, item| {
-            if let Some(time) = around.touches(asked, self.horizon).filter(|&time| time < bound) {
+            if let Some(time) = around.touches(query, self.horizon).filter(|&time| time < bound) {
                 queue.push(time, item);
             }
         };
@@ -148,18 +148,18 @@ impl MovingTree {
         self.boxes[run].iter().for_each(|(around, id)| put(around, Item::Box(*id)));
     }
 
-    /// Replaces the contents of `found` by all boxes that touch `asked` before the horizon: from when on (or
+    /// Replaces the contents of `found` by all boxes that touch `query` before the horizon: from when on (or
     /// sooner), and their ids.
-    pub(super) fn touching(&self, asked: &Option<MovingBox>, found: &mut Vec<(f64, u32)>) {
+    pub(super) fn touching(&self, query: &Option<MovingBox>, found: &mut Vec<(f64, u32)>) {
         found.clear();
-        let Some(asked) = asked else { return };
+        let Some(query) = query else { return };
         // Halving keeps the depth below 32, and each level leaves one box behind.
         let mut open = [0u32; 33];
         let mut n_open = usize::from(!self.nodes.is_empty());
         while n_open > 0 {
             n_open -= 1;
             let node = &self.nodes[open[n_open] as usize];
-            if node.around.touches(asked, self.horizon).is_none() {
+            if node.around.touches(query, self.horizon).is_none() {
                 continue;
             }
             if node.count == 0 {
@@ -169,7 +169,7 @@ impl MovingTree {
             }
             let run = node.start as usize..(node.start + node.count) as usize;
             let touching = self.boxes[run].iter();
-            found.extend(touching.filter_map(|(b, id)| Some((b.touches(asked, self.horizon)?, *id))));
+            found.extend(touching.filter_map(|(b, id)| Some((b.touches(query, self.horizon)?, *id))));
         }
     }
 }

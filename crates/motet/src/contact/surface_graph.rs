@@ -8,7 +8,7 @@ use crate::geometry::vector::distance;
 
 /// The edges of all bodies together: bodies that share vertices are one surface here.
 #[derive(Clone, Debug)]
-pub(super) struct Along {
+pub(super) struct SurfaceGraph {
     neighbors: Csr<u32>,
     /// The piece of each vertex: no path leads from one piece to another.
     pieces: Vec<u32>,
@@ -19,9 +19,9 @@ const SLACK: f64 = 1.0 + 1e-9;
 
 /// A search continues up to this multiple of the requested length: what it then finds out about one vertex
 /// decides enough of those around it, so that few searches are left.
-const SPARE: f64 = 1.5;
+const SEARCH_FACTOR: f64 = 1.5;
 
-impl Along {
+impl SurfaceGraph {
     pub(super) fn new<'a>(
         n_points: usize,
         triangles: impl Iterator<Item = &'a [VertexId; 3]> + Clone,
@@ -57,42 +57,42 @@ impl Along {
         from: VertexId,
         to: ([VertexId; 3], Point),
         length: f64,
-        ways: &mut Ways,
+        paths: &mut PathSearch,
     ) -> bool {
-        ways.begin(points.len());
+        paths.begin(points.len());
         let piece = |v: VertexId| self.pieces[v.index()];
         if to.0.iter().all(|&corner| piece(corner) != piece(from)) {
             return false;
         }
-        let known = self.known(points, from, to, length, ways);
+        let known = self.lower_bound(points, from, to, length, paths);
         if known > length * SLACK {
-            ways.know(from, Far { to, least: known });
+            paths.remember_far(from, Far { to, least: known });
             return false;
         }
-        let least = self.least(points, from, to, length * SPARE, ways);
+        let least = self.shortest(points, from, to, length * SEARCH_FACTOR, paths);
         // Also false for a length that is NaN.
         let is_far = least > length;
         if !is_far {
             return true;
         }
-        ways.know(from, Far { to, least });
+        paths.remember_far(from, Far { to, least });
         false
     }
 
     /// A lower bound of the distance from a vertex to a place, by what is known of the vertex and its
     /// neighbours; 0 if that says nothing. A path to the place continues to another place in the same
     /// triangle, or through a corner to one in an adjacent triangle.
-    fn known(
+    fn lower_bound(
         &self,
         points: &[Point],
         from: VertexId,
         (corners, place): ([VertexId; 3], Point),
         enough: f64,
-        ways: &Ways,
+        paths: &PathSearch,
     ) -> f64 {
         let mut most = 0.0;
         for &via in [from.0].iter().chain(self.neighbors.list(from.index())) {
-            let Some(&Far { to: (others, other), least }) = ways.far_from(via) else { continue };
+            let Some(&Far { to: (others, other), least }) = paths.far_from(via) else { continue };
             let step = distance(points[via as usize], points[from.index()]);
             let on = match corners == others {
                 true => distance(place, other),
@@ -118,22 +118,22 @@ impl Along {
     ///
     /// Shortest paths first, with the straight distance as the estimate of what is left (A*: Hart, Nilsson
     /// and Raphael 1968): only vertices within an ellipse are examined.
-    fn least(
+    fn shortest(
         &self,
         points: &[Point],
         from: VertexId,
         (corners, place): ([VertexId; 3], Point),
         length: f64,
-        ways: &mut Ways,
+        paths: &mut PathSearch,
     ) -> f64 {
         let left = |v: u32| distance(points[v as usize], place);
-        ways.reach(from.0, 0.0, left(from.0));
-        while let Some((Reverse(bits), v)) = ways.open.pop() {
+        paths.reach(from.0, 0.0, left(from.0));
+        while let Some((Reverse(bits), v)) = paths.open.pop() {
             let whole = f64::from_bits(bits);
             if whole > length {
                 return whole;
             }
-            let far = ways.far[v as usize];
+            let far = paths.distances[v as usize];
             // A vertex is in the queue once more for each shorter path found to it.
             if (far + left(v)).to_bits() != bits {
                 continue;
@@ -143,7 +143,7 @@ impl Along {
             }
             for &next in self.neighbors.list(v as usize) {
                 let step = distance(points[v as usize], points[next as usize]);
-                ways.reach(next, far + step, left(next));
+                paths.reach(next, far + step, left(next));
             }
         }
         f64::INFINITY
@@ -182,11 +182,11 @@ struct Far {
 /// The buffers of a search, kept for the next one, and what searches found. Valid for one surface at one
 /// time.
 #[derive(Debug, Default)]
-pub(super) struct Ways {
-    /// The distance of each vertex, valid if its `round` is `now`.
-    far: Vec<f64>,
-    round: Vec<u32>,
-    now: u32,
+pub(super) struct PathSearch {
+    /// The distance of each vertex, valid if its `search_number` is `current_search`.
+    distances: Vec<f64>,
+    search_number: Vec<u32>,
+    current_search: u32,
     /// By the estimated whole length, as bits: those of positive numbers are in the order of the numbers.
     open: BinaryHeap<(Reverse<u64>, u32)>,
     /// For each vertex, the index in `far_places` of the last place that was found to be far from it, or
@@ -195,20 +195,21 @@ pub(super) struct Ways {
     far_places: Vec<Far>,
 }
 
-impl Ways {
+impl PathSearch {
     fn begin(&mut self, n_points: usize) {
         self.open.clear();
-        if self.far.len() != n_points || self.now == u32::MAX {
-            (self.far, self.round, self.now) = (vec![0.0; n_points], vec![0; n_points], 0);
+        if self.distances.len() != n_points || self.current_search == u32::MAX {
+            (self.distances, self.search_number, self.current_search) =
+                (vec![0.0; n_points], vec![0; n_points], 0);
             (self.last_far, self.far_places) = (vec![u32::MAX; n_points], Vec::new());
         }
-        self.now += 1;
+        self.current_search += 1;
     }
 
     fn reach(&mut self, v: u32, far: f64, left: f64) {
         let i = v as usize;
-        if self.round[i] != self.now || far < self.far[i] {
-            (self.round[i], self.far[i]) = (self.now, far);
+        if self.search_number[i] != self.current_search || far < self.distances[i] {
+            (self.search_number[i], self.distances[i]) = (self.current_search, far);
             self.open.push((Reverse((far + left).to_bits()), v));
         }
     }
@@ -217,7 +218,7 @@ impl Ways {
         self.far_places.get(self.last_far[v as usize] as usize)
     }
 
-    fn know(&mut self, v: VertexId, far: Far) {
+    fn remember_far(&mut self, v: VertexId, far: Far) {
         let last = &mut self.last_far[v.index()];
         match self.far_places.get_mut(*last as usize) {
             Some(known) => *known = far,

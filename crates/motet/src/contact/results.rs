@@ -35,7 +35,8 @@ pub struct BodyGaps {
     pub closest_triangle: Vec<u32>,
     /// The closest point on it; the vertex itself if there is none.
     pub closest_point: Vec<Point>,
-    /// Whether a triangle at the vertex is nearer to another surface than the warning distance, or the gap is negative.
+    /// Whether a triangle at the vertex is nearer to another surface than the warning distance, or the gap is
+    /// negative.
     pub warning: Vec<bool>,
 }
 
