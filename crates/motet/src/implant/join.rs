@@ -1,16 +1,13 @@
 //! Joins what is left of the host and everything new into one mesh, with its labels and arrays.
 
-use std::collections::HashSet;
-
-use super::devices::Devices;
-use super::gap::Gap;
+use super::layout::{Laid, Numbers, Pieces};
 use super::names::{Names, label};
 use super::origins::history;
-use super::zone::{Draft, Site};
-use crate::base::{CellId, Id, Result, Threads, VertexId, rising};
+use super::zone::Site;
+use crate::base::{CellId, Result, Threads};
 use crate::geometry::tet::volume;
+use crate::mesh::Mesh;
 use crate::mesh::history::{History, Rules, number_anew};
-use crate::mesh::{CellKind, Cells, Mesh, TetPart};
 
 /// The mesh, its history, and where the tets of the zone are in it.
 pub(super) struct Joined {
@@ -20,28 +17,6 @@ pub(super) struct Joined {
     pub(super) zone_to_cell: Vec<CellId>,
     /// The first new cell.
     pub(super) first_new: CellId,
-}
-
-/// Everything that is to be joined.
-#[derive(Clone, Copy)]
-pub(super) struct Pieces<'a> {
-    pub(super) host: &'a Mesh,
-    /// The tets and triangles of the host.
-    pub(super) part: &'a TetPart,
-    pub(super) devices: &'a Devices,
-    pub(super) gap: &'a Gap,
-    pub(super) draft: &'a Draft,
-}
-
-/// The cells of the result, and the old cell of each.
-pub(super) struct Laid {
-    cells: Cells,
-    pub(super) to_old: Vec<CellId>,
-    /// For each tet of the host, its cell if it stays.
-    host_to_cell: Vec<CellId>,
-    /// How many cells of the host stay. Behind them come triangles of devices, then new tets, then those that
-    /// devices kept.
-    pub(super) n_stay: usize,
 }
 
 /// Joins all pieces.
@@ -66,79 +41,6 @@ pub(super) fn join(pieces: &Pieces, rules: &Rules, threads: &Threads) -> Result<
     });
     let zone_to_cell = zone_to_cell.collect();
     Ok((Joined { mesh, history, zone_to_cell, first_new: CellId::new(laid.n_stay) }, names))
-}
-
-impl Laid {
-    /// All cells, over the vertices of the draft.
-    fn new(pieces: &Pieces) -> Self {
-        let Pieces { host, part, gap, draft, .. } = *pieces;
-        let mut is_gone = vec![false; host.cells.len()];
-        for (&cell, &gone) in part.tet_to_cell.iter().zip(&draft.is_gone) {
-            is_gone[cell.index()] = gone;
-        }
-        let dropped: HashSet<[VertexId; 3]> = gap.dropped.iter().map(|face| rising(face.vertices)).collect();
-        for (&cell, triangle) in part.triangle_to_cell.iter().zip(&part.mesh.triangles) {
-            is_gone[cell.index()] = dropped.contains(&rising(*triangle));
-        }
-        let mut laid = Self { cells: Cells::new(), to_old: Vec::new(), host_to_cell: Vec::new(), n_stay: 0 };
-        let mut faces = host.cells.polyhedron_faces().iter();
-        for (cell, kind, vertices) in host.cells.iter() {
-            let of_polyhedron =
-                (kind == CellKind::POLYHEDRON).then(|| faces.next().cloned().unwrap_or_default());
-            if kind == CellKind::TETRA {
-                laid.host_to_cell.push(CellId::new(laid.cells.len()));
-            }
-            if is_gone[cell.index()] {
-                continue;
-            }
-            match of_polyhedron {
-                Some(faces) => laid.cells.push_polyhedron(vertices.iter().copied(), faces),
-                None => laid.cells.push(kind, vertices.iter().copied()),
-            }
-            laid.to_old.push(cell);
-        }
-        laid.n_stay = laid.cells.len();
-        draft.triangles.iter().for_each(|(t, _)| laid.cells.push(CellKind::TRIANGLE, *t));
-        draft.tets.iter().for_each(|tet| laid.cells.push(CellKind::TETRA, *tet));
-        gap.own_tets.iter().for_each(|tet| laid.cells.push(CellKind::TETRA, tet.vertices));
-        laid.to_old.resize(laid.cells.len(), Id::NONE);
-        laid
-    }
-}
-
-/// The numbering of the vertices of the result.
-pub(super) struct Numbers {
-    /// For each vertex of the result, the one of the host that it is to the bit, if any.
-    pub(super) kept: Vec<VertexId>,
-    /// For each vertex of the result, the one of the draft that it is.
-    pub(super) to_draft: Vec<VertexId>,
-    /// For each vertex of the draft, the one of the result that it is.
-    to_new: Vec<VertexId>,
-}
-
-impl Numbers {
-    /// Leaves out vertices that nothing uses, unless nothing in the host used them either.
-    fn new(host: &Mesh, draft: &Draft, cells: &Cells) -> Self {
-        let mut is_wanted = vec![true; draft.points.len()];
-        is_wanted[host.points.len()..].fill(false);
-        used(&host.cells).for_each(|v| is_wanted[v.index()] = false);
-        used(cells).for_each(|v| is_wanted[v.index()] = true);
-        let (mut kept, mut to_draft) = (Vec::new(), Vec::new());
-        let mut to_new = vec![Id::NONE; draft.points.len()];
-        for v in (0..draft.points.len()).filter(|&v| is_wanted[v]) {
-            to_new[v] = VertexId::new(to_draft.len());
-            to_draft.push(VertexId::new(v));
-            let is_as_before = draft.is_moved.get(v).is_some_and(|is_moved| !is_moved);
-            kept.push(if is_as_before { VertexId::new(v) } else { Id::NONE });
-        }
-        Self { kept, to_draft, to_new }
-    }
-}
-
-/// Every vertex that cells use, faces of polyhedra included.
-fn used(cells: &Cells) -> impl Iterator<Item = VertexId> + '_ {
-    let of_faces = cells.polyhedron_faces().iter().flat_map(|faces| faces.items());
-    cells.connectivity().items().iter().chain(of_faces).copied()
 }
 
 /// The total volume of the tets.

@@ -10,7 +10,7 @@
 //! | divide | `frame`, `cut`, `parts` | walls and devices divided where they meet; what bounds something is kept |
 //! | gap | `gap`, `lattice`, `bodies` | every triangle of the devices and of what the carving left is a facet of new tets ([`mod@crate::delaunay::constrain`]); which of them are in which device |
 //! | zone | `zone` | new tets, and a ring of the host, repaired by [`crate::remesh`]; nothing beyond is touched |
-//! | join | `join`, `origins`, `names`, `starts` | one mesh again, arrays carried across, new cells named |
+//! | join | `join`, `layout`, `origins`, `names`, `starts` | one mesh again, arrays carried across, new cells named |
 //! | certificate | `report` | conforming, volumes, triangles kept, bad tets that are left and why |
 //!
 //! The order is that of Moyle and Ventikos 2008 (*Local remeshing for large amplitude grid deformations*; the
@@ -28,9 +28,11 @@ mod gap;
 mod implanting;
 mod join;
 mod lattice;
+mod layout;
 mod names;
 mod options;
 mod origins;
+mod owner;
 mod parts;
 mod place;
 mod report;

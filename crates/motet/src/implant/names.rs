@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::devices::Devices;
-use super::gap::{Owner, Patch};
-use super::join::{Laid, Pieces};
+use super::layout::{Laid, Pieces};
 use super::options::Inside;
+use super::owner::{Owner, Patch};
 use crate::base::VertexId;
 use crate::mesh::{Field, Labels, Mesh};
 

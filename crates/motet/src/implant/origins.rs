@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use super::gap::{Owner, Patch};
-use super::join::{Laid, Numbers, Pieces};
+use super::layout::{Laid, Numbers, Pieces};
+use super::owner::{Owner, Patch};
 use crate::base::{CellId, Id, Point, Result, Threads, VertexId, rising};
 use crate::geometry::tet::{at, centroid, closest};
 use crate::geometry::vector::distance;

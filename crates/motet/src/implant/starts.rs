@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::gap::Owner;
+use super::owner::Owner;
 use super::zone::Draft;
 use crate::base::{Error, Result};
 use crate::mesh::{Field, Mesh};

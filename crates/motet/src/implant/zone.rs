@@ -3,7 +3,8 @@
 use std::collections::{BTreeSet, HashSet};
 
 use super::carve::{Carved, Fate};
-use super::gap::{Gap, Owner, Patch};
+use super::gap::Gap;
+use super::owner::{Owner, Patch};
 use crate::base::{CellId, Id, Point, Result, Threads, VertexId, rising};
 use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
