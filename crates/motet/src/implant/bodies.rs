@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, VecDeque};
 
 use super::carve::Carved;
 use super::devices::Devices;
-use super::frame::{Frame, Sites};
+use super::frame::{DevicePositions, Frame};
 use super::options::Inside;
 use super::owner::Owner;
 use crate::base::{Error, Result};
@@ -58,7 +58,11 @@ fn device_of(within: &BTreeSet<u32>) -> Option<u32> {
 }
 
 /// Refuses devices that leave others no space.
-pub(super) fn check_rooms(devices: &Devices, sites: &Sites, within: &[BTreeSet<u32>]) -> Result<()> {
+pub(super) fn check_rooms(
+    devices: &Devices,
+    positions: &DevicePositions,
+    within: &[BTreeSet<u32>],
+) -> Result<()> {
     let name = |k: u32| &devices.names[k as usize];
     for room in within.iter().filter(|room| room.len() > 1) {
         if let Some(own) = room.iter().find(|k| devices.insides[**k as usize] == Inside::Own) {
@@ -72,7 +76,8 @@ pub(super) fn check_rooms(devices: &Devices, sites: &Sites, within: &[BTreeSet<u
     }
     let with_room: BTreeSet<u32> = within.iter().filter_map(device_of).collect();
     // A hollow device that passes through the boundary is open to what lies outside.
-    let is_open = |k: u32| devices.insides[k as usize] == Inside::Hollow && sites.is_through[k as usize];
+    let is_open =
+        |k: u32| devices.insides[k as usize] == Inside::Hollow && positions.crosses_boundary[k as usize];
     match (0..devices.names.len() as u32).find(|&k| !with_room.contains(&k) && !is_open(k)) {
         None => Ok(()),
         Some(k) => {
@@ -95,18 +100,18 @@ pub(super) fn owners(
         within.iter().map(|room| device_of(room).map(Owner::Device)).collect();
     for (wall, [front, behind]) in frame.walls.iter().zip(&filled.triangle_to_bodies) {
         let Some(face) = wall.face.map(|f| &carved.faces[f as usize]) else { continue };
-        let of_front = face.front.map_or(Owner::Taken, Owner::Host);
+        let of_front = face.front.map_or(Owner::Unfilled, Owner::Host);
         for (body, owner) in [(front, of_front), (behind, Owner::Host(face.behind))] {
             let Some(body) = *body else { continue };
             let known = &mut owners[body as usize];
             // A device ends at a wall that lies in it.
-            let is_end = wall.within.is_some() && owner == Owner::Taken;
+            let is_end = wall.within.is_some() && owner == Owner::Unfilled;
             if is_end || !matches!(known, Some(Owner::Device(_))) {
                 *known = Some(owner);
             }
         }
     }
-    let of_host = |body| region_at(host, carved, filled, body).map_or(Owner::Taken, Owner::Host);
+    let of_host = |body| region_at(host, carved, filled, body).map_or(Owner::Unfilled, Owner::Host);
     owners.into_iter().enumerate().map(|(body, owner)| owner.unwrap_or_else(|| of_host(body))).collect()
 }
 
@@ -118,5 +123,5 @@ fn region_at(host: &TetMesh, carved: &Carved, filled: &Constrained, body: usize)
     let largest = of_body.max_by(|&t, &u| volume(corners(t)).total_cmp(&volume(corners(u))))?;
     let place = centroid(corners(largest));
     let is_there = |t: &usize| holds(host.tets[*t].map(|v| host.points[v.index()]), place);
-    carved.gone().find(is_there).map(|t| host.regions[t])
+    carved.removed().find(is_there).map(|t| host.regions[t])
 }

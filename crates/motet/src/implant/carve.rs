@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::devices::Devices;
 use super::options::Options;
-use super::place::told;
+use super::place::format_point;
 use crate::base::{Error, Result, Threads, VertexId, rising};
 use crate::contact::inside;
 use crate::geometry::quality::eas;
@@ -24,7 +24,7 @@ pub(super) enum Fate {
     /// It stays, unless a bad new tet needs its space.
     Near,
     /// It is replaced.
-    Gone,
+    Removed,
 }
 
 /// A facet that new tets have to fit.
@@ -49,7 +49,7 @@ pub(super) struct Carved {
 }
 
 /// A tet with at least this many removed neighbours is only a tooth.
-const TOOTH: usize = 3;
+const MIN_REMOVED_NEIGHBORS: usize = 3;
 
 impl Carved {
     pub(super) fn new(
@@ -59,30 +59,30 @@ impl Carved {
         options: &Options,
         threads: &Threads,
     ) -> Self {
-        let mut fates =
-            threads.map(host.tets.len(), |t| near(host, t, nearest, options.carve, options.reach));
+        let mut fates = threads
+            .map(host.tets.len(), |t| fate_by_distance(host, t, nearest, options.carve, options.reach));
         let is_in_reach = fates.iter().map(|fate| *fate != Fate::Kept).collect();
-        take_inner(host, devices, &mut fates, threads);
-        take_teeth(&tet_neighbors(&host.tets), &mut fates);
-        leave_bad(host, options.improve.limit(), &mut fates);
+        remove_inside(host, devices, &mut fates, threads);
+        remove_teeth(&tet_neighbors(&host.tets), &mut fates);
+        keep_bad(host, options.improve.limit(), &mut fates);
         let faces = faces(host, &fates);
         Self { fates, faces, is_in_reach }
     }
 
     /// Removes what is left within reach at the edges of these faces as well. Returns whether there was
     /// anything.
-    pub(super) fn take_around(&mut self, host: &TetMesh, faces: &[[VertexId; 3]]) -> bool {
+    pub(super) fn remove_around(&mut self, host: &TetMesh, faces: &[[VertexId; 3]]) -> bool {
         let sides = |[a, b, c]: &[VertexId; 3]| [[*a, *b], [*b, *c], [*c, *a]].map(rising);
         let edges: HashSet<[VertexId; 2]> = faces.iter().flat_map(sides).collect();
         let is_at =
             |tet: &[VertexId; 4]| EDGES.iter().any(|&[i, j]| edges.contains(&rising([tet[i], tet[j]])));
-        let is_taken =
-            |t: &usize| self.fates[*t] != Fate::Gone && self.is_in_reach[*t] && is_at(&host.tets[*t]);
-        let taken: Vec<usize> = (0..host.tets.len()).filter(is_taken).collect();
-        taken.iter().for_each(|&t| self.fates[t] = Fate::Gone);
-        take_teeth(&tet_neighbors(&host.tets), &mut self.fates);
+        let is_lost =
+            |t: &usize| self.fates[*t] != Fate::Removed && self.is_in_reach[*t] && is_at(&host.tets[*t]);
+        let lost: Vec<usize> = (0..host.tets.len()).filter(is_lost).collect();
+        lost.iter().for_each(|&t| self.fates[t] = Fate::Removed);
+        remove_teeth(&tet_neighbors(&host.tets), &mut self.fates);
         self.faces = self::faces(host, &self.fates);
-        !taken.is_empty()
+        !lost.is_empty()
     }
 
     /// Refuses a host whose tets overlap where they were carved: no tets fit facets that cross each other,
@@ -102,7 +102,7 @@ impl Carved {
             self.faces.iter().map(|face| face.vertices.map(|v| firsts[v.index()])).collect();
         let crossings = own_crossings(&host.points, &faces, threads);
         let Some(&[first, _]) = crossings.first() else { return Ok(()) };
-        let place = told(triangle::centroid(faces[first as usize].map(|v| host.points[v.index()])));
+        let place = format_point(triangle::centroid(faces[first as usize].map(|v| host.points[v.index()])));
         Err(Error::input(format!(
             "tets of the host overlap where devices lie: {} pairs of facets of what stays round them cross each other; {n_inverted} of its {} tets are flat or inverted",
             crossings.len(),
@@ -112,14 +112,14 @@ impl Carved {
         .remedy("repair the host first (`motet remesh`), or carve farther (--carve, --reach)"))
     }
 
-    pub(super) fn gone(&self) -> impl Iterator<Item = usize> + '_ {
-        self.fates.iter().enumerate().filter(|(_, fate)| **fate == Fate::Gone).map(|(t, _)| t)
+    pub(super) fn removed(&self) -> impl Iterator<Item = usize> + '_ {
+        self.fates.iter().enumerate().filter(|(_, fate)| **fate == Fate::Removed).map(|(t, _)| t)
     }
 }
 
 /// The fate of a tet by the distance between the devices and the tet's sphere, as a multiple of its mean edge
 /// length.
-fn near(host: &TetMesh, t: usize, nearest: &NearestTriangle, carve: f64, reach: f64) -> Fate {
+fn fate_by_distance(host: &TetMesh, t: usize, nearest: &NearestTriangle, carve: f64, reach: f64) -> Fate {
     let corners = host.tets[t].map(|v| host.points[v.index()]);
     let centre = centroid(corners);
     let radius = corners.iter().map(|&p| distance(p, centre)).fold(0.0, f64::max);
@@ -127,21 +127,21 @@ fn near(host: &TetMesh, t: usize, nearest: &NearestTriangle, carve: f64, reach: 
     match nearest.closest_within(centre, radius + reach * size) {
         None => Fate::Kept,
         Some(found) if found.distance_squared.sqrt() > radius + carve * size => Fate::Near,
-        Some(_) => Fate::Gone,
+        Some(_) => Fate::Removed,
     }
 }
 
 /// Removes tets inside devices. A tet that no device is near lies on one side of all of them, so one vertex
 /// decides.
-fn take_inner(host: &TetMesh, devices: &Devices, fates: &mut [Fate], threads: &Threads) {
+fn remove_inside(host: &TetMesh, devices: &Devices, fates: &mut [Fate], threads: &Threads) {
     let Some([low, high]) = bounds(&devices.points) else { return };
     let is_in_box = |v: VertexId| {
         let p = host.points[v.index()];
         (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i])
     };
-    let is_asked = |t: &usize| fates[*t] != Fate::Gone && host.tets[*t].iter().all(|&v| is_in_box(v));
-    let asked: Vec<usize> = (0..fates.len()).filter(is_asked).collect();
-    let firsts: Vec<VertexId> = asked.iter().map(|&t| host.tets[t][0]).collect();
+    let is_candidate = |t: &usize| fates[*t] != Fate::Removed && host.tets[*t].iter().all(|&v| is_in_box(v));
+    let candidates: Vec<usize> = (0..fates.len()).filter(is_candidate).collect();
+    let firsts: Vec<VertexId> = candidates.iter().map(|&t| host.tets[t][0]).collect();
     let mut points = devices.points.clone();
     let mut vertices: Vec<VertexId> = firsts.clone();
     vertices.sort_unstable();
@@ -149,21 +149,21 @@ fn take_inner(host: &TetMesh, devices: &Devices, fates: &mut [Fate], threads: &T
     let queries: Vec<VertexId> = (0..vertices.len()).map(|i| VertexId::new(points.len() + i)).collect();
     points.extend(vertices.iter().map(|v| host.points[v.index()]));
     let is_inside = inside(&points, &queries, &[], &devices.triangles, &[], threads);
-    for (t, first) in asked.into_iter().zip(firsts) {
+    for (t, first) in candidates.into_iter().zip(firsts) {
         if vertices.binary_search(&first).is_ok_and(|i| is_inside[i]) {
-            fates[t] = Fate::Gone;
+            fates[t] = Fate::Removed;
         }
     }
 }
 
 /// Removes tets that stick out into the cavity as well, so that it has no narrow notches.
-fn take_teeth(neighbors: &[[u32; 4]], fates: &mut [Fate]) {
+fn remove_teeth(neighbors: &[[u32; 4]], fates: &mut [Fate]) {
     let mut todo: Vec<usize> = (0..fates.len()).filter(|&t| fates[t] == Fate::Near).collect();
     while let Some(t) = todo.pop() {
         let around = neighbors[t].into_iter().filter(|&n| n != NO_TET);
-        let n_gone = around.clone().filter(|&n| fates[n as usize] == Fate::Gone).count();
-        if fates[t] == Fate::Near && n_gone >= TOOTH {
-            fates[t] = Fate::Gone;
+        let n_removed = around.clone().filter(|&n| fates[n as usize] == Fate::Removed).count();
+        if fates[t] == Fate::Near && n_removed >= MIN_REMOVED_NEIGHBORS {
+            fates[t] = Fate::Removed;
             todo.extend(around.map(|n| n as usize));
         }
     }
@@ -172,7 +172,7 @@ fn take_teeth(neighbors: &[[u32; 4]], fates: &mut [Fate]) {
 /// Keeps bad tets of the host that need not be removed: what made them bad is not here, and where they are
 /// connected they reach far. (Carving those at the cavity as well left 428 bad ones instead of 17 in a public
 /// aneurysm of which 43 of 100 tets are bad.)
-fn leave_bad(host: &TetMesh, limit: f64, fates: &mut [Fate]) {
+fn keep_bad(host: &TetMesh, limit: f64, fates: &mut [Fate]) {
     let is_bad = |tet: &[VertexId; 4]| eas(tet.map(|v| host.points[v.index()])).abs() < limit;
     for (fate, tet) in fates.iter_mut().zip(&host.tets) {
         if *fate == Fate::Near && is_bad(tet) {
@@ -184,10 +184,10 @@ fn leave_bad(host: &TetMesh, limit: f64, fates: &mut [Fate]) {
 fn faces(host: &TetMesh, fates: &[Fate]) -> Vec<Face> {
     let mut faces = Vec::new();
     for_each_tet_facet(&host.tets, &host.triangles, |sharing| {
-        let gone = sharing.tets.iter().filter(|(t, _)| fates[t.index()] == Fate::Gone);
-        let mut gone = gone.map(|&(t, i)| (t.index(), i));
-        let Some((t, i)) = gone.next() else { return };
-        let front = gone.next().map(|(other, _)| host.regions[other]);
+        let removed = sharing.tets.iter().filter(|(t, _)| fates[t.index()] == Fate::Removed);
+        let mut removed = removed.map(|&(t, i)| (t.index(), i));
+        let Some((t, i)) = removed.next() else { return };
+        let front = removed.next().map(|(other, _)| host.regions[other]);
         let behind = host.regions[t];
         if front == Some(behind) && sharing.triangles.is_empty() {
             return;

@@ -11,8 +11,8 @@ use super::carve::{Carved, Face, Fate, outward};
 use super::cut::Cut;
 use super::devices::Devices;
 use super::options::{Inside, Outside};
-use super::parts::{Parts, edges_of_both};
-use super::place::{check_inside, told};
+use super::parts::{Parts, common_edges};
+use super::place::{check_inside, format_point};
 use crate::base::{Error, Point, Result, Threads, VertexId, rising, runs_alike};
 use crate::geometry::triangle::centroid;
 use crate::mesh::tet_facets::for_each_tet_facet;
@@ -40,7 +40,7 @@ pub(super) struct Wall {
 
 /// Where a triangle of the devices lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Lies {
+pub(super) enum Position {
     /// Inside the host.
     Inside,
     /// At a wall: it need not stay as it is.
@@ -51,11 +51,11 @@ pub(super) enum Lies {
 
 /// Where devices lie relative to walls.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sites {
+pub(super) struct DevicePositions {
     /// Where each triangle lies.
-    pub(super) of_triangle: Vec<Lies>,
+    pub(super) of_triangle: Vec<Position>,
     /// For each device, whether it meets a wall or lies outside in part.
-    pub(super) is_through: Vec<bool>,
+    pub(super) crosses_boundary: Vec<bool>,
     /// The volume of each device within the host.
     pub(super) volumes: Vec<f64>,
 }
@@ -70,12 +70,12 @@ pub(super) struct Frame {
     pub(super) triangles: Vec<[VertexId; 3]>,
     pub(super) walls: Vec<Wall>,
     /// The new points where surfaces were divided.
-    pub(super) came: Vec<Point>,
+    pub(super) new_points: Vec<Point>,
     /// Vertices of walls that may move or be removed, since they lie where a device meets a wall.
     pub(super) loose: BTreeSet<VertexId>,
     /// Faces that no longer exist, or not as they were.
     pub(super) dropped: Vec<Face>,
-    pub(super) sites: Sites,
+    pub(super) positions: DevicePositions,
     /// The vertex of the result that each vertex of the devices is now.
     pub(super) names: Vec<VertexId>,
 }
@@ -99,10 +99,10 @@ impl Frame {
         let of_devices: Vec<[VertexId; 3]> = devices.triangles.iter().map(in_result).collect();
         let faces: Vec<[VertexId; 3]> = carved.faces.iter().map(|face| face.vertices).collect();
         let cut = Cut::new(&points, [&of_devices, &faces], threads)?;
-        let on_both = edges_of_both(&cut);
+        let on_both = common_edges(&cut);
         let sorted = [0, 1].map(|s| Parts::new(&cut, s, &on_both));
         let mut frame = Self {
-            came: cut.points[points.len()..].to_vec(),
+            new_points: cut.points[points.len()..].to_vec(),
             names: cut.names[n_host..].to_vec(),
             ..Self::default()
         };
@@ -110,7 +110,7 @@ impl Frame {
         let mut walls = frame.of_devices(host, devices, carved, (&cut, &sorted), outside, threads)?;
         let within = |k: usize| {
             let own: Vec<_> = devices.triangles_of(k).map(|t| of_devices[t]).collect();
-            sorted[1].ask(&cut, &own, threads)
+            sorted[1].are_inside(&cut, &own, threads)
         };
         let within: Vec<Vec<bool>> = (0..devices.names.len()).map(within).collect();
         frame.add_faces(devices, carved, (&cut, &sorted[1]), &within, outside, &mut walls);
@@ -142,7 +142,7 @@ impl Frame {
             let touched: Vec<VertexId> = touched.collect();
             self.loose.extend(touched);
         }
-        let staying = host.tets.iter().zip(&carved.fates).filter(|(_, fate)| **fate != Fate::Gone);
+        let staying = host.tets.iter().zip(&carved.fates).filter(|(_, fate)| **fate != Fate::Removed);
         let own = devices.own_tets.iter().flat_map(|tet| tet.vertices.map(|v| self.names[v.index()]));
         let held: Vec<VertexId> = staying.flat_map(|(tet, _)| *tet).chain(own).collect();
         let held = held.iter().chain(&host.fixed_vertices).chain(host.fixed_edges.as_flattened());
@@ -165,13 +165,13 @@ impl Frame {
         outside: Outside,
         threads: &Threads,
     ) -> Result<Vec<Wall>> {
-        let is_in = sorted.ask(cut, &boundary(host), threads);
+        let is_in = sorted.are_inside(cut, &boundary(host), threads);
         let twins: HashMap<[VertexId; 3], ([VertexId; 3], u32)> =
             faces.pieces.iter().map(|piece| (rising(piece.0), *piece)).collect();
         let n = devices.names.len();
         let (mut has_inside, mut walls) = (vec![false; n], Vec::new());
-        self.sites.volumes = vec![0.0; n];
-        let mut sites = vec![None; devices.triangles.len()];
+        self.positions.volumes = vec![0.0; n];
+        let mut positions = vec![None; devices.triangles.len()];
         for (&(vertices, t), &part) in sorted.pieces.iter().zip(&sorted.parts) {
             let twin = twins.get(&rising(vertices));
             // On the boundary, a device lies inside where it faces the same way as the wall.
@@ -180,18 +180,18 @@ impl Frame {
                 None => is_in[part],
             };
             let is_fixed = self.is_fixed(vertices);
-            let site = match is_fixed {
-                false => Lies::AtWall,
-                true if twin.is_some() || is_in[part] => Lies::Inside,
-                true => Lies::Outside,
+            let position = match is_fixed {
+                false => Position::AtWall,
+                true if twin.is_some() || is_in[part] => Position::Inside,
+                true => Position::Outside,
             };
-            let known = sites[t as usize].replace(site);
-            if known.is_some_and(|known| known != site) {
-                sites[t as usize] = Some(Lies::AtWall);
+            let known = positions[t as usize].replace(position);
+            if known.is_some_and(|known| known != position) {
+                positions[t as usize] = Some(Position::AtWall);
             }
             for &k in devices.of_triangle.list(t as usize).iter().filter(|_| is_inside) {
                 has_inside[k as usize] = true;
-                self.sites.volumes[k as usize] += cone(cut, vertices);
+                self.positions.volumes[k as usize] += cone(cut, vertices);
             }
             if twin.is_some() || is_in[part] || outside == Outside::Keep {
                 walls.push(Wall {
@@ -204,13 +204,14 @@ impl Frame {
             }
         }
         check_inside(host, devices, &has_inside, threads)?;
-        self.sites.of_triangle = sites.into_iter().map(|site| site.unwrap_or(Lies::Inside)).collect();
-        self.sites.is_through = vec![false; n];
-        for (t, (of, &site)) in devices.of_triangle.iter().zip(&self.sites.of_triangle).enumerate() {
-            for &k in of.iter().filter(|_| site != Lies::Inside) {
-                self.sites.is_through[k as usize] = true;
+        self.positions.of_triangle =
+            positions.into_iter().map(|position| position.unwrap_or(Position::Inside)).collect();
+        self.positions.crosses_boundary = vec![false; n];
+        for (t, (of, &position)) in devices.of_triangle.iter().zip(&self.positions.of_triangle).enumerate() {
+            for &k in of.iter().filter(|_| position != Position::Inside) {
+                self.positions.crosses_boundary[k as usize] = true;
                 if devices.insides[k as usize] == Inside::Own {
-                    return Err(no_own(devices, k, t, site));
+                    return Err(own_tets_cut(devices, k, t, position));
                 }
             }
         }
@@ -238,7 +239,7 @@ impl Frame {
             let is_boundary = carved.faces[f as usize].front.is_none();
             let holders: Vec<usize> = (0..within.len()).filter(|&k| within[k][part]).collect();
             if is_boundary {
-                holders.iter().for_each(|&k| self.sites.volumes[k] += cone(cut, vertices));
+                holders.iter().for_each(|&k| self.positions.volumes[k] += cone(cut, vertices));
             }
             let is_fixed = self.is_fixed(vertices);
             is_dropped[f as usize] |= !is_fixed || !holders.is_empty();
@@ -272,7 +273,7 @@ impl Frame {
         Err(Error::input(
             "a device meets a wall where cells of other kinds than tets are, which cannot be divided",
         )
-        .at(format!("triangle at {}", told(centroid(lost.vertices.map(|v| cut.points[v.index()])))))
+        .at(format!("triangle at {}", format_point(centroid(lost.vertices.map(|v| cut.points[v.index()])))))
         .remedy("move the device, or leave those cells out of the host"))
     }
 
@@ -293,11 +294,11 @@ impl Frame {
 }
 
 /// The error for a device that keeps its tets, which cannot be divided.
-fn no_own(devices: &Devices, k: u32, t: usize, site: Lies) -> Error {
-    let is_met = site == Lies::AtWall;
+fn own_tets_cut(devices: &Devices, k: u32, t: usize, position: Position) -> Error {
+    let is_met = position == Position::AtWall;
     let why = if is_met { "a wall of the host meets them" } else { "a part of it lies outside of the host" };
     Error::input(format!("the device `{}` keeps its tets, and {why}", devices.names[k as usize]))
-        .at(format!("triangle of the device at {}", told(centroid(devices.corners(t)))))
+        .at(format!("triangle of the device at {}", format_point(centroid(devices.corners(t)))))
         .remedy("let it be filled, or hollow: then it is cut where it meets the wall")
 }
 

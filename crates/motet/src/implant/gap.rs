@@ -6,7 +6,7 @@ use std::collections::{BTreeSet, HashMap};
 use super::bodies::{check_rooms, owners, within};
 use super::carve::{Carved, Face};
 use super::devices::{Devices, OwnTet};
-use super::frame::{Frame, Sites};
+use super::frame::{DevicePositions, Frame};
 use super::lattice::lattice;
 use super::options::{Inside, Options};
 use super::owner::{Owner, Patch};
@@ -32,7 +32,7 @@ pub(super) struct Gap {
     /// Vertices of walls that may move or be removed, since they lie where a device meets a wall.
     pub(super) loose: BTreeSet<VertexId>,
     /// Where devices lie relative to walls.
-    pub(super) sites: Sites,
+    pub(super) positions: DevicePositions,
     /// The vertex that each vertex of the devices is now.
     pub(super) names: Vec<VertexId>,
 }
@@ -41,7 +41,7 @@ pub(super) struct Gap {
 pub(super) enum Filled {
     Done(Box<Gap>),
     /// These faces would have to be divided.
-    Divided(Vec<[VertexId; 3]>),
+    WouldDivide(Vec<[VertexId; 3]>),
 }
 
 impl Gap {
@@ -65,19 +65,21 @@ impl Gap {
         let divided = (0..frame.walls.len()).filter(|&t| is_divided(&frame, &filled, t));
         let divided: Vec<_> = divided.filter_map(|t| frame.walls[t].face).collect();
         if !divided.is_empty() {
-            return Ok(Filled::Divided(divided.iter().map(|&f| carved.faces[f as usize].vertices).collect()));
+            return Ok(Filled::WouldDivide(
+                divided.iter().map(|&f| carved.faces[f as usize].vertices).collect(),
+            ));
         }
         let within = within(devices, &frame, &filled);
-        check_rooms(devices, &frame.sites, &within)?;
+        check_rooms(devices, &frame.positions, &within)?;
         let owners = owners(host, carved, &frame, &filled, &within);
         let is_left = owners.iter().any(|owner| matches!(owner, Owner::Host(_)));
-        check_left(devices, is_left || carved.gone().count() < host.tets.len())?;
+        check_left(devices, is_left || carved.removed().count() < host.tets.len())?;
         let mut gap = Self { points: devices.points.clone(), ..Self::default() };
-        gap.points.extend(&frame.came);
+        gap.points.extend(&frame.new_points);
         gap.own_tets.clone_from(&devices.own_tets);
         gap.own_tets.iter_mut().for_each(|tet| tet.vertices = tet.vertices.map(|v| frame.names[v.index()]));
         gap.take(&owners, host, devices, carved, &frame, &filled);
-        (gap.dropped, gap.sites, gap.loose) = (frame.dropped, frame.sites, frame.loose);
+        (gap.dropped, gap.positions, gap.loose) = (frame.dropped, frame.positions, frame.loose);
         gap.names = frame.names;
         Ok(Filled::Done(Box::new(gap)))
     }
@@ -94,7 +96,7 @@ impl Gap {
         let is_wanted = |owner: Owner| match owner {
             Owner::Host(_) => true,
             Owner::Device(k) => devices.insides[k as usize] == Inside::Filled,
-            Owner::Taken => false,
+            Owner::Unfilled => false,
         };
         let mut to_result = frame.to_result.clone();
         // A point on an edge may have been rounded onto its end: then it becomes that vertex.
@@ -125,7 +127,8 @@ impl Gap {
             let first = wall.device.map(|t| devices.of_triangle.list(t as usize)[0]);
             let of_face = || {
                 let face = wall.face.map(|f| rising(carved.faces[f as usize].vertices));
-                face.and_then(|face| patches.get(&face)).map_or(Patch::Bare, |patch| Patch::Host(*patch))
+                face.and_then(|face| patches.get(&face))
+                    .map_or(Patch::Unlabelled, |patch| Patch::Host(*patch))
             };
             let patch = match (first, wall.within) {
                 (Some(k), _) if wall.face.is_none() => Patch::Device(k),

@@ -6,13 +6,13 @@ use std::time::Instant;
 use super::adapt::adapt;
 use super::carve::{Carved, Fate};
 use super::devices::{Devices, surface};
-use super::frame::Lies;
+use super::frame::Position;
 use super::gap::{Filled, Gap};
 use super::join::{Joined, join, volume_of};
 use super::layout::Pieces;
 use super::names::Names;
 use super::options::{Device, Inside, Interface, Options, Outside};
-use super::place::told;
+use super::place::format_point;
 use super::report::{DeviceReport, Fit, Report};
 use super::resurface::resurface;
 use super::starts;
@@ -82,13 +82,13 @@ pub fn implant(
     report.seconds.adapt = lap();
 
     let part = TetPart::of(host_now)?.with_lines_held();
-    let (carved, gap) = room(&part, &joined, options, threads, &mut report, &mut lap)?;
-    report.carved = carved.fates.iter().filter(|fate| **fate == Fate::Gone).count();
+    let (carved, gap) = make_cavity(&part, &joined, options, threads, &mut report, &mut lap)?;
+    report.carved = carved.fates.iter().filter(|fate| **fate == Fate::Removed).count();
 
     let mut draft = Draft::new(&part.mesh, &carved, &gap);
     let stray = options.stray.unwrap_or_else(|| STRAY * joined.size());
     report.improved = draft.improve(&part.mesh, &carved, &gap, &options.improve, stray, threads)?;
-    report.kept = draft.is_gone.iter().filter(|is_gone| !**is_gone).count();
+    report.kept = draft.is_removed.iter().filter(|is_removed| !**is_removed).count();
     report.host_tets = part.mesh.tets.len();
     report.kept_share = report.kept as f64 / report.host_tets.max(1) as f64;
     report.seconds.improve = lap();
@@ -99,7 +99,7 @@ pub fn implant(
     let history = before.map_or_else(|| history.clone(), |before| before.then(&history));
     report.seconds.join = lap();
 
-    tell_cells(&mut report, &zone_to_cell, first_new);
+    report_cells(&mut report, &zone_to_cell, first_new);
     report.regions = meshing::bodies_of_mesh(&mesh);
     certify(&mut report, host, (devices, &joined), (&gap, &draft), (&mesh, &names), options.outside);
     report.devices.iter_mut().zip(fits).for_each(|(device, fit)| device.fit = *fit);
@@ -132,7 +132,7 @@ fn with_surfaces(
 }
 
 /// Carves the host as far as necessary, and fills the cavity.
-fn room(
+fn make_cavity(
     part: &TetPart,
     devices: &Devices,
     options: &Options,
@@ -151,9 +151,9 @@ fn room(
         report.seconds.fill += lap();
         divided = match filled {
             Filled::Done(gap) => return Ok((carved, *gap)),
-            Filled::Divided(faces) => faces,
+            Filled::WouldDivide(faces) => faces,
         };
-        if !carved.take_around(&part.mesh, &divided) {
+        if !carved.remove_around(&part.mesh, &divided) {
             break;
         }
     }
@@ -162,12 +162,12 @@ fn room(
         "the room between the host and the devices could not be filled without dividing {} facets that stay",
         divided.len()
     ))
-    .at(place.map_or_else(String::new, |place| format!("one at {}", told(place))))
+    .at(place.map_or_else(String::new, |place| format!("one at {}", format_point(place))))
     .remedy("carve farther (--carve) and reach farther (--reach), or refine the host there first (--adapt all, --size)"))
 }
 
 /// Replaces ids of tets of the zone by ids of cells, and separates bad tets of the host from new ones.
-fn tell_cells(report: &mut Report, zone_to_cell: &[CellId], first_new: CellId) {
+fn report_cells(report: &mut Report, zone_to_cell: &[CellId], first_new: CellId) {
     let cell = |tet: u32| zone_to_cell.get(tet as usize).map_or(tet, |cell| cell.0);
     let improved = &mut report.improved;
     improved.after.worst.iter_mut().for_each(|worst| worst.tet = cell(worst.tet));
@@ -196,9 +196,10 @@ fn certify(
         let regions = names.regions[k].clone();
         let bodies = report.regions.iter().filter(|body| regions.contains(&body.region));
         let volume = bodies.map(|body| body.volume).sum();
-        let inside = if gap.sites.is_through[k] { gap.sites.volumes[k] } else { whole[k] };
-        let n_at =
-            |lies: Lies| own.clone().filter(|&t| gap.sites.of_triangle[t] == lies && !is_kept(t)).count();
+        let inside = if gap.positions.crosses_boundary[k] { gap.positions.volumes[k] } else { whole[k] };
+        let n_at = |position: Position| {
+            own.clone().filter(|&t| gap.positions.of_triangle[t] == position && !is_kept(t)).count()
+        };
         match (device.inside, outside) {
             (Inside::Hollow, _) => report.volume_expected -= inside,
             (_, Outside::Keep) => report.volume_expected += whole[k] - inside,
@@ -210,8 +211,8 @@ fn certify(
             patch: names.patches[k],
             triangles: own.clone().count(),
             triangles_kept: own.clone().filter(|&t| is_kept(t)).count(),
-            triangles_at_walls: n_at(Lies::AtWall),
-            triangles_outside: n_at(Lies::Outside),
+            triangles_at_walls: n_at(Position::AtWall),
+            triangles_outside: n_at(Position::Outside),
             contact_patch: names.contacts[k],
             fit: None,
             enclosed: if outside == Outside::Cut { inside } else { whole[k] },

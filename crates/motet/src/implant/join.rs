@@ -1,6 +1,6 @@
 //! Joins what is left of the host and everything new into one mesh, with its labels and arrays.
 
-use super::layout::{Laid, Numbers, Pieces};
+use super::layout::{Layout, Numbering, Pieces};
 use super::names::{Names, label};
 use super::origins::history;
 use super::zone::Site;
@@ -26,21 +26,21 @@ pub(super) struct Joined {
 pub(super) fn join(pieces: &Pieces, rules: &Rules, threads: &Threads) -> Result<(Joined, Names)> {
     let Pieces { host, devices, draft, .. } = *pieces;
     let names = Names::new(host, devices, &draft.triangles);
-    let laid = Laid::new(pieces);
-    let numbers = Numbers::new(host, draft, &laid.cells);
-    let points = numbers.to_draft.iter().map(|v| draft.points[v.index()]).collect();
-    let mut mesh = Mesh::new(points, laid.cells.renumbered(&numbers.to_new));
-    let history = history(pieces, &laid, &mesh, &numbers, threads)?;
+    let layout = Layout::new(pieces);
+    let numbering = Numbering::new(host, draft, &layout.cells);
+    let points = numbering.to_draft.iter().map(|v| draft.points[v.index()]).collect();
+    let mut mesh = Mesh::new(points, layout.cells.renumbered(&numbering.to_new));
+    let history = history(pieces, &layout, &mesh, &numbering, threads)?;
     history.transfer(host, &mut mesh, rules)?;
     let vertex_to_old: Vec<u32> = history.vertices.kept().iter().map(|v| v.0).collect();
-    number_anew(&mut mesh, &vertex_to_old, &laid.to_old);
-    label(&mut mesh, pieces, &laid, &names);
-    let zone_to_cell = draft.of_zone.iter().map(|site| match *site {
-        Site::Host(t) => laid.host_to_cell[t],
-        Site::New(i) => CellId::new(laid.n_stay + draft.triangles.len() + i),
+    number_anew(&mut mesh, &vertex_to_old, &layout.to_old);
+    label(&mut mesh, pieces, &layout, &names);
+    let zone_to_cell = draft.zone_to_site.iter().map(|site| match *site {
+        Site::Host(t) => layout.host_to_cell[t],
+        Site::New(i) => CellId::new(layout.n_host_cells + draft.triangles.len() + i),
     });
     let zone_to_cell = zone_to_cell.collect();
-    Ok((Joined { mesh, history, zone_to_cell, first_new: CellId::new(laid.n_stay) }, names))
+    Ok((Joined { mesh, history, zone_to_cell, first_new: CellId::new(layout.n_host_cells) }, names))
 }
 
 /// The total volume of the tets.

@@ -20,56 +20,57 @@ pub(super) struct Pieces<'a> {
 }
 
 /// The cells of the result, and the old cell of each.
-pub(super) struct Laid {
+pub(super) struct Layout {
     pub(super) cells: Cells,
     pub(super) to_old: Vec<CellId>,
     /// For each tet of the host, its cell if it stays.
     pub(super) host_to_cell: Vec<CellId>,
     /// How many cells of the host stay. Behind them come triangles of devices, then new tets, then those that
     /// devices kept.
-    pub(super) n_stay: usize,
+    pub(super) n_host_cells: usize,
 }
 
-impl Laid {
+impl Layout {
     /// All cells, over the vertices of the draft.
     pub(super) fn new(pieces: &Pieces) -> Self {
         let Pieces { host, part, gap, draft, .. } = *pieces;
-        let mut is_gone = vec![false; host.cells.len()];
-        for (&cell, &gone) in part.tet_to_cell.iter().zip(&draft.is_gone) {
-            is_gone[cell.index()] = gone;
+        let mut is_removed = vec![false; host.cells.len()];
+        for (&cell, &removed) in part.tet_to_cell.iter().zip(&draft.is_removed) {
+            is_removed[cell.index()] = removed;
         }
         let dropped: HashSet<[VertexId; 3]> = gap.dropped.iter().map(|face| rising(face.vertices)).collect();
         for (&cell, triangle) in part.triangle_to_cell.iter().zip(&part.mesh.triangles) {
-            is_gone[cell.index()] = dropped.contains(&rising(*triangle));
+            is_removed[cell.index()] = dropped.contains(&rising(*triangle));
         }
-        let mut laid = Self { cells: Cells::new(), to_old: Vec::new(), host_to_cell: Vec::new(), n_stay: 0 };
+        let mut layout =
+            Self { cells: Cells::new(), to_old: Vec::new(), host_to_cell: Vec::new(), n_host_cells: 0 };
         let mut faces = host.cells.polyhedron_faces().iter();
         for (cell, kind, vertices) in host.cells.iter() {
             let of_polyhedron =
                 (kind == CellKind::POLYHEDRON).then(|| faces.next().cloned().unwrap_or_default());
             if kind == CellKind::TETRA {
-                laid.host_to_cell.push(CellId::new(laid.cells.len()));
+                layout.host_to_cell.push(CellId::new(layout.cells.len()));
             }
-            if is_gone[cell.index()] {
+            if is_removed[cell.index()] {
                 continue;
             }
             match of_polyhedron {
-                Some(faces) => laid.cells.push_polyhedron(vertices.iter().copied(), faces),
-                None => laid.cells.push(kind, vertices.iter().copied()),
+                Some(faces) => layout.cells.push_polyhedron(vertices.iter().copied(), faces),
+                None => layout.cells.push(kind, vertices.iter().copied()),
             }
-            laid.to_old.push(cell);
+            layout.to_old.push(cell);
         }
-        laid.n_stay = laid.cells.len();
-        draft.triangles.iter().for_each(|(t, _)| laid.cells.push(CellKind::TRIANGLE, *t));
-        draft.tets.iter().for_each(|tet| laid.cells.push(CellKind::TETRA, *tet));
-        gap.own_tets.iter().for_each(|tet| laid.cells.push(CellKind::TETRA, tet.vertices));
-        laid.to_old.resize(laid.cells.len(), Id::NONE);
-        laid
+        layout.n_host_cells = layout.cells.len();
+        draft.triangles.iter().for_each(|(t, _)| layout.cells.push(CellKind::TRIANGLE, *t));
+        draft.tets.iter().for_each(|tet| layout.cells.push(CellKind::TETRA, *tet));
+        gap.own_tets.iter().for_each(|tet| layout.cells.push(CellKind::TETRA, tet.vertices));
+        layout.to_old.resize(layout.cells.len(), Id::NONE);
+        layout
     }
 }
 
 /// The numbering of the vertices of the result.
-pub(super) struct Numbers {
+pub(super) struct Numbering {
     /// For each vertex of the result, the one of the host that it is to the bit, if any.
     pub(super) kept: Vec<VertexId>,
     /// For each vertex of the result, the one of the draft that it is.
@@ -78,7 +79,7 @@ pub(super) struct Numbers {
     pub(super) to_new: Vec<VertexId>,
 }
 
-impl Numbers {
+impl Numbering {
     /// Leaves out vertices that nothing uses, unless nothing in the host used them either.
     pub(super) fn new(host: &Mesh, draft: &Draft, cells: &Cells) -> Self {
         let mut is_wanted = vec![true; draft.points.len()];

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::devices::Devices;
-use super::layout::{Laid, Pieces};
+use super::layout::{Layout, Pieces};
 use super::options::Inside;
 use super::owner::{Owner, Patch};
 use crate::base::VertexId;
@@ -27,7 +27,7 @@ pub(super) struct Names {
 }
 
 impl Names {
-    pub(super) fn new(host: &Mesh, devices: &Devices, came: &[([VertexId; 3], Patch)]) -> Self {
+    pub(super) fn new(host: &Mesh, devices: &Devices, new: &[([VertexId; 3], Patch)]) -> Self {
         let [regions, patches] = [host.regions(), host.patches()];
         let last = |labels: &Option<Labels>, names: &BTreeMap<i32, String>| {
             let used = labels.as_ref().and_then(|labels| labels.ids.iter().max().copied()).unwrap_or(0);
@@ -50,7 +50,7 @@ impl Names {
         let first = last(&patches, &host.label_names.patches) + 1;
         let n = devices.names.len();
         let mut contacts = vec![None; n];
-        let met: BTreeSet<Patch> = came.iter().map(|(_, patch)| *patch).collect();
+        let met: BTreeSet<Patch> = new.iter().map(|(_, patch)| *patch).collect();
         let met = met.iter().filter_map(|patch| match patch {
             Patch::Contact(k) => Some(*k as usize),
             _ => None,
@@ -70,7 +70,7 @@ impl Names {
         match patch {
             Patch::Device(k) => Some(self.patches[k as usize]),
             Patch::Contact(k) => self.contacts[k as usize],
-            Patch::Host(_) | Patch::Bare => None,
+            Patch::Host(_) | Patch::Unlabelled => None,
         }
     }
 
@@ -79,13 +79,13 @@ impl Names {
         match owner {
             Owner::Host(region) => self.host.unwrap_or(region),
             Owner::Device(k) => self.regions[k as usize].first().copied().unwrap_or(0),
-            Owner::Taken => 0,
+            Owner::Unfilled => 0,
         }
     }
 }
 
 /// Gives everything new its regions, patches and names.
-pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, laid: &Laid, names: &Names) {
+pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, layout: &Layout, names: &Names) {
     let Pieces { devices, gap, draft, .. } = *pieces;
     let [of_tets, of_triangles] = &names.arrays;
     let n = mesh.cells.len();
@@ -101,7 +101,7 @@ pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, laid: &Laid, names: &Names
         }
         mesh.label_names.regions.entry(own).or_insert_with(|| "host".to_owned());
     }
-    let first = laid.n_stay;
+    let first = layout.n_host_cells;
     for (i, (_, patch)) in draft.triangles.iter().enumerate() {
         if let Some(patch) = names.patch(*patch) {
             (regions[first + i], patches[first + i]) = (0, patch.into());

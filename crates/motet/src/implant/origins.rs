@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::layout::{Laid, Numbers, Pieces};
+use super::layout::{Layout, Numbering, Pieces};
 use super::owner::{Owner, Patch};
 use crate::base::{CellId, Id, Point, Result, Threads, VertexId, rising};
 use crate::geometry::tet::{at, centroid, closest};
@@ -19,14 +19,14 @@ const OF_TETS: i32 = i32::MIN;
 /// triangles of devices from the removed tets beside them.
 pub(super) fn history(
     pieces: &Pieces,
-    laid: &Laid,
+    layout: &Layout,
     mesh: &Mesh,
-    numbers: &Numbers,
+    numbering: &Numbering,
     threads: &Threads,
 ) -> Result<History> {
     let Pieces { host, part, gap, draft, .. } = *pieces;
-    let gone: Vec<usize> = (0..draft.is_gone.len()).filter(|&t| draft.is_gone[t]).collect();
-    let removed: Vec<Labelled<4>> = gone
+    let removed_ids: Vec<usize> = (0..draft.is_removed.len()).filter(|&t| draft.is_removed[t]).collect();
+    let removed: Vec<Labelled<4>> = removed_ids
         .iter()
         .map(|&t| Labelled {
             cell: part.tet_to_cell[t],
@@ -34,20 +34,24 @@ pub(super) fn history(
             label: part.mesh.regions[t],
         })
         .collect();
-    let cell = |i: usize| CellId::new(laid.n_stay + i);
+    let cell = |i: usize| CellId::new(layout.n_host_cells + i);
     let n_triangles = draft.triangles.len();
-    let there = There::new(host, &removed);
+    let lookup = RegionLookup::new(host, &removed);
     let of_new = draft.owners.iter().map(|owner| match owner {
         Owner::Host(region) => Some(*region),
         _ => None,
     });
-    let mut came = Vec::with_capacity(draft.tets.len() + gap.own_tets.len());
+    let mut new_tets = Vec::with_capacity(draft.tets.len() + gap.own_tets.len());
     for (i, region) in of_new.chain(gap.own_tets.iter().map(|_| None)).enumerate() {
         let cell = cell(n_triangles + i);
         let &[a, b, c, d] = mesh.cells.vertices(cell) else { continue };
         let vertices = [a, b, c, d];
         let place = || centroid(vertices.map(|v| mesh.points[v.index()]));
-        came.push(Labelled { cell, vertices, label: region.unwrap_or_else(|| there.region_at(place())) });
+        new_tets.push(Labelled {
+            cell,
+            vertices,
+            label: region.unwrap_or_else(|| lookup.region_at(place())),
+        });
     }
     // Triangles of devices come from removed tets: a facet of each stands for it. Those of the host come from
     // the triangles that they were a part of.
@@ -72,10 +76,10 @@ pub(super) fn history(
         }
     });
     let triangles: Vec<Labelled<3>> = triangles.collect();
-    let changed: Vec<ChangedVertex> = (0..numbers.kept.len())
-        .filter(|&v| numbers.kept[v] == VertexId::NONE)
+    let changed: Vec<ChangedVertex> = (0..numbering.kept.len())
+        .filter(|&v| numbering.kept[v] == VertexId::NONE)
         .map(|v| {
-            let was = Some(numbers.to_draft[v]).filter(|was| was.index() < host.points.len());
+            let was = Some(numbering.to_draft[v]).filter(|was| was.index() < host.points.len());
             ChangedVertex { vertex: VertexId::new(v), was }
         })
         .collect();
@@ -83,28 +87,28 @@ pub(super) fn history(
         old_points: &host.points,
         new_points: &mesh.points,
         removed_tets: &removed,
-        new_tets: &came,
+        new_tets: &new_tets,
         removed_triangles: &facets,
         new_triangles: &triangles,
         changed_vertices: &changed,
     };
     let traced = trace(&change, threads)?;
     Ok(History {
-        vertices: Origins::new(host.points.len(), numbers.kept.clone(), traced.vertices)?,
-        cells: Origins::new(host.cells.len(), laid.to_old.clone(), traced.cells)?,
+        vertices: Origins::new(host.points.len(), numbering.kept.clone(), traced.vertices)?,
+        cells: Origins::new(host.cells.len(), layout.to_old.clone(), traced.cells)?,
         ledger: traced.ledger,
     })
 }
 
 /// The regions of removed tets, by place.
-struct There<'a> {
+struct RegionLookup<'a> {
     host: &'a Mesh,
     removed: &'a [Labelled<4>],
     /// `None` if there is only one region.
     tree: Option<BoxTree>,
 }
 
-impl<'a> There<'a> {
+impl<'a> RegionLookup<'a> {
     fn new(host: &'a Mesh, removed: &'a [Labelled<4>]) -> Self {
         let is_one = removed.windows(2).all(|pair| pair[0].label == pair[1].label);
         let bounds = |tet: &Labelled<4>| bounding_box(tet.vertices.map(|v| host.points[v.index()]));

@@ -8,7 +8,7 @@ pub(super) enum Owner {
     /// A device, by its number.
     Device(u32),
     /// No owner: tets of the host that stay, or nothing.
-    Taken,
+    Unfilled,
 }
 
 /// What a new triangle is a part of.
@@ -21,5 +21,5 @@ pub(super) enum Patch {
     /// A triangle of the host, by its patch.
     Host(i32),
     /// A wall of the host without triangles.
-    Bare,
+    Unlabelled,
 }

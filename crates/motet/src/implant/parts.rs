@@ -19,16 +19,20 @@ pub(super) struct Parts<'a> {
 }
 
 /// The edges that pieces of both surfaces have.
-pub(super) fn edges_of_both(cut: &Cut) -> BTreeSet<[VertexId; 2]> {
+pub(super) fn common_edges(cut: &Cut) -> BTreeSet<[VertexId; 2]> {
     let edges = |s: usize| {
         let vertices = cut.pieces[s].iter().map(|(t, _)| *t);
         vertices.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).map(rising)
     };
     // Edges of the devices whose ends are both of the other surface as well.
     let of_faces: BTreeSet<VertexId> = cut.pieces[1].iter().flat_map(|(t, _)| *t).collect();
-    let asked: BTreeSet<[VertexId; 2]> =
+    let candidates: BTreeSet<[VertexId; 2]> =
         edges(0).filter(|edge| edge.iter().all(|v| of_faces.contains(v))).collect();
-    if asked.is_empty() { asked } else { edges(1).filter(|edge| asked.contains(edge)).collect() }
+    if candidates.is_empty() {
+        candidates
+    } else {
+        edges(1).filter(|edge| candidates.contains(edge)).collect()
+    }
 }
 
 impl<'a> Parts<'a> {
@@ -56,7 +60,7 @@ impl<'a> Parts<'a> {
     }
 
     /// Which parts lie in a closed surface.
-    pub(super) fn ask(&self, cut: &Cut, surface: &[[VertexId; 3]], threads: &Threads) -> Vec<bool> {
+    pub(super) fn are_inside(&self, cut: &Cut, surface: &[[VertexId; 3]], threads: &Threads) -> Vec<bool> {
         let mut points = cut.points.clone();
         let first = points.len();
         points.extend(&self.places);

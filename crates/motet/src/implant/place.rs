@@ -7,7 +7,7 @@ use crate::geometry::triangle::centroid;
 use crate::mesh::TetMesh;
 
 /// A point as text, for errors.
-pub(super) fn told([x, y, z]: Point) -> String {
+pub(super) fn format_point([x, y, z]: Point) -> String {
     format!("({x:.6}, {y:.6}, {z:.6})")
 }
 
@@ -25,7 +25,7 @@ pub(super) fn check_inside(
     let Some(k) = has_inside.iter().position(|has_inside| !has_inside) else { return Ok(()) };
     let name = &devices.names[k];
     let first = devices.of_triangle.iter().position(|of| of.contains(&(k as u32))).unwrap_or_default();
-    let place = told(centroid(devices.corners(first)));
+    let place = format_point(centroid(devices.corners(first)));
     let mut points = devices.points.clone();
     points.extend(host.tets.first().map(|tet| host.points[tet[0].index()]));
     let query = VertexId::new(points.len() - 1);

@@ -19,13 +19,13 @@ pub(super) struct Draft {
     pub(super) points: Vec<Point>,
     /// Which vertices of the host were moved.
     pub(super) is_moved: Vec<bool>,
-    pub(super) is_gone: Vec<bool>,
+    pub(super) is_removed: Vec<bool>,
     pub(super) tets: Vec<[VertexId; 4]>,
     pub(super) owners: Vec<Owner>,
     /// New triangles.
     pub(super) triangles: Vec<([VertexId; 3], Patch)>,
     /// For each tet of the repaired zone, where it is now.
-    pub(super) of_zone: Vec<Site>,
+    pub(super) zone_to_site: Vec<Site>,
 }
 
 /// A tet of the result.
@@ -42,11 +42,11 @@ impl Draft {
         Self {
             points: host.points.iter().chain(&gap.points).copied().collect(),
             is_moved: vec![false; host.points.len()],
-            is_gone: carved.fates.iter().map(|&fate| fate == Fate::Gone).collect(),
+            is_removed: carved.fates.iter().map(|&fate| fate == Fate::Removed).collect(),
             tets: gap.tets.clone(),
             owners: gap.owners.clone(),
             triangles: Vec::new(),
-            of_zone: Vec::new(),
+            zone_to_site: Vec::new(),
         }
     }
 
@@ -73,11 +73,11 @@ impl Draft {
         }
         let of_region: Vec<i32> = near.iter().map(|&t| number(&Owner::Host(host.regions[t]))).collect();
         near.iter().zip(of_region).for_each(|(&t, region)| zone.push(host.tets[t], region, &self.points));
-        let patches = zone.hold(host, gap, &mut self.triangles);
+        let patches = zone.add_triangles(host, gap, &mut self.triangles);
         let surface = match gap.loose.is_empty() {
             true => SurfaceRule::Keep,
             false => {
-                zone.hold_walls(&gap.loose);
+                zone.fix_walls(&gap.loose);
                 SurfaceRule::Adapt { distance: Some(stray) }
             }
         };
@@ -87,7 +87,7 @@ impl Draft {
         let improve = options.improve.clone().or(Some(improve));
         let options = Options { surface, sizes: None, improve, ..options.clone() };
         let outcome = remesh(&zone.mesh, &options, threads)?;
-        let (extract, n_came) = (outcome.extract, self.tets.len());
+        let (extract, n_new) = (outcome.extract, self.tets.len());
         let mut to_result = Vec::with_capacity(extract.mesh.points.len());
         for (point, &old) in extract.mesh.points.iter().zip(&extract.vertex_to_old) {
             to_result.push(zone.to_result.get(old as usize).copied().unwrap_or_else(|| {
@@ -103,21 +103,21 @@ impl Draft {
             }
         }
         for (triangle, &patch) in extract.mesh.triangles.iter().zip(&extract.mesh.patches) {
-            let came = patches.get(patch as usize).filter(|patch| **patch != Patch::Bare);
-            self.triangles.extend(came.map(|patch| (triangle.map(|v| to_result[v.index()]), *patch)));
+            let new = patches.get(patch as usize).filter(|patch| **patch != Patch::Unlabelled);
+            self.triangles.extend(new.map(|patch| (triangle.map(|v| to_result[v.index()]), *patch)));
         }
-        near.iter().for_each(|&t| self.is_gone[t] = true);
+        near.iter().for_each(|&t| self.is_removed[t] = true);
         (self.tets, self.owners) = (Vec::new(), Vec::new());
         for ((tet, &region), &old) in
             extract.mesh.tets.iter().zip(&extract.mesh.regions).zip(&extract.tet_to_old)
         {
-            match near.get((old as usize).wrapping_sub(n_came)) {
+            match near.get((old as usize).wrapping_sub(n_new)) {
                 Some(&t) => {
-                    self.is_gone[t] = false;
-                    self.of_zone.push(Site::Host(t));
+                    self.is_removed[t] = false;
+                    self.zone_to_site.push(Site::Host(t));
                 }
                 None => {
-                    self.of_zone.push(Site::New(self.tets.len()));
+                    self.zone_to_site.push(Site::New(self.tets.len()));
                     self.tets.push(tet.map(|v| to_result[v.index()]));
                     self.owners.push(regions[region as usize]);
                 }
@@ -142,54 +142,59 @@ fn regions(owners: &[Owner], host: &TetMesh, near: &[usize]) -> Vec<Owner> {
 /// The zone as a mesh of its own, and the maps between its vertices and those of the result.
 struct Zone {
     mesh: TetMesh,
-    of_result: Vec<VertexId>,
+    result_to_zone: Vec<VertexId>,
     to_result: Vec<VertexId>,
 }
 
 impl Zone {
     fn new(n: usize) -> Self {
-        Self { mesh: TetMesh::default(), of_result: vec![Id::NONE; n], to_result: Vec::new() }
+        Self { mesh: TetMesh::default(), result_to_zone: vec![Id::NONE; n], to_result: Vec::new() }
     }
 
     fn push(&mut self, tet: [VertexId; 4], region: i32, points: &[Point]) {
         for v in tet {
-            if self.of_result[v.index()] == VertexId::NONE {
-                self.of_result[v.index()] = VertexId::new(self.to_result.len());
+            if self.result_to_zone[v.index()] == VertexId::NONE {
+                self.result_to_zone[v.index()] = VertexId::new(self.to_result.len());
                 self.to_result.push(v);
                 self.mesh.points.push(points[v.index()]);
             }
         }
-        self.mesh.tets.push(tet.map(|v| self.of_result[v.index()]));
+        self.mesh.tets.push(tet.map(|v| self.result_to_zone[v.index()]));
         self.mesh.regions.push(region);
     }
 
     /// Adds triangles of the host and new ones, and holds what other cells of the host hold. Returns the
     /// patch of each patch number; the numbers from there on are triangles of the host. New triangles that
     /// lie outside of the zone are added to `elsewhere`.
-    fn hold(&mut self, host: &TetMesh, gap: &Gap, elsewhere: &mut Vec<([VertexId; 3], Patch)>) -> Vec<Patch> {
+    fn add_triangles(
+        &mut self,
+        host: &TetMesh,
+        gap: &Gap,
+        elsewhere: &mut Vec<([VertexId; 3], Patch)>,
+    ) -> Vec<Patch> {
         let patches: BTreeSet<Patch> = gap.triangles.iter().map(|(_, patch)| *patch).collect();
         let patches: Vec<Patch> = patches.into_iter().collect();
         let of_host = i32::try_from(patches.len()).unwrap_or(i32::MAX);
         let number = |patch: &Patch| patches.binary_search(patch).map_or(of_host, |i| i as i32);
         let dropped: HashSet<[VertexId; 3]> = gap.dropped.iter().map(|face| rising(face.vertices)).collect();
-        let of = |v: VertexId| Some(self.of_result[v.index()]).filter(|v| *v != VertexId::NONE);
+        let of = |v: VertexId| Some(self.result_to_zone[v.index()]).filter(|v| *v != VertexId::NONE);
         let staying = host.triangles.iter().filter(|t| !dropped.contains(&rising(**t)));
         let all = staying.map(|t| (*t, of_host, None));
-        let all = all.chain(gap.triangles.iter().map(|came| (came.0, number(&came.1), Some(*came))));
+        let all = all.chain(gap.triangles.iter().map(|new| (new.0, number(&new.1), Some(*new))));
         let mut known = Vec::new();
-        for ([a, b, c], patch, came) in all {
+        for ([a, b, c], patch, new) in all {
             match (of(a), of(b), of(c)) {
-                (Some(a), Some(b), Some(c)) => known.push(([a, b, c], patch, came)),
-                _ => elsewhere.extend(came),
+                (Some(a), Some(b), Some(c)) => known.push(([a, b, c], patch, new)),
+                _ => elsewhere.extend(new),
             }
         }
         let triangles: Vec<[VertexId; 3]> = known.iter().map(|x| x.0).collect();
         let (mut facets, mut numbers) = (Vec::new(), Vec::new());
         for_each_tet_facet(&self.mesh.tets, &triangles, |sharing| {
             let Some(&t) = sharing.triangles.first() else { return };
-            let (triangle, patch, came) = known[t as usize];
+            let (triangle, patch, new) = known[t as usize];
             if sharing.tets.is_empty() {
-                elsewhere.extend(came);
+                elsewhere.extend(new);
             } else {
                 facets.push(triangle);
                 numbers.push(patch);
@@ -203,7 +208,7 @@ impl Zone {
     }
 
     /// Fixes the edges of walls that have no loose corner, and the vertices of walls that are not loose.
-    fn hold_walls(&mut self, loose: &BTreeSet<VertexId>) {
+    fn fix_walls(&mut self, loose: &BTreeSet<VertexId>) {
         let (mut edges, mut vertices) = (Vec::new(), Vec::new());
         let is_loose = |v: VertexId| loose.contains(&self.to_result[v.index()]);
         let Self { mesh: TetMesh { tets, triangles, regions, .. }, .. } = self;

@@ -10,20 +10,20 @@ type Cube = [i32; 3];
 
 /// More sides of cubes than this on the surface are too many: each yields about 12 triangles, and 100,000 a
 /// few hundred MB of lattice.
-const MOST_SQUARES: f64 = 1e5;
+const MAX_SQUARES: f64 = 1e5;
 
 /// Triangles are processed in more pieces than this only if they are needles of extreme length.
-const MOST_PIECES: f64 = 2e7;
+const MAX_PIECES: f64 = 2e7;
 
 /// The longest edge of a piece, in sides of cubes.
-const LONGEST: f64 = 2.0;
+const MAX_EDGE: f64 = 2.0;
 
 /// The centres of cubes that a piece passes through, and of their neighbours, are at most this far from its
 /// plane, in sides: half a diagonal of a cube and a side.
 const REACH: f64 = 1.87;
 
 /// This many cubes are collected before duplicates are removed.
-const FIRST: usize = 1 << 20;
+const FIRST_CAPACITY: usize = 1 << 20;
 
 /// Cubes of one size, in ascending order.
 pub(super) struct Cubes {
@@ -43,9 +43,9 @@ pub(super) struct Lattice {
 /// The shortest edge that a lattice near the surface may have.
 pub(super) fn shortest_edge(surface: &Surface) -> f64 {
     let triangles = || (0..surface.triangles.len()).map(|t| surface.corners(t));
-    let squares = triangles().map(area).sum::<f64>() / MOST_SQUARES;
+    let squares = triangles().map(area).sum::<f64>() / MAX_SQUARES;
     let pieces =
-        triangles().map(|t| distance(t[0], t[1]).max(distance(t[1], t[2]))).sum::<f64>() / MOST_PIECES;
+        triangles().map(|t| distance(t[0], t[1]).max(distance(t[1], t[2]))).sum::<f64>() / MAX_PIECES;
     EDGE_OVER_SIDE * squares.sqrt().max(pieces)
 }
 
@@ -58,16 +58,16 @@ impl Cubes {
         // An origin from which no coordinate of a surface is likely to be a whole number of sides away.
         let low = bounds(&corners).unwrap_or_default()[0].map(|x| x - 0.618_033_988_749 * side);
         let mut near = Self { low, side, cubes: Vec::new() };
-        let mut full = FIRST;
+        let mut full = FIRST_CAPACITY;
         for corners in corners.as_chunks().0 {
             near.add_triangle(*corners);
             // Neighbouring triangles have most of their cubes in common.
             if near.cubes.len() > full {
-                sort_once(&mut near.cubes);
-                full = FIRST.max(2 * near.cubes.len());
+                sort_and_dedup(&mut near.cubes);
+                full = FIRST_CAPACITY.max(2 * near.cubes.len());
             }
         }
-        sort_once(&mut near.cubes);
+        sort_and_dedup(&mut near.cubes);
         near
     }
 
@@ -75,7 +75,7 @@ impl Cubes {
     fn add_triangle(&mut self, corners: [Point; 3]) {
         let lengths = [0, 1, 2].map(|k| distance(corners[k], corners[(k + 1) % 3]));
         let longest = (0..3).max_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
-        if lengths[longest] > LONGEST * self.side {
+        if lengths[longest] > MAX_EDGE * self.side {
             let [a, b, c] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
             let middle = scale(add(a, b), 0.5);
             self.add_triangle([a, middle, c]);
@@ -108,7 +108,7 @@ impl Cubes {
         for cube in &self.cubes {
             corners.extend((0..8).map(|k| [0, 1, 2].map(|axis| cube[axis] + (k >> axis & 1))));
         }
-        sort_once(&mut corners);
+        sort_and_dedup(&mut corners);
         let at = |cube: Cube, shift: f64| place(cube, self.low, self.side, shift);
         let mut points: Vec<Point> = corners.iter().map(|&c| at(c, 0.0)).collect();
         points.extend(self.cubes.iter().map(|&c| at(c, 0.5)));
@@ -139,7 +139,7 @@ fn place(cube: Cube, low: Point, side: f64, shift: f64) -> Point {
     [0, 1, 2].map(|i| low[i] + (f64::from(cube[i]) + shift) * side)
 }
 
-fn sort_once(cubes: &mut Vec<Cube>) {
+fn sort_and_dedup(cubes: &mut Vec<Cube>) {
     cubes.sort_unstable();
     cubes.dedup();
 }

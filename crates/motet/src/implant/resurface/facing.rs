@@ -18,7 +18,7 @@ struct Part {
     bounds: Bounds,
     volume: f64,
     /// Whether it faced inward as given.
-    came_inward: bool,
+    was_inward: bool,
 }
 
 /// Turns triangles to face as they are meant to. Closed parts face outward, except for cavities: parts that
@@ -26,22 +26,22 @@ struct Part {
 /// way if together they enclose a negative volume; for a single one of them, such as the inner wall of a
 /// tube, that cannot be determined.
 pub(super) fn face(surface: &mut Surface, threads: &Threads) -> Result<()> {
-    let came = surface.triangles.clone();
+    let given = surface.triangles.clone();
     let orient = Repairs { orient: true, ..Repairs::default() };
-    let of = vec![0; came.len()];
-    let turned = repair(&surface.points, &came, &of, &[Role::Boundary], &orient, threads)?;
+    let of = vec![0; given.len()];
+    let turned = repair(&surface.points, &given, &of, &[Role::Boundary], &orient, threads)?;
     for (triangle, old) in turned.triangles.iter().zip(&turned.new_to_old) {
         if let Some(old) = old {
             surface.triangles[*old as usize] = *triangle;
         }
     }
-    let (mut closed, open) = parts(surface, &came);
+    let (mut closed, open) = parts(surface, &given);
     closed.sort_by(|p, q| q.volume.total_cmp(&p.volume));
     let mut faces_inward: Vec<bool> = Vec::new();
     for (k, part) in closed.iter().enumerate() {
         // The smallest part that contains it.
         let holder = (0..k).rev().find(|&holder| holds(&closed[holder], part, &surface.points));
-        let differs = |holder: usize| closed[holder].came_inward != part.came_inward;
+        let differs = |holder: usize| closed[holder].was_inward != part.was_inward;
         faces_inward.push(holder.is_some_and(|holder| faces_inward[holder] != differs(holder)));
     }
     let inward = closed.iter().zip(&faces_inward).filter(|(_, inward)| **inward);
@@ -55,7 +55,7 @@ pub(super) fn face(surface: &mut Surface, threads: &Threads) -> Result<()> {
 }
 
 /// The closed parts, and the triangles of all others.
-fn parts(surface: &Surface, came: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) {
+fn parts(surface: &Surface, given: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) {
     let n = surface.triangles.len();
     let mut sides: Vec<([VertexId; 2], u32)> = (0..)
         .zip(&surface.triangles)
@@ -77,13 +77,13 @@ fn parts(surface: &Surface, came: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) {
             open.extend_from_slice(triangles);
             continue;
         }
-        let n_turned = triangles.iter().filter(|&&t| !runs_alike(came[t], surface.triangles[t])).count();
+        let n_turned = triangles.iter().filter(|&&t| !runs_alike(given[t], surface.triangles[t])).count();
         closed.push(Part {
             triangles: triangles.to_vec(),
             bounds: bounding_box(corners.as_flattened().iter().map(|v| surface.points[v.index()])),
             volume: volume(&surface.points, &corners),
             corners,
-            came_inward: 2 * n_turned > triangles.len(),
+            was_inward: 2 * n_turned > triangles.len(),
         });
     }
     (closed, open)

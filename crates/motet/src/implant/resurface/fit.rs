@@ -1,6 +1,6 @@
 //! How far the new surface and the old one are apart.
 
-use super::old::Old;
+use super::old::OriginalSurface;
 use super::skin::Skin;
 use crate::base::{Point, Threads, VertexId, rising};
 use crate::geometry::triangle::{area_vector, centroid};
@@ -9,20 +9,20 @@ use crate::implant::report::Fit;
 use crate::spatial::{Closest, NearestTriangle};
 
 /// How far in front of a triangle its surroundings are probed, as a fraction of the tolerance.
-const BEFORE: f64 = 0.25;
+const PROBE_DISTANCE: f64 = 0.25;
 
-impl Old {
+impl OriginalSurface {
     pub(super) fn fit(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> Fit {
         Fit {
-            to_old: self.off_old(skin, threads),
-            from_old: self.off_new(skin, tolerance, threads),
+            to_old: self.distance_to_old(skin, threads),
+            from_old: self.distance_from_old(skin, tolerance, threads),
             tolerance,
         }
     }
 
     /// The largest distance of the new surface from the old one, at corners and at the middles of edges and
     /// triangles.
-    fn off_old(&self, skin: &Skin, threads: &Threads) -> f64 {
+    fn distance_to_old(&self, skin: &Skin, threads: &Threads) -> f64 {
         let at = |v: VertexId| skin.points[v.index()];
         let mut places = skin.points.clone();
         places.extend(edges(&skin.triangles).into_iter().map(|[u, v]| scale(add(at(u), at(v)), 0.5)));
@@ -34,7 +34,7 @@ impl Old {
     /// The largest distance of the old surface from the new one, at the middles of triangles and of their
     /// edges. Where the old surface lies in the device, such as where turns of a wire overlap, it does not
     /// bound it, and does not count.
-    fn off_new(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> f64 {
+    fn distance_from_old(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> f64 {
         let of_triangle = |t: usize| {
             let [a, b, c] = self.surface.corners(t);
             let middles = [[a, b], [b, c], [c, a]].map(|[p, q]| scale(add(p, q), 0.5));
@@ -51,7 +51,7 @@ impl Old {
         let counts = |&&(_, p, t): &&(f64, Point, usize)| {
             let normal = area_vector(self.surface.corners(t));
             let length = norm(normal);
-            let before = add(p, scale(normal, BEFORE * tolerance / length));
+            let before = add(p, scale(normal, PROBE_DISTANCE * tolerance / length));
             length > 0.0 && !self.is_inside(self.winding(before))
         };
         far.iter().find(counts).map_or(0.0, |farthest| farthest.0)

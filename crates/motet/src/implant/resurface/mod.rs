@@ -7,22 +7,22 @@
 //! | cubes | `cubes` | those near the surface; the tets of a body-centred lattice between their centres and corners |
 //! | inside | `old` | winding numbers, also of surfaces that cross themselves, have open ends or duplicate triangles; those of a closed one change only across triangles |
 //! | skin | `skin` | lattice vertices near the surface move onto it, the other edges that it crosses are cut: Labelle and Shewchuk 2007, *Isosurface stuffing* |
-//! | even | `even`, `sheet` | narrow triangles made wider: edges flipped or collapsed, vertices moved along the old surface |
+//! | widen | `widen`, `sheet` | narrow triangles made wider: edges flipped or collapsed, vertices moved along the old surface |
 //! | distance | `fit` | both ways; if it is too large, the lattice is made finer |
 
 mod cubes;
-mod even;
 mod facing;
 mod fit;
 mod old;
 mod sheet;
 mod skin;
+mod widen;
 
 use super::report::Fit;
 use crate::base::{Error, Result, Threads};
 use crate::mesh::{CellKind, Cells, Mesh, Surface};
 use cubes::{Cubes, shortest_edge};
-use old::{Old, nothing};
+use old::{OriginalSurface, encloses_nothing};
 use skin::Skin;
 
 /// The edge length of the first lattice, over the radius of a round wire as thick as the device.
@@ -64,7 +64,7 @@ pub(super) fn resurface(
     size: Option<f64>,
     threads: &Threads,
 ) -> Result<Resurfaced> {
-    let old = Old::new(surface, name, threads)?;
+    let old = OriginalSurface::new(surface, name, threads)?;
     let tolerance = tolerance.unwrap_or(TOLERANCE_OVER_RADIUS * old.radius);
     // A chord of a circle strays by an eighth of its square over the radius.
     let by_tolerance = CHORD * (8.0 * old.radius * tolerance).sqrt();
@@ -99,11 +99,11 @@ pub(super) fn resurface(
         }
     }
     let (mut skin, mut fit) =
-        best.filter(|(skin, _)| !skin.triangles.is_empty()).ok_or_else(|| nothing(name))?;
-    if let Some(evened) = old.evened(&skin, tolerance, threads) {
-        let now = old.fit(&evened, tolerance, threads);
+        best.filter(|(skin, _)| !skin.triangles.is_empty()).ok_or_else(|| encloses_nothing(name))?;
+    if let Some(widened) = old.widened(&skin, tolerance, threads) {
+        let now = old.fit(&widened, tolerance, threads);
         if now.is_reached() || now.farthest() <= fit.farthest() {
-            (skin, fit) = (evened, now);
+            (skin, fit) = (widened, now);
         }
     }
     let mut cells = Cells::new();

@@ -19,7 +19,7 @@ const INSIDE: f64 = 0.5;
 const OVERLAP: f64 = 1e-9;
 
 /// The original surface, and what finds its triangles.
-pub(super) struct Old {
+pub(super) struct OriginalSurface {
     pub(super) surface: Surface,
     pub(super) nearest: NearestTriangle,
     winding: WindingNumber,
@@ -30,13 +30,13 @@ pub(super) struct Old {
     pub(super) radius: f64,
 }
 
-pub(super) fn nothing(name: &str) -> Error {
+pub(super) fn encloses_nothing(name: &str) -> Error {
     Error::input(format!("the device `{name}` goes round nothing"))
         .at("its surface")
         .remedy("close it as far as that matters")
 }
 
-impl Old {
+impl OriginalSurface {
     /// Orients the surface and prepares it for searching.
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl Old {
         let volume = volume(&surface.points, &surface.triangles);
         let whole = corners().map(area).sum::<f64>();
         if volume <= 0.0 || whole <= 0.0 {
-            return Err(nothing(name));
+            return Err(encloses_nothing(name));
         }
         Ok(Self {
             nearest: NearestTriangle::new(&surface.points, &surface.triangles, threads),
@@ -102,10 +102,10 @@ impl Old {
             }
         }
         let roots: Vec<usize> = sets.roots().into_iter().map(|root| root as usize).collect();
-        let asked: Vec<usize> = (0..n).filter(|&v| roots[v] == v).collect();
-        let answers = threads.map(asked.len(), |i| self.winding(lattice.points[asked[i]]));
+        let queries: Vec<usize> = (0..n).filter(|&v| roots[v] == v).collect();
+        let answers = threads.map(queries.len(), |i| self.winding(lattice.points[queries[i]]));
         let mut windings = vec![0.0; n];
-        asked.iter().zip(answers).for_each(|(&v, winding)| windings[v] = winding);
+        queries.iter().zip(answers).for_each(|(&v, winding)| windings[v] = winding);
         (0..n).for_each(|v| windings[v] = windings[roots[v]]);
         windings
     }
@@ -116,7 +116,7 @@ impl Old {
     /// The number falls by one where the way leaves through a triangle, and rises by one where it enters; the
     /// rest of the difference, near open ends, is spread evenly. Several triangles that meet where the way
     /// passes through count more than once: it ends there all the same.
-    pub(super) fn end(&self, way: [Point; 2], [from, to]: [f64; 2], near: &mut Vec<u32>) -> f64 {
+    pub(super) fn crossing_on_way(&self, way: [Point; 2], [from, to]: [f64; 2], near: &mut Vec<u32>) -> f64 {
         self.boxes.touching(bounding_box(way), near);
         let mut passed: Vec<(f64, f64)> = Vec::new();
         for &t in near.iter() {

@@ -6,10 +6,10 @@ use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot, norm, scale, sub, unit};
 
 /// The cosine of the largest angle between two triangles whose edge is flipped: 30 degrees.
-const FLAT: f64 = 0.866;
+const MIN_FLIP_COSINE: f64 = 0.866;
 
 /// The cosine of how far a triangle may turn in a change: 25 degrees.
-const TURN: f64 = 0.906;
+const MIN_TURN_COSINE: f64 = 0.906;
 
 /// Triangles over points, and the triangles at each vertex.
 pub(super) struct Sheet {
@@ -21,10 +21,10 @@ pub(super) struct Sheet {
 
 /// A change: triangles that are removed, those that replace them, and the new place of a vertex.
 pub(super) struct Change {
-    pub(super) gone: Vec<u32>,
-    pub(super) come: Vec<[VertexId; 3]>,
+    pub(super) removed: Vec<u32>,
+    pub(super) added: Vec<[VertexId; 3]>,
     pub(super) moved: Option<(VertexId, Point)>,
-    /// The unit normals that the new triangles have to keep, as far as [`TURN`] allows.
+    /// The unit normals that the new triangles have to keep, as far as [`MIN_TURN_COSINE`] allows.
     normals: Vec<Point>,
 }
 
@@ -37,7 +37,7 @@ impl Sheet {
         Self { points: skin.points.clone(), triangles: skin.triangles.clone(), at_vertex }
     }
 
-    pub(super) fn is_there(&self, t: u32) -> bool {
+    pub(super) fn exists(&self, t: u32) -> bool {
         self.triangles[t as usize][0] != VertexId::NONE
     }
 
@@ -51,7 +51,7 @@ impl Sheet {
             Some((moved, place)) if moved == v => place,
             _ => self.points[v.index()],
         };
-        change.come.iter().map(move |t| t.map(at))
+        change.added.iter().map(move |t| t.map(at))
     }
 
     fn normal(&self, t: u32) -> Point {
@@ -82,14 +82,14 @@ impl Sheet {
 
     /// Flips an edge: two triangles over the other diagonal. `None` if that edge exists already, or the two
     /// triangles bend too far.
-    pub(super) fn turned(&self, u: VertexId, v: VertexId) -> Option<Change> {
-        let gone = self.at_edge(u, v);
-        let &[s, t] = gone.as_slice() else { return None };
+    pub(super) fn flipped(&self, u: VertexId, v: VertexId) -> Option<Change> {
+        let removed = self.at_edge(u, v);
+        let &[s, t] = removed.as_slice() else { return None };
         let normals = [s, t].map(|t| self.normal(t));
         let [c, d] = [s, t].map(|t| self.triangles[t as usize].into_iter().find(|w| *w != u && *w != v));
         let (c, d) = (c?, d?);
-        let is_there = c == d || !self.at_edge(c, d).is_empty();
-        if is_there || dot(normals[0], normals[1]) < FLAT {
+        let exists = c == d || !self.at_edge(c, d).is_empty();
+        if exists || dot(normals[0], normals[1]) < MIN_FLIP_COSINE {
             return None;
         }
         // The edge runs from u to v in one of the two.
@@ -99,54 +99,55 @@ impl Sheet {
         };
         let (c, d) = if runs(s) { (c, d) } else { (d, c) };
         let mean = unit(add(normals[0], normals[1]))?;
-        Some(Change { gone, come: vec![[c, u, d], [d, v, c]], moved: None, normals: vec![mean; 2] })
+        Some(Change { removed, added: vec![[c, u, d], [d, v, c]], moved: None, normals: vec![mean; 2] })
     }
 
-    /// Collapses an edge: `gone` becomes `kept`, which moves to `place`. `None` if that would fold triangles.
-    pub(super) fn joined(&self, gone: VertexId, kept: VertexId, place: Point) -> Option<Change> {
-        let [a, b] = [gone, kept].map(|v| self.neighbors(v));
+    /// Collapses an edge: `removed` becomes `kept`, which moves to `place`. `None` if that would fold triangles.
+    pub(super) fn collapsed(&self, removed: VertexId, kept: VertexId, place: Point) -> Option<Change> {
+        let [a, b] = [removed, kept].map(|v| self.neighbors(v));
         let common = a.iter().filter(|v| b.binary_search(v).is_ok()).count();
         // With more common neighbours than triangles at the edge, triangles would be folded onto each other
         // (Dey, Edelsbrunner, Guha and Nekhayev 1999).
-        if common != 2 || self.at_edge(gone, kept).len() != 2 || a.len().min(b.len()) < 4 {
+        if common != 2 || self.at_edge(removed, kept).len() != 2 || a.len().min(b.len()) < 4 {
             return None;
         }
-        let of_gone = self.at_vertex[gone.index()].iter();
-        let mut change = self.over(of_gone.chain(&self.at_vertex[kept.index()]).copied(), kept, place);
-        change.come.iter_mut().flatten().filter(|v| **v == gone).for_each(|v| *v = kept);
+        let of_removed = self.at_vertex[removed.index()].iter();
+        let mut change =
+            self.with_vertex_at(of_removed.chain(&self.at_vertex[kept.index()]).copied(), kept, place);
+        change.added.iter_mut().flatten().filter(|v| **v == removed).for_each(|v| *v = kept);
         let normals = std::mem::take(&mut change.normals);
         let is_double = |t: &[VertexId; 3]| t.iter().filter(|v| **v == kept).count() == 2;
-        let come = std::mem::take(&mut change.come).into_iter().zip(normals);
-        (change.come, change.normals) = come.filter(|(t, _)| !is_double(t)).unzip();
+        let added = std::mem::take(&mut change.added).into_iter().zip(normals);
+        (change.added, change.normals) = added.filter(|(t, _)| !is_double(t)).unzip();
         Some(change)
     }
 
     /// Moves a vertex.
     pub(super) fn moved(&self, v: VertexId, place: Point) -> Change {
-        self.over(self.at_vertex[v.index()].iter().copied(), v, place)
+        self.with_vertex_at(self.at_vertex[v.index()].iter().copied(), v, place)
     }
 
-    fn over(&self, triangles: impl Iterator<Item = u32>, v: VertexId, place: Point) -> Change {
-        let mut gone: Vec<u32> = triangles.collect();
-        gone.sort_unstable();
-        gone.dedup();
-        let come = gone.iter().map(|&t| self.triangles[t as usize]).collect();
-        let normals = gone.iter().map(|&t| self.normal(t)).collect();
-        Change { gone, come, moved: Some((v, place)), normals }
+    fn with_vertex_at(&self, triangles: impl Iterator<Item = u32>, v: VertexId, place: Point) -> Change {
+        let mut removed: Vec<u32> = triangles.collect();
+        removed.sort_unstable();
+        removed.dedup();
+        let added = removed.iter().map(|&t| self.triangles[t as usize]).collect();
+        let normals = removed.iter().map(|&t| self.normal(t)).collect();
+        Change { removed, added, moved: Some((v, place)), normals }
     }
 
     /// Whether no triangle turns away.
     pub(super) fn keeps_facing(&self, change: &Change) -> bool {
         let normals = self.corners_after(change).map(area_vector).zip(&change.normals);
-        normals.into_iter().all(|(now, before)| dot(now, *before) > TURN * norm(now))
+        normals.into_iter().all(|(now, before)| dot(now, *before) > MIN_TURN_COSINE * norm(now))
     }
 
     pub(super) fn commit(&mut self, change: Change) {
-        for &t in &change.gone {
+        for &t in &change.removed {
             let triangle = std::mem::replace(&mut self.triangles[t as usize], [Id::NONE; 3]);
             triangle.iter().for_each(|v| self.at_vertex[v.index()].retain(|other| *other != t));
         }
-        for (&t, triangle) in change.gone.iter().zip(&change.come) {
+        for (&t, triangle) in change.removed.iter().zip(&change.added) {
             self.triangles[t as usize] = *triangle;
             triangle.iter().for_each(|v| self.at_vertex[v.index()].push(t));
         }
@@ -157,7 +158,7 @@ impl Sheet {
 }
 
 /// The cosine of the smallest angle of a triangle; 1 if an edge has no length.
-pub(super) fn sharpest(corners: [Point; 3]) -> f64 {
+pub(super) fn largest_cosine(corners: [Point; 3]) -> f64 {
     let cosine = |k: usize| {
         let [a, b] = [1, 2].map(|i| sub(corners[(k + i) % 3], corners[k]));
         let lengths = norm(a) * norm(b);

@@ -1,7 +1,7 @@
 //! The surface between what is inside and what is outside, cut out of a lattice of tets.
 
 use super::cubes::Lattice;
-use super::old::Old;
+use super::old::OriginalSurface;
 use crate::base::{Id, Point, Sets, Threads, VertexId, rising};
 use crate::geometry::tet::{EDGES, FACETS, volume};
 use crate::geometry::vector::{add, distance, scale, sub};
@@ -34,7 +34,7 @@ impl Skin {
     /// Without vertices that move onto cuts, this is the level set of a function that is linear in each tet
     /// and 0 at no vertex, which is a manifold. Vertices on the surface can make two sheets meet in an edge
     /// or a vertex; those that do stay where they are, and their edges are cut.
-    pub(super) fn new(mut lattice: Lattice, old: &Old, threads: &Threads) -> Self {
+    pub(super) fn new(mut lattice: Lattice, old: &OriginalSurface, threads: &Threads) -> Self {
         let windings = old.windings(&lattice, threads);
         let signs: Vec<i8> = windings.iter().map(|&w| if old.is_inside(w) { -1 } else { 1 }).collect();
         let cuts = cuts(&lattice, &signs, &windings, old, threads);
@@ -73,7 +73,13 @@ impl Skin {
 }
 
 /// All edges that the surface cuts, sorted by their ends.
-fn cuts(lattice: &Lattice, signs: &[i8], windings: &[f64], old: &Old, threads: &Threads) -> Vec<Cut> {
+fn cuts(
+    lattice: &Lattice,
+    signs: &[i8],
+    windings: &[f64],
+    old: &OriginalSurface,
+    threads: &Threads,
+) -> Vec<Cut> {
     let mut edges: Vec<[VertexId; 2]> = Vec::new();
     for tet in &lattice.tets {
         let of_tet = tet.map(|v| signs[v.index()]);
@@ -91,7 +97,7 @@ fn cuts(lattice: &Lattice, signs: &[i8], windings: &[f64], old: &Old, threads: &
             (u, v) = (v, u);
         }
         let [from, to] = [u, v].map(|v| lattice.points[v]);
-        let share = old.end([from, to], [u, v].map(|v| windings[v]), near);
+        let share = old.crossing_on_way([from, to], [u, v].map(|v| windings[v]), near);
         Cut { ends, place: add(from, scale(sub(to, from), share)) }
     };
     in_runs(edges.len(), threads, |near, run| run.map(|i| cut(near, edges[i])).collect())
@@ -142,7 +148,7 @@ fn cut_along(
         cutter.cut(*tet);
     }
     let (mut triangles, closing) = (cutter.triangles, cutter.closing);
-    triangles.extend(single(closing));
+    triangles.extend(occurring_once(closing));
     let mut points = std::mem::take(&mut lattice.points);
     let place = |cut: &Cut| {
         let [a, b] = cut.ends.map(|v| unmoved[v.index()]);
@@ -266,7 +272,7 @@ impl Cutter<'_> {
 }
 
 /// Facets that occur only once.
-fn single(facets: Vec<[VertexId; 3]>) -> impl Iterator<Item = [VertexId; 3]> {
+fn occurring_once(facets: Vec<[VertexId; 3]>) -> impl Iterator<Item = [VertexId; 3]> {
     let mut keyed: Vec<([VertexId; 3], [VertexId; 3])> =
         facets.into_iter().map(|facet| (rising(facet), facet)).collect();
     keyed.sort_unstable();

@@ -4,8 +4,8 @@
 //! Of all that could be done about a triangle (flip one of its edges, collapse one, move a vertex towards the
 //! mean of its neighbours and back onto the old surface), the best change is made, as long as any helps.
 
-use super::old::Old;
-use super::sheet::{Change, Sheet, sharpest};
+use super::old::OriginalSurface;
+use super::sheet::{Change, Sheet, largest_cosine};
 use super::skin::Skin;
 use crate::base::{Id, Point, Threads, VertexId};
 use crate::geometry::triangle::centroid;
@@ -13,7 +13,7 @@ use crate::geometry::vector::{add, scale, sub};
 use crate::preflight::crossings;
 
 /// The cosine of the smallest angle that is left alone, 30 degrees.
-const WIDE: f64 = 0.866_025_403_784_438_6;
+const MAX_COSINE: f64 = 0.866_025_403_784_438_6;
 
 /// How much the largest cosine has to fall, so that no work is done for negligible gains.
 const GAIN: f64 = 1e-3;
@@ -30,13 +30,13 @@ const STEPS: [f64; 2] = [1.0, 0.5];
 /// The fraction of the tolerance that changes may use.
 const SHARE: f64 = 0.8;
 
-impl Old {
+impl OriginalSurface {
     /// The surface with wider triangles, within `tolerance` of the old one where it was before; `None` if
     /// crossings remain.
-    pub(super) fn evened(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> Option<Skin> {
+    pub(super) fn widened(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> Option<Skin> {
         let mut is_held = vec![false; skin.points.len()];
         for _ in 0..RETRIES {
-            let mut work = Evening { old: self, sheet: Sheet::new(skin), is_held: &is_held, tolerance };
+            let mut work = Widening { old: self, sheet: Sheet::new(skin), is_held: &is_held, tolerance };
             work.run();
             let Sheet { points, triangles, .. } = work.sheet;
             let changed = changed(skin, &points, &triangles);
@@ -71,22 +71,22 @@ fn changed(before: &Skin, points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<
     (0..triangles.len()).filter(|&t| is_left(&triangles[t]) && !is_same(t)).collect()
 }
 
-struct Evening<'a> {
-    old: &'a Old,
+struct Widening<'a> {
+    old: &'a OriginalSurface,
     sheet: Sheet,
     /// Vertices whose triangles must not change.
     is_held: &'a [bool],
     tolerance: f64,
 }
 
-impl Evening<'_> {
+impl Widening<'_> {
     fn run(&mut self) {
         for _ in 0..ROUNDS {
             let all = 0..self.sheet.triangles.len() as u32;
             let mut narrow: Vec<(f64, u32)> = all
-                .filter(|&t| self.sheet.is_there(t))
-                .map(|t| (sharpest(self.sheet.corners(t)), t))
-                .filter(|(cosine, _)| *cosine > WIDE)
+                .filter(|&t| self.sheet.exists(t))
+                .map(|t| (largest_cosine(self.sheet.corners(t)), t))
+                .filter(|(cosine, _)| *cosine > MAX_COSINE)
                 .collect();
             narrow.sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
             let n = narrow.into_iter().filter(|&(_, t)| self.widen(t)).count();
@@ -98,13 +98,14 @@ impl Evening<'_> {
 
     /// Makes the best change that widens a triangle. Returns whether there was one.
     fn widen(&mut self, t: u32) -> bool {
-        if !self.sheet.is_there(t) || sharpest(self.sheet.corners(t)) <= WIDE {
+        if !self.sheet.exists(t) || largest_cosine(self.sheet.corners(t)) <= MAX_COSINE {
             return false;
         }
         let mut changes: Vec<(f64, Change)> = Vec::new();
         for change in self.changes(t) {
-            let before = change.gone.iter().map(|&t| sharpest(self.sheet.corners(t))).fold(-1.0, f64::max);
-            let after = self.sheet.corners_after(&change).map(sharpest).fold(-1.0, f64::max);
+            let before =
+                change.removed.iter().map(|&t| largest_cosine(self.sheet.corners(t))).fold(-1.0, f64::max);
+            let after = self.sheet.corners_after(&change).map(largest_cosine).fold(-1.0, f64::max);
             if after < before - GAIN {
                 changes.push((after, change));
             }
@@ -119,12 +120,14 @@ impl Evening<'_> {
         let mut changes = Vec::new();
         for k in 0..3 {
             let [u, v] = [corners[k], corners[(k + 1) % 3]];
-            changes.extend(self.sheet.turned(u, v));
+            changes.extend(self.sheet.flipped(u, v));
             let ends = [u, v].map(|v| self.sheet.points[v.index()]);
             let middle = self.on_old(scale(add(ends[0], ends[1]), 0.5));
             let places = [(v, u, Some(ends[0])), (u, v, Some(ends[1])), (u, v, middle)];
             changes.extend(
-                places.into_iter().filter_map(|(gone, kept, place)| self.sheet.joined(gone, kept, place?)),
+                places
+                    .into_iter()
+                    .filter_map(|(removed, kept, place)| self.sheet.collapsed(removed, kept, place?)),
             );
             let to = sub(self.sheet.middle(u), ends[0]);
             let places = STEPS.map(|step| self.on_old(add(ends[0], scale(to, step))));
@@ -141,7 +144,7 @@ impl Evening<'_> {
     /// Those that close a hole are not, and stay as they are.
     fn is_allowed(&self, change: &Change) -> bool {
         let of = |t: &u32| self.sheet.triangles[*t as usize];
-        if change.gone.iter().flat_map(of).any(|v| self.is_held[v.index()])
+        if change.removed.iter().flat_map(of).any(|v| self.is_held[v.index()])
             || !self.sheet.keeps_facing(change)
         {
             return false;
