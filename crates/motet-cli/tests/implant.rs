@@ -138,8 +138,8 @@ fn arrays_begin_in_devices_with_what_is_given() {
         assert!(stderr(&folder.motet(words).assert().code(2)).contains(what), "{value}");
     };
     refused("x=1", "no array of that name");
-    refused("u=1", "1 numbers for 3 components");
-    refused("c=0.5", "none of its values");
+    refused("u=1", "got 1 numbers for 3 components");
+    refused("c=0.5", "the array cannot hold");
     refused("region=3", "holds the regions");
     refused("c=a", "no finite number");
 }
@@ -217,7 +217,7 @@ fn bad_input_ends_with_the_reason_and_nothing_written() {
     };
     refused(&["host.vtu", "far.vtu"], 3, &["far.vtu", "lies outside of the host"]);
     refused(&["host.vtu", "wall.vtu"], 3, &["wall.vtu", "`wall` keeps its tets", "at ("]);
-    refused(&["host.vtu", "large.vtu"], 3, &["large.vtu", "holds the whole host"]);
+    refused(&["host.vtu", "large.vtu"], 3, &["large.vtu", "contains the whole host"]);
     refused(&["host.vtu", "open.stl"], 3, &["open.stl", "the surface ends at the edge"]);
     refused(&["host.vtu", "ball.vtu", "ball.vtu"], 3, &["ball"]);
     refused(&["coil.stl", "ball.vtu"], 3, &["coil.stl", "no linear tetrahedra"]);

@@ -181,7 +181,7 @@ fn a_box_through_a_wall_is_cut_off_or_kept() {
     }
     let own = put(&host, &[device(Inside::Own)], &strict()).unwrap_err();
     assert!(
-        own.what().contains("keeps its tets, and a wall of the host meets them") && own.place().is_some()
+        own.what().contains("keeps its tets, but a wall of the host meets them") && own.place().is_some()
     );
 }
 
@@ -309,7 +309,7 @@ fn a_device_that_crosses_itself_goes_through_a_wall_with_a_new_surface() {
 fn what_takes_all_the_room_or_holds_cells_of_other_kinds_is_refused() {
     let host = room(4);
     let all = filled(room(2), "all");
-    assert!(put(&host, &[all], &strict()).unwrap_err().what().contains("takes all the room"));
+    assert!(put(&host, &[all], &strict()).unwrap_err().what().contains("leaves nothing of the host"));
     let mut with_wire = room(4);
     let at = |p: Point| VertexId::new(with_wire.points.iter().position(|q| distance(*q, p) < 1e-9).unwrap());
     let ends = [at([0.0, 0.0, 1.5]), at([0.75, 0.0, 1.5])];
@@ -350,7 +350,7 @@ fn random_placements_give_a_sound_mesh_or_a_named_refusal() {
             }
             Err(error) => {
                 assert!(error.remedy_text().is_some() && error.place().is_some(), "{name}: {error}");
-                let is_known = ["keeps its tets, and", "lies outside of the host"];
+                let is_known = ["keeps its tets, but", "lies outside of the host"];
                 let reason = is_known.iter().find(|reason| error.what().contains(**reason));
                 *reasons.entry(reason.map_or(error.to_string(), |r| (*r).to_owned())).or_default() += 1;
             }

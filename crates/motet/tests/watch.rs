@@ -18,7 +18,7 @@ const VERBS: &[(&str, Verb)] = &[
     ("joining tets", repair),
     ("joining tets", bring_to_sizes),
     ("choosing points inside", fill),
-    ("making a surface anew", conform),
+    ("building a new surface", conform),
     ("refining", refine),
     ("setting a motion up", set_up),
     ("trying methods", try_methods),

@@ -68,10 +68,10 @@ pub(super) fn check_rooms(
         if let Some(own) = room.iter().find(|k| devices.insides[**k as usize] == Inside::Own) {
             let other = room.iter().find(|k| *k != own).copied().unwrap_or_default();
             let what =
-                format!("the device `{}` keeps its tets, and `{}` lies in its room", name(*own), name(other));
+                format!("the device `{}` keeps its tets, but `{}` lies inside it", name(*own), name(other));
             return Err(Error::input(what)
                 .at(format!("device {own}"))
-                .remedy("let devices that hold others be filled, and give each device once"));
+                .remedy("make devices that contain others filled, and give each device only once"));
         }
     }
     let with_room: BTreeSet<u32> = within.iter().filter_map(device_of).collect();
@@ -80,11 +80,9 @@ pub(super) fn check_rooms(
         |k: u32| devices.insides[k as usize] == Inside::Hollow && positions.crosses_boundary[k as usize];
     match (0..devices.names.len() as u32).find(|&k| !with_room.contains(&k) && !is_open(k)) {
         None => Ok(()),
-        Some(k) => {
-            Err(Error::input(format!("all the room of the device `{}` is that of later ones", name(k)))
-                .at(format!("device {k}"))
-                .remedy("give each device once, those that hold others first"))
-        }
+        Some(k) => Err(Error::input(format!("later devices take all the space of the device `{}`", name(k)))
+            .at(format!("device {k}"))
+            .remedy("give each device only once, and those that contain others first")),
     }
 }
 

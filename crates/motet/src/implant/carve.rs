@@ -104,7 +104,8 @@ impl Carved {
         let Some(&[first, _]) = crossings.first() else { return Ok(()) };
         let place = format_point(triangle::centroid(faces[first as usize].map(|v| host.points[v.index()])));
         Err(Error::input(format!(
-            "tets of the host overlap where devices lie: {} pairs of facets of what stays round them cross each other; {n_inverted} of its {} tets are flat or inverted",
+            "tets of the host overlap where the devices lie: {} pairs of facets around the devices cross each \
+             other; {n_inverted} of the host's {} tets are flat or inverted",
             crossings.len(),
             host.tets.len()
         ))

@@ -155,9 +155,9 @@ fn regions(device: &Device, part: &TetMesh) -> (Vec<i32>, Vec<String>) {
 
 fn tets(device: &Device) -> Result<TetMesh> {
     let part = TetPart::of(&device.mesh).map_err(|e| {
-        Error::input(format!("the device `{}` is to keep its tets, and has none", device.name))
+        Error::input(format!("the device `{}` is to keep its tets, but has none", device.name))
             .at(e.what().to_owned())
-            .remedy("let it be filled, or hollow")
+            .remedy("make it filled or hollow")
     })?;
     let kinds = device.mesh.cells.kinds().iter();
     let n_solid = kinds.filter(|kind| kind.dim() == Some(3)).count();
@@ -165,11 +165,11 @@ fn tets(device: &Device) -> Result<TetMesh> {
         return Ok(part.mesh);
     }
     let what = format!(
-        "the device `{}` has {} volume cells that are no linear tets",
+        "the device `{}` has {} volume cells that are not linear tets",
         device.name,
         n_solid - part.mesh.tets.len()
     );
-    Err(Error::input(what).remedy("give one of tets alone, or let it be filled"))
+    Err(Error::input(what).remedy("give a device made only of tets, or make it filled"))
 }
 
 fn check(

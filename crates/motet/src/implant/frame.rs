@@ -270,11 +270,12 @@ impl Frame {
                 || sides(face.vertices).iter().any(|edge| edges.contains(edge) && !known.contains(edge))
         };
         let Some(lost) = carved.faces.iter().find(is_lost) else { return Ok(()) };
-        Err(Error::input(
-            "a device meets a wall where cells of other kinds than tets are, which cannot be divided",
-        )
-        .at(format!("triangle at {}", format_point(centroid(lost.vertices.map(|v| cut.points[v.index()])))))
-        .remedy("move the device, or leave those cells out of the host"))
+        Err(Error::input("a device meets a wall at cells that are not tets, which cannot be divided")
+            .at(format!(
+                "triangle at {}",
+                format_point(centroid(lost.vertices.map(|v| cut.points[v.index()])))
+            ))
+            .remedy("move the device, or remove those cells from the host"))
     }
 
     fn take(&mut self, cut: &Cut, walls: Vec<Wall>) {
@@ -297,9 +298,9 @@ impl Frame {
 fn own_tets_cut(devices: &Devices, k: u32, t: usize, position: Position) -> Error {
     let is_met = position == Position::AtWall;
     let why = if is_met { "a wall of the host meets them" } else { "a part of it lies outside of the host" };
-    Error::input(format!("the device `{}` keeps its tets, and {why}", devices.names[k as usize]))
+    Error::input(format!("the device `{}` keeps its tets, but {why}", devices.names[k as usize]))
         .at(format!("triangle of the device at {}", format_point(centroid(devices.corners(t)))))
-        .remedy("let it be filled, or hollow: then it is cut where it meets the wall")
+        .remedy("make it filled or hollow: then it is cut where it meets the wall")
 }
 
 /// The signed volume between a triangle and one point common to all.

@@ -60,7 +60,7 @@ pub fn implant(
 ) -> Result<Implanted> {
     options.check()?;
     if devices.is_empty() {
-        return Err(Error::options("no device to put in").remedy("give one"));
+        return Err(Error::options("there is no device to put in").remedy("give at least one device"));
     }
     let mut watch = Instant::now();
     let mut lap = || std::mem::replace(&mut watch, Instant::now()).elapsed().as_secs_f64();
@@ -82,7 +82,7 @@ pub fn implant(
     report.seconds.adapt = lap();
 
     let part = TetPart::of(host_now)?.with_lines_held();
-    let (carved, gap) = make_cavity(&part, &joined, options, threads, &mut report, &mut lap)?;
+    let (carved, gap) = carve_and_fill(&part, &joined, options, threads, &mut report, &mut lap)?;
     report.carved = carved.fates.iter().filter(|fate| **fate == Fate::Removed).count();
 
     let mut draft = Draft::new(&part.mesh, &carved, &gap);
@@ -106,8 +106,9 @@ pub fn implant(
     report.seconds.check = lap();
     if !report.is_valid() {
         let told: Vec<String> = report.defects.iter().map(Defect::to_string).collect();
-        return Err(Error::input(format!("what came of it is no mesh: {}", told.join(", "))).remedy(
-            "see with `motet info` whether the host is one; if it is, please tell the authors of motet",
+        return Err(Error::input(format!("the result is not a valid mesh: {}", told.join(", "))).remedy(
+            "check the host with `motet info`; if the host is valid, please report this to the authors of \
+             motet",
         ));
     }
     Ok(Implanted { mesh, history, report })
@@ -132,7 +133,7 @@ fn with_surfaces(
 }
 
 /// Carves the host as far as necessary, and fills the cavity.
-fn make_cavity(
+fn carve_and_fill(
     part: &TetPart,
     devices: &Devices,
     options: &Options,
@@ -144,7 +145,7 @@ fn make_cavity(
     let mut carved = Carved::new(&part.mesh, devices, &nearest, options, threads);
     let mut divided = Vec::new();
     for _ in 0..=RETRIES {
-        threads.watch().go_on("making room for devices", 0, 0)?;
+        threads.watch().go_on("making space for devices", 0, 0)?;
         carved.check_overlaps(&part.mesh, threads)?;
         report.seconds.carve += lap();
         let filled = Gap::fill(&part.mesh, devices, &carved, options, threads)?;
@@ -159,11 +160,15 @@ fn make_cavity(
     }
     let place = divided.first().map(|face| centroid(face.map(|v| part.mesh.points[v.index()])));
     Err(Error::input(format!(
-        "the room between the host and the devices could not be filled without dividing {} facets that stay",
+        "the space between the host and the devices could not be filled without dividing {} facets that must \
+         stay",
         divided.len()
     ))
     .at(place.map_or_else(String::new, |place| format!("one at {}", format_point(place))))
-    .remedy("carve farther (--carve) and reach farther (--reach), or refine the host there first (--adapt all, --size)"))
+    .remedy(
+        "carve farther (--carve) and reach farther (--reach), or refine the host there first (--adapt all, \
+         --size)",
+    ))
 }
 
 /// Replaces ids of tets of the zone by ids of cells, and separates bad tets of the host from new ones.

@@ -27,7 +27,7 @@ pub(super) struct Names {
 }
 
 impl Names {
-    pub(super) fn new(host: &Mesh, devices: &Devices, new: &[([VertexId; 3], Patch)]) -> Self {
+    pub(super) fn new(host: &Mesh, devices: &Devices, new_triangles: &[([VertexId; 3], Patch)]) -> Self {
         let [regions, patches] = [host.regions(), host.patches()];
         let last = |labels: &Option<Labels>, names: &BTreeMap<i32, String>| {
             let used = labels.as_ref().and_then(|labels| labels.ids.iter().max().copied()).unwrap_or(0);
@@ -50,7 +50,7 @@ impl Names {
         let first = last(&patches, &host.label_names.patches) + 1;
         let n = devices.names.len();
         let mut contacts = vec![None; n];
-        let met: BTreeSet<Patch> = new.iter().map(|(_, patch)| *patch).collect();
+        let met: BTreeSet<Patch> = new_triangles.iter().map(|(_, patch)| *patch).collect();
         let met = met.iter().filter_map(|patch| match patch {
             Patch::Contact(k) => Some(*k as usize),
             _ => None,

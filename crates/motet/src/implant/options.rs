@@ -96,7 +96,8 @@ pub struct Options {
     /// the host; `None`: in the host that of the devices, on new surfaces what their tolerance requires.
     /// Default: `None`.
     pub size: Option<f64>,
-    /// How much sizes grow per unit of distance from the devices, above 0 and at most [`MOST_GROWTH`]. Default: 0.5.
+    /// How much sizes grow per unit of distance from the devices, above 0 and at most [`MOST_GROWTH`].
+    /// Default: 0.5.
     pub growth: f64,
     /// What part of the host is refined before it is carved. Default: [`Adapt::Walls`].
     pub adapt: Adapt,
@@ -139,32 +140,38 @@ impl Options {
         let refused = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
         if let Some(size) = self.size.filter(|size| !(*size > 0.0 && *size <= LARGEST)) {
             return refused(
-                format!("a size of {size}, expected a length above 0 and no more than {LARGEST:e}"),
+                format!("the size is {size}, expected a length above 0 and at most {LARGEST:e}"),
                 "leave it out",
             );
         }
         if let Some(stray) = self.stray.filter(|stray| !(*stray >= 0.0 && *stray <= LARGEST)) {
             return refused(
-                format!("surfaces that may stray by {stray}, expected a length from 0"),
+                format!("surfaces may stray by {stray}, expected a length of at least 0"),
                 "leave it out",
             );
         }
         if let Interface::Conform { tolerance: Some(tolerance) } = self.interface
             && !(tolerance > 0.0 && tolerance <= LARGEST)
         {
-            return refused(format!("a tolerance of {tolerance}, expected a length above 0"), "leave it out");
+            return refused(
+                format!("the tolerance is {tolerance}, expected a length above 0"),
+                "leave it out",
+            );
         }
         if !(self.growth > 0.0 && self.growth <= MOST_GROWTH) {
-            let what =
-                format!("sizes that grow by {}, expected more than 0 and at most {MOST_GROWTH}", self.growth);
+            let what = format!(
+                "the growth of sizes is {}, expected more than 0 and at most {MOST_GROWTH}",
+                self.growth
+            );
             return refused(what, "0.5 is the default");
         }
         if !(self.carve > 0.0 && self.carve <= self.reach && self.reach <= LARGEST) {
             let what = format!(
-                "tets within {} of their edges are to be replaced, and those beyond {} to stay",
+                "tets within {} edge lengths of a device are to be replaced, and those beyond {} edge lengths \
+                 to stay",
                 self.carve, self.reach
             );
-            return refused(what, "give numbers above 0, the second not below the first");
+            return refused(what, "give numbers above 0, the second at least as large as the first");
         }
         self.improve.check()
     }

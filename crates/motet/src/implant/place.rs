@@ -30,13 +30,13 @@ pub(super) fn check_inside(
     points.extend(host.tets.first().map(|tet| host.points[tet[0].index()]));
     let query = VertexId::new(points.len() - 1);
     if inside(&points, &[query], &[], &devices.triangles, &[], threads)[0] {
-        return Err(Error::input(format!("the device `{name}` holds the whole host"))
+        return Err(Error::input(format!("the device `{name}` contains the whole host"))
             .at(place)
-            .remedy("give the host first, then the device; and both in the same unit"));
+            .remedy("give the host first, then the device, both in the same unit"));
     }
     Err(Error::input(format!("the device `{name}` lies outside of the host"))
         .at(place)
-        .remedy("`motet info` tells where each lies; both have to be in the same unit"))
+        .remedy("`motet info` shows where each lies; both must be in the same unit"))
 }
 
 /// Refuses devices that leave nothing of the host.
@@ -48,6 +48,6 @@ pub(super) fn check_left(devices: &Devices, is_left: bool) -> Result<()> {
         return Ok(());
     }
     let name = devices.names.first().map_or("", String::as_str);
-    Err(Error::input(format!("the device `{name}` takes all the room of the host"))
-        .remedy("give the host first, then the device; and both in the same unit"))
+    Err(Error::input(format!("the device `{name}` leaves nothing of the host"))
+        .remedy("give the host first, then the device, both in the same unit"))
 }

@@ -157,7 +157,7 @@ impl Report {
             (n_inverted > 0).then(|| format!("{n_inverted} tets are inverted or flat")),
             of_devices("triangles of devices are divided", &is_divided),
             of_devices("surfaces are farther from their devices than the tolerance", &is_far),
-            (n_unforced > 0).then(|| format!("{n_unforced} bad tets are left that no wall forces")),
+            (n_unforced > 0).then(|| format!("{n_unforced} bad tets are left that are not forced by a wall")),
         ])
     }
 

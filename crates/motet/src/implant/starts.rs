@@ -32,20 +32,20 @@ pub(super) fn check(host: &Mesh, starts: &Starts) -> Result<()> {
         }
         if host.regions().is_some_and(|regions| regions.array == *name) {
             return refused(
-                "it holds the regions, and those of devices are their own".into(),
+                "the array holds the regions, and devices have regions of their own".into(),
                 "leave it out".into(),
             );
         }
         for field in fields {
             if field.components != value.len() {
-                let what = format!("{} numbers for {} components", value.len(), field.components);
+                let what = format!("got {} numbers for {} components", value.len(), field.components);
                 return refused(what, "give a number for each component".into());
             }
             let mut one = field.pick(field.n_rows().checked_sub(1));
             if one.n_rows() > 0 && !value.iter().enumerate().all(|(k, x)| one.values.set_f64(k, *x)) {
                 return refused(
-                    format!("{value:?} is none of its values"),
-                    "give what its type can hold".into(),
+                    format!("the array cannot hold {value:?}"),
+                    "give numbers that its type can hold".into(),
                 );
             }
         }

@@ -71,21 +71,20 @@ pub(super) fn resurface(
     let mut edge = size.unwrap_or(by_tolerance.min(EDGE_OVER_RADIUS * old.radius));
     let shortest = shortest_edge(&old.surface);
     if edge < shortest {
-        let what = format!(
-            "the device `{name}` needs a lattice with edges of {edge:.2e}, which has far too many cubes"
-        );
+        let what =
+            format!("the device `{name}` needs a lattice with edges of {edge:.2e}, which has too many cubes");
         let least = (shortest / CHORD).powi(2) / (8.0 * old.radius);
-        let by_size = format!("a size of {shortest:.2e} at least");
+        let by_size = format!("a size of at least {shortest:.2e}");
         // No tolerance leads to edges longer than a fraction of the radius.
         let remedy = match size.is_none() && EDGE_OVER_RADIUS * old.radius >= shortest {
-            true => format!("give a tolerance of {least:.2e} at least, or {by_size}"),
+            true => format!("give a tolerance of at least {least:.2e}, or {by_size}"),
             false => format!("give {by_size}"),
         };
         return Err(Error::input(what).at("its surface").remedy(remedy));
     }
     let mut best: Option<(Skin, Fit)> = None;
     for k in 0..TRIES {
-        threads.watch().go_on("making a surface anew", k, TRIES)?;
+        threads.watch().go_on("building a new surface", k, TRIES)?;
         let lattice = Cubes::near(&old.surface, edge).lattice();
         let skin = Skin::new(lattice, &old, threads);
         let fit = old.fit(&skin, tolerance, threads);

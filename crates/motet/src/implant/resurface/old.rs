@@ -31,9 +31,9 @@ pub(super) struct OriginalSurface {
 }
 
 pub(super) fn encloses_nothing(name: &str) -> Error {
-    Error::input(format!("the device `{name}` goes round nothing"))
+    Error::input(format!("the surface of the device `{name}` encloses no volume"))
         .at("its surface")
-        .remedy("close it as far as that matters")
+        .remedy("close the larger openings of the surface")
 }
 
 impl OriginalSurface {
@@ -44,9 +44,11 @@ impl OriginalSurface {
     pub(super) fn new(mut surface: Surface, name: &str, threads: &Threads) -> Result<Self> {
         let off = surface.vertices().into_iter().find(|v| !in_range(surface.points[v.index()]));
         if let Some(v) = off {
-            return Err(Error::input(format!("the device `{name}` has a coordinate that is no number"))
-                .at(format!("point {v}"))
-                .remedy("give the point a place, or remove it with its triangles"));
+            return Err(Error::input(format!(
+                "the device `{name}` has a coordinate that is not finite or too large"
+            ))
+            .at(format!("point {v}"))
+            .remedy("correct the point, or remove it with its triangles"));
         }
         surface.triangles = renamed(&surface.triangles, &firsts_at_place(&surface.points));
         face(&mut surface, threads)?;

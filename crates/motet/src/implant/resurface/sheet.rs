@@ -102,7 +102,8 @@ impl Sheet {
         Some(Change { removed, added: vec![[c, u, d], [d, v, c]], moved: None, normals: vec![mean; 2] })
     }
 
-    /// Collapses an edge: `removed` becomes `kept`, which moves to `place`. `None` if that would fold triangles.
+    /// Collapses an edge: `removed` becomes `kept`, which moves to `place`. `None` if that would fold
+    /// triangles.
     pub(super) fn collapsed(&self, removed: VertexId, kept: VertexId, place: Point) -> Option<Change> {
         let [a, b] = [removed, kept].map(|v| self.neighbors(v));
         let common = a.iter().filter(|v| b.binary_search(v).is_ok()).count();
