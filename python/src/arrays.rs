@@ -52,13 +52,16 @@ impl<'a, 'py, T: Element, D: Dimension> FromPyObject<'a, 'py> for Written<'py, T
     fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
         let array = array::<T, D>(given)?;
         array.try_readwrite().map(Self).map_err(|failed| {
-            input(format!("an array that is to be written cannot be: {failed}; give one that is writeable and shares no memory with another"))
+            input(format!(
+                "the output array cannot be written: {failed}; it must be writeable and share no memory with \
+                 another array"
+            ))
         })
     }
 }
 
 fn written() -> PyErr {
-    input("an array that is to be read is being written by this or another call; give it memory of its own")
+    input("an input array is being written by this or another call; give it its own memory")
 }
 
 /// An array with the required element type and number of axes.
@@ -103,7 +106,7 @@ pub(crate) fn vertices(array: &Ids<'_>, n_points: usize) -> PyResult<Vec<VertexI
     let ids: Vec<VertexId> = array.as_array().iter().map(|&v| VertexId(v)).collect();
     match ids.iter().find(|v| v.index() >= n_points) {
         None => Ok(ids),
-        Some(v) => Err(input(format!("vertex {v} is named, but the mesh has {n_points} points"))),
+        Some(v) => Err(input(format!("vertex {v} is out of range: the mesh has {n_points} points"))),
     }
 }
 
@@ -150,8 +153,13 @@ macro_rules! across {
             }
             match array.extract::<Vec<String>>() {
                 Ok(texts) => Ok(Field::scalars(name, texts)),
-                Err(_) => Err(raised(motet::Error::input(format!("{} is no array of numbers, nor a list of texts", array.get_type()))
-                    .at(format!("array {name}")))),
+                Err(_) => Err(raised(
+                    motet::Error::input(format!(
+                        "{} is neither an array of numbers nor a list of strings",
+                        array.get_type()
+                    ))
+                    .at(format!("array {name}")),
+                )),
             }
         }
     };

@@ -65,7 +65,7 @@ fn with_polyhedra(kinds: &[CellKind], lists: &Csr<VertexId>, faces: &[u32]) -> P
         let vertices = vertices.iter().copied();
         if kind != CellKind::POLYHEDRON {
             if let Some(n) = kind.n_vertices().filter(|&n| n != vertices.len()) {
-                return Err(input(format!("cell {i}: {n} vertices are expected, {} came", vertices.len())));
+                return Err(input(format!("cell {i}: expected {n} vertices, got {}", vertices.len())));
             }
             cells.push(kind, vertices);
             continue;

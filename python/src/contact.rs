@@ -71,7 +71,7 @@ impl Contact {
             }
             let n = points.len() as u32;
             if let Some(v) = triangles.iter().find(|&&v| v >= n) {
-                return Err(input(format!("{name}: vertex {v} is named, but there are {n} points")));
+                return Err(input(format!("{name}: vertex {v} is out of range: there are {n} points")));
             }
             let triangles = triangles.rows().into_iter().map(|t| [t[0], t[1], t[2]].map(VertexId)).collect();
             let room = match is_room {

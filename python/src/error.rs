@@ -72,7 +72,7 @@ pub(crate) fn fault(panic: &(dyn Any + Send)) -> PyErr {
 }
 
 fn internal(py: Python<'_>, what: &str) -> PyResult<PyErr> {
-    let message = format!("a fault of motet itself: {what}");
+    let message = format!("internal error in motet: {what}");
     Ok(PyErr::from_value(class(py, INTERNAL)?.call1((message, what))?))
 }
 

@@ -3,12 +3,16 @@
 use motet::base::{CellId, Id, VertexId};
 use motet::mesh::history::{self, Origins};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays::{from_field, ids, to_field};
 use crate::error::{called, input};
 use crate::report::report;
 use crate::words::one_of;
 use motet::mesh::history::Rule;
+
+/// A new mesh, its history, the report, and why the requested result was not reached.
+pub(crate) type Changed<'py> = (Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>);
 
 /// A history.
 #[pyclass(frozen, module = "motet._motet")]
@@ -72,7 +76,7 @@ impl History {
             (true, Some(rule)) => self.0.transfer_points_by(&field, rule),
             (false, Some(rule)) => self.0.transfer_cells_by(&field, rule),
         });
-        from_field(py, new?.ok_or_else(|| input("the rule leaves nothing"))?)
+        from_field(py, new?.ok_or_else(|| input("the rule drops the array"))?)
     }
 
     /// The whole history, as dictionaries and lists.
@@ -84,7 +88,7 @@ impl History {
     #[staticmethod]
     fn of_state(state: &Bound<'_, PyAny>) -> PyResult<Self> {
         let restored = pythonize::depythonize(state);
-        restored.map(Self).map_err(|failed| input(format!("is no history: {failed}")))
+        restored.map(Self).map_err(|failed| input(format!("not a history: {failed}")))
     }
 
     fn __repr__(&self) -> String {
@@ -104,7 +108,7 @@ impl History {
         if !fits(self.0.vertices.len(), later.0.vertices.n_old())
             || !fits(self.0.cells.len(), later.0.cells.n_old())
         {
-            return Err(input("the later history does not start from the mesh that the first one ends with"));
+            return Err(input("the later history does not start from the resulting mesh of the first"));
         }
         Ok(Self(self.0.then(&later.0)))
     }

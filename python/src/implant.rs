@@ -8,8 +8,8 @@ use motet::remesh;
 use pyo3::prelude::*;
 
 use crate::border::{Given, parts};
-use crate::history::History;
-use crate::report::{Changed, quality, report};
+use crate::history::{Changed, History};
+use crate::report::{quality, report};
 use crate::watch::watched;
 use crate::words::{one_of, rules};
 

@@ -19,8 +19,8 @@ use serde::Serialize;
 use crate::arrays::Read;
 use crate::border::{Given, parts};
 use crate::error::{OrRaise, called, input, options};
-use crate::history::History;
-use crate::report::{Changed, report};
+use crate::history::{Changed, History};
+use crate::report::report;
 use crate::watch::watched;
 use crate::words::{rules, threads};
 

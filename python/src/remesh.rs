@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 
 use crate::border::{Given, parts};
 use crate::error::OrRaise;
-use crate::history::History;
-use crate::report::{Changed, quality, report};
+use crate::history::{Changed, History};
+use crate::report::{quality, report};
 use crate::watch::watched;
 use crate::words::{one_of, rules};
 

@@ -4,13 +4,7 @@ use motet::Mesh;
 use motet::base::Threads;
 use motet::mesh::Qualities;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use serde::Serialize;
-
-use crate::history::History;
-
-/// A new mesh, its history, the report, and why the requested result was not reached.
-pub(crate) type Changed<'py> = (Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>);
 
 /// A report as dictionaries, lists and numbers.
 pub(crate) fn report<'py>(py: Python<'py>, told: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {

@@ -22,7 +22,7 @@ pub(crate) fn one_of<T: Copy>(option: &str, word: &str, known: &[(&str, T)]) -> 
         let names: Vec<String> = known.iter().map(|(name, _)| format!("{name:?}")).collect();
         raised(
             Error::options(format!("{option}={word:?} means nothing"))
-                .remedy(format!("give one of {}", names.join(", "))),
+                .remedy(format!("choose one of {}", names.join(", "))),
         )
     })
 }

@@ -41,7 +41,7 @@ impl MotetOutcome {
     }
 
     fn history(&self) -> Result<&History> {
-        self.history.as_ref().ok_or_else(|| Error::options("a mesh that was made of surfaces has no history"))
+        self.history.as_ref().ok_or_else(|| Error::options("a mesh made from surfaces has no history"))
     }
 }
 
@@ -108,7 +108,7 @@ pub(crate) unsafe extern "C" fn motet_outcome_transfer(
             (0 | 2, false) => Rule::Conserve,
             (2, true) => Rule::Linear,
             (1, _) => Rule::Inherit,
-            _ => return Err(Error::options(format!("there is no rule {rule}"))),
+            _ => return Err(Error::options(format!("unknown rule {rule}"))),
         };
         let new = match is_on_points {
             true => history.transfer_points_by(&field, rule)?,
@@ -152,7 +152,7 @@ pub(crate) fn surface_rule(rule: i32, distance: f64) -> Result<SurfaceRule> {
         0 => Ok(SurfaceRule::Keep),
         1 => Ok(SurfaceRule::Adapt { distance }),
         2 => Ok(SurfaceRule::Loose { distance }),
-        other => Err(Error::options(format!("there is no rule {other} for surfaces"))),
+        other => Err(Error::options(format!("unknown surface rule {other}"))),
     }
 }
 

@@ -40,7 +40,7 @@ impl MotetError {
     }
 
     fn internal(what: &str) -> Self {
-        let message = format!("a fault of motet itself: {what}");
+        let message = format!("internal error in motet: {what}");
         Self {
             status: INTERNAL,
             message: text(message),

@@ -8,7 +8,7 @@ use motet::base::{Point, Threads, VertexId};
 use motet::{Error, Result};
 
 fn missing(what: &str) -> Error {
-    Error::options(format!("{what} is NULL")).remedy("motet.h says what each call needs")
+    Error::options(format!("{what} is NULL")).remedy("motet.h describes what each call needs")
 }
 
 /// A count passed from C.
@@ -26,7 +26,7 @@ pub(crate) fn optional(x: f64) -> Option<f64> {
 pub(crate) fn expect(n: i64, expected: usize, what: &str) -> Result<()> {
     match usize::try_from(n) == Ok(expected) {
         true => Ok(()),
-        false => Err(Error::options(format!("room for {n} {what} is given, expected {expected}"))),
+        false => Err(Error::options(format!("space for {n} {what} is given, expected {expected}"))),
     }
 }
 
@@ -54,7 +54,7 @@ fn stride(stride: i64, what: &str) -> Result<usize> {
     match usize::try_from(stride) {
         Ok(stride) if stride >= 3 => Ok(stride),
         _ => Err(Error::options(format!("{what}: a stride of {stride}, expected 3 or more"))
-            .remedy("3 where rows lie end to end")),
+            .remedy("3 for contiguous rows")),
     }
 }
 
@@ -114,7 +114,7 @@ pub(crate) fn text<'a>(start: *const c_char, what: &str) -> Result<&'a str> {
     }
     // SAFETY: the header requires a text that ends with a zero.
     let text = unsafe { CStr::from_ptr(start) }.to_str();
-    text.map_err(|_| Error::options(format!("{what} is no UTF-8")))
+    text.map_err(|_| Error::options(format!("{what} is not valid UTF-8")))
 }
 
 /// Several texts passed from C.
@@ -205,7 +205,7 @@ pub(crate) fn sized<T: Versioned>(given: *const T) -> Result<T> {
     // SAFETY: the size is the first member of each of these structs.
     let size = unsafe { given.cast::<usize>().read() };
     if size < size_of::<usize>() {
-        return Err(Error::options("a struct of options without its size").remedy("call its _init first"));
+        return Err(Error::options("a struct of options has no size").remedy("call its _init first"));
     }
     // SAFETY: the program guarantees that this many bytes are there; the trait, that they may be copied.
     unsafe {
@@ -238,7 +238,7 @@ pub(crate) fn threads(n: i32) -> Result<Threads> {
 pub(crate) fn vertex(id: i32, n_points: usize, what: &str) -> Result<VertexId> {
     match usize::try_from(id) {
         Ok(v) if v < n_points => Ok(VertexId::new(v)),
-        _ => Err(Error::input(format!("vertex {id} is named, but there are {n_points} points")).at(what)),
+        _ => Err(Error::input(format!("vertex {id} is out of range: there are {n_points} points")).at(what)),
     }
 }
 

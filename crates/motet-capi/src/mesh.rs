@@ -62,7 +62,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_add_cells(
                 "cells of kind {} differ in their number of vertices",
                 kind.0
             ))
-            .remedy("give them by a file"));
+            .remedy("read them from a file"));
         };
         let n = count(n, "cells")?;
         let all = values(vertices, n.checked_mul(of_each).ok_or_else(|| too_many(n))?, "vertices")?;
@@ -86,9 +86,9 @@ fn too_many(n: usize) -> Error {
 }
 
 fn kind(kind: i32) -> Result<CellKind> {
-    u8::try_from(kind).map(CellKind).map_err(|_| {
-        Error::options(format!("there is no kind of cell {kind}")).remedy("give one of VTK's numbers")
-    })
+    u8::try_from(kind)
+        .map(CellKind)
+        .map_err(|_| Error::options(format!("unknown cell kind {kind}")).remedy("give one of VTK's numbers"))
 }
 
 #[unsafe(no_mangle)]
@@ -177,7 +177,7 @@ pub(crate) fn field(name: &str, start: *const f64, n: i64, components: i32) -> R
     let components =
         components.ok_or_else(|| Error::options("an array has 1 component or more").at(name.to_owned()))?;
     let n = count(n, "rows")?.checked_mul(components);
-    let n = n.ok_or_else(|| Error::options("more values than there is memory"))?;
+    let n = n.ok_or_else(|| Error::options("more values than fit into memory"))?;
     Ok(Field { name: name.to_owned(), components, values: values(start, n, "values")?.to_vec().into() })
 }
 
@@ -460,7 +460,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_summary(
 /// A report as JSON text.
 pub(crate) fn json(told: &impl serde::Serialize) -> Result<CString> {
     let text = serde_json::to_string(told);
-    text.map(c_text).map_err(|e| Error::input(format!("a report that cannot be written: {e}")))
+    text.map(c_text).map_err(|e| Error::input(format!("the report cannot be serialized: {e}")))
 }
 
 #[unsafe(no_mangle)]

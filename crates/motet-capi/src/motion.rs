@@ -83,9 +83,8 @@ impl MotetMoverOptions {
 /// The extent of the rigid layer, if there is one.
 pub(crate) fn extent(distance: f64, cells: usize) -> Result<Option<Extent>> {
     match (optional(distance), cells > 0) {
-        (Some(_), true) => {
-            Err(Error::options("a rigid layer by a distance and by cells").remedy("give one of them"))
-        }
+        (Some(_), true) => Err(Error::options("a rigid layer is given both by a distance and by cells")
+            .remedy("give one of them")),
         (Some(distance), false) => Ok(Some(Extent::Distance(distance))),
         (None, true) => Ok(Some(Extent::Cells(cells))),
         (None, false) => Ok(None),
@@ -96,7 +95,7 @@ pub(crate) fn extent(distance: f64, cells: usize) -> Result<Option<Extent>> {
 pub(crate) fn method(number: i32, words: MethodWords) -> Result<Method> {
     words.check()?;
     let asked = usize::try_from(number).ok().and_then(|k| Method::all(words).into_iter().nth(k));
-    asked.ok_or_else(|| Error::options(format!("there is no method {number}")).remedy("MOTET_DELAUNAY is 0"))
+    asked.ok_or_else(|| Error::options(format!("unknown method {number}")).remedy("MOTET_DELAUNAY is 0"))
 }
 
 #[unsafe(no_mangle)]

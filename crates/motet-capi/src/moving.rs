@@ -380,8 +380,8 @@ pub(crate) unsafe extern "C" fn motet_moving_refine_gaps(
 ) -> i32 {
     guarded(error, || {
         if !(smallest > 0.0 && smallest.is_finite()) {
-            return Err(Error::options(format!("a smallest edge of {smallest}, expected above 0"))
-                .remedy("gaps can be as narrow as they like: say at which length dividing ends"));
+            return Err(Error::options(format!("the smallest edge length must be positive; got {smallest}"))
+                .remedy("gaps can become arbitrarily narrow: give the length at which division stops"));
         }
         let limits = refine::Limits { smallest: Some(smallest), ..refine::Limits::default() };
         let criteria = vec![Criterion::Size(Size::Array(GAP.to_owned()))];

@@ -14,7 +14,7 @@ pub(crate) fn check<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path
         io::can_write(output)?;
     }
     match inputs.into_iter().any(|input| io::is_same_file(input, output)) {
-        true => Err(Error::options(format!("the result would overwrite {what} it is made from"))
+        true => Err(Error::options(format!("the result would overwrite {what} that it is made from"))
             .in_file(output)
             .remedy("give --output another name")),
         false => Ok(()),
@@ -45,6 +45,6 @@ pub(crate) fn check_beside<'a>(
         None => Ok(()),
         Some(_) => Err(Error::new(ErrorKind::Io, "its folder does not exist")
             .in_file(path)
-            .remedy("make the folder first")),
+            .remedy("create the folder first")),
     }
 }

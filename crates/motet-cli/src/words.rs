@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 /// Parses a finite number.
 pub(crate) fn number(word: &str) -> Result<f64, String> {
     let number = word.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    number.ok_or_else(|| format!("`{word}` is no finite number"))
+    number.ok_or_else(|| format!("`{word}` is not a finite number"))
 }
 
 /// Parses a number above 0.
@@ -22,7 +22,7 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
 pub(crate) fn part(text: &str) -> Result<f64, String> {
     match number(text) {
         Ok(x) if (0.0..1.0).contains(&x) => Ok(x),
-        _ => Err("a number from 0 to below 1 is expected".into()),
+        _ => Err("a number in [0, 1) is expected".into()),
     }
 }
 
@@ -30,7 +30,7 @@ pub(crate) fn part(text: &str) -> Result<f64, String> {
 pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     match number(text) {
         Ok(x) if x >= 0.0 => Ok(x),
-        _ => Err("a number from 0 on is expected".into()),
+        _ => Err("a number of 0 or more is expected".into()),
     }
 }
 

@@ -171,7 +171,7 @@ fn odd_meshes() -> Vec<Case> {
         file("nan.vtu", &not_a_number, MOVE, 3, &["nan.vtu: ", "13"]),
         file("nan2.vtu", &not_a_number, INFO, 0, &["finite"]),
         file("inverted.vtu", &inverted, INFO, 0, &["inverted"]),
-        file("inverted_moved.vtu", &inverted, MOVE, 0, &["at first", "inverted or flat as it comes"]),
+        file("inverted_moved.vtu", &inverted, MOVE, 0, &["at first", "of the input are inverted or flat"]),
         file("flat.vtu", &flat, INFO, 0, &["flat"]),
         file("flat_moved.vtu", &flat, MOVE, 0, &["at first"]),
         file("orphan.vtu", &orphan, INFO, 0, &["orphan"]),

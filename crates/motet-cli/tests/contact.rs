@@ -159,7 +159,7 @@ fn a_room_is_found_and_reported_and_can_be_told() {
     folder.mesh("room.vtp", &block([0.0; 3], [4.0; 3]));
     folder.mesh("thing.vtp", &block([1.0; 3], [2.0; 3]));
     let call = folder.motet("contact thing.vtp room.vtp -o gaps.vtp".split(' ')).assert().success();
-    let found = "room is taken for the room of thing, 100 % of whose area lies inside";
+    let found = "room is treated as the room of thing, 100 % of whose area lies inside";
     assert!(stdout(&call).contains(found), "{}", stdout(&call));
     for words in ["", " --room room", " --method delaunay"] {
         let told = report(&folder, &format!("contact thing.vtp room.vtp -o gaps.vtp --warn 0.5{words}"));

@@ -226,6 +226,6 @@ fn bad_input_ends_with_the_reason_and_nothing_written() {
     refused(&["host.vtu", "ball.vtu", "--growth", "5"], 2, &["grow by 5"]);
     refused(&["host.vtu", "ball.vtu", "--carve", "9"], 2, &["9"]);
     refused(&["host.vtu", "ball.vtu", "--carry", "none=drop"], 2, &["none"]);
-    refused(&["host.vtu", "ball.vtu", "--stray=-1"], 2, &["a number from 0 on is expected"]);
+    refused(&["host.vtu", "ball.vtu", "--stray=-1"], 2, &["a number of 0 or more is expected"]);
     folder.motet(["implant", "host.vtu", "ball.vtu", "-o", "ball.vtu"]).assert().code(2);
 }

@@ -244,7 +244,7 @@ fn layers_grow_on_walls_and_are_told() {
     let n_volume = prisms.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)).count() as u64;
     assert_eq!((sum("tets"), sum("prisms")), (n_tets, n_volume - n_tets));
     let call = folder.motet(with(&["4,0.02,1.2"])).assert().success();
-    assert!(stdout(&call).contains("as thick as asked at 600 of 600 vertices"), "{}", stdout(&call));
+    assert!(stdout(&call).contains("as thick as requested at 600 of 600 vertices"), "{}", stdout(&call));
 }
 
 #[test]

@@ -217,7 +217,7 @@ fn a_rim_that_was_cut_by_hand_is_capped_flat_and_slides() {
     );
     let call = slide("closed.vtu", &["--slide-tolerance", "0.15"]).assert().code(0);
     assert!(
-        stdout(&call).contains("off its plane") && stdout(&call).contains("stay as far off"),
+        stdout(&call).contains("deviates from its plane") && stdout(&call).contains("keep their distances"),
         "{}",
         stdout(&call)
     );

@@ -116,7 +116,7 @@ fn the_table_tells_what_was_found_and_done() {
         "worst EAS",
         "inverted",
         "kept to the bit: ",
-        "integral off by",
+        "error of integral",
         "interpolated",
         "wrote out.vtu",
         "repaired",

@@ -156,7 +156,7 @@ fn a_run_ends_where_it_is_told_to_and_goes_on_from_there() {
     parted.motet(["run", "job.toml", "-q", "--until", "5"]).assert().code(0);
     assert_eq!(read_series(parted.path("out/moved.pvd")).unwrap().len(), 6);
     let call = parted.motet(["run", "job.toml", "--resume"]).assert().code(0);
-    assert!(stdout(&call).contains("goes on after step 5"));
+    assert!(stdout(&call).contains("resumes after step 5"));
     assert!(bytes(&whole, "out") == bytes(&parted, "out"));
     // A longer run is the same job, and so is one that is written in another way.
     let longer = JOB.replace("periods = 2", "periods = 3").replace("[time]", "# all of it\n[time]");
@@ -254,7 +254,7 @@ fn a_motion_that_cannot_be_gone_to_its_end_is_told() {
     let folder = folder();
     folder.write("job.toml", JOB.replace("shift = [3, 0, 0]", "shift = [5, 0, 0]").as_bytes());
     let call = folder.motet(["run", "job.toml"]).assert().code(4);
-    assert!(stdout(&call).contains("% of the way") && stdout(&call).contains("not to its end"));
+    assert!(stdout(&call).contains("% of the way") && stdout(&call).contains("the last one incomplete"));
     let frames = read_series(folder.path("out/moved.pvd")).unwrap();
     let last = read(&frames.last().unwrap().1).unwrap();
     assert!(mesh::check::check(&last).is_empty());
@@ -308,7 +308,7 @@ fn what_is_wrong_with_a_job_is_told_with_its_line() {
     refused("warn = 1.5", "hold = 0", &["contact.hold"]);
     refused("smooth = 2", "method = \"magic\"", &["magic", "guided"]);
     refused("smooth = 2", "rigid_layer = \"thick\"", &["rigid_layer"]);
-    refused("shift = [3, 0, 0]", "swell = 3", &["both swells and goes"]);
+    refused("shift = [3, 0, 0]", "swell = 3", &["both swell and another motion"]);
     refused("[contact]", "[[refine]]\nevery = 2\n[contact]", &["marks nothing"]);
     refused("[contact]", "[repair]\nmin_eas = 2\n[contact]", &["[repair]"]);
     refused("[contact]", "[[device]]\nfile = \"no.stl\"\n[contact]", &["no.stl"]);

@@ -34,7 +34,7 @@ impl Input {
         let is_series = io::is_series(path);
         let frames = if is_series { io::read_series(path)? } else { vec![(0.0, path.to_owned())] };
         if frames.is_empty() {
-            return Err(Error::input("a series of no frames: there is nothing to show").in_file(path));
+            return Err(Error::input("the series has no frames: there is nothing to show").in_file(path));
         }
         Ok(Self::Meshes(Meshes { file: path.to_owned(), is_series, frames }))
     }

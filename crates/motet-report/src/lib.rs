@@ -140,17 +140,17 @@ fn spent(store: &Store, paid: &BTreeSet<usize>) -> usize {
 fn check(inputs: &[PathBuf], options: &Options) -> Result<()> {
     let output = &options.output;
     if inputs.is_empty() {
-        return Err(Error::options("a report of nothing: at least one input is expected")
-            .remedy("name a mesh, a series, or a file of JSON"));
+        return Err(Error::options("no input: at least one is expected")
+            .remedy("give a mesh, a series, or a JSON file"));
     }
     let ending = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     if !matches!(ending.as_deref(), Some("html" | "htm")) {
-        return Err(Error::options(format!("a page is written as .html, not as {}", name_of(output)))
+        return Err(Error::options(format!("the name of a page must end in .html; got {}", name_of(output)))
             .in_file(output)
             .remedy("give --output a name that ends in .html"));
     }
     if inputs.iter().any(|input| io::is_same_file(input, output)) {
-        return Err(Error::options("the page would overwrite an input it is made from")
+        return Err(Error::options("the page would overwrite one of its inputs")
             .in_file(output)
             .remedy("give --output another name"));
     }

@@ -117,7 +117,7 @@ pub(crate) fn read_lines(path: &Path) -> Result<Log> {
         }
     }
     if rows.n_rows == 0 {
-        return Err(Error::input("a log without a line: an object a line is expected")
+        return Err(Error::input("the log is empty: one object per line is expected")
             .in_file(path)
             .remedy("leave it out until the run has written its first step"));
     }
@@ -138,13 +138,13 @@ fn no_json(path: &Path, line: usize, e: &serde_json::Error) -> Error {
     Error::input(format!("is no JSON: {e}"))
         .in_file(path)
         .at(format!("line {line}"))
-        .remedy("give the output of a verb with --json, or a log with an object a line that ends in .jsonl")
+        .remedy("give the --json output of a verb, or a .jsonl log with one object per line")
 }
 
 fn no_object(path: &Path, value: &Value) -> Error {
     let found = match value {
         Value::Null => "null",
-        Value::Bool(_) => "a truth value",
+        Value::Bool(_) => "a boolean",
         Value::Number(_) => "a number",
         Value::String(_) => "a text",
         Value::Array(_) => "a list",
@@ -152,7 +152,7 @@ fn no_object(path: &Path, value: &Value) -> Error {
     };
     Error::input(format!("an object or a list of objects is expected, found {found}"))
         .in_file(path)
-        .remedy("give the output of a verb with --json, or a log with an object a line that ends in .jsonl")
+        .remedy("give the --json output of a verb, or a .jsonl log with one object per line")
 }
 
 impl Log {

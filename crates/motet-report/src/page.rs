@@ -65,7 +65,7 @@ pub(crate) fn rendered(
             budget => megabytes(options.budget),
         },
     );
-    let page = page.map_err(|e| Error::options(format!("the page cannot be put together: {e}")))?;
+    let page = page.map_err(|e| Error::options(format!("the page cannot be rendered: {e}")))?;
     // Inserted after templating: numbers and script are large and contain no template syntax.
     Ok(page.replace("<!--DATA-->", &data(parts, store, used)).replace(
         "<!--SCRIPT-->",

@@ -129,12 +129,12 @@ impl Plan<'_> {
         let mut notes = reader.notes.clone();
         if reader.layout.not_finite > 0 {
             let n = counted(reader.layout.not_finite, "triangle or cell");
-            notes.push(format!("{n} have points that are no numbers, and are not in the picture."));
+            notes.push(format!("{n} have points that are not finite, and are not in the picture."));
         }
         if reader.layout.not_known > 0 {
             let n = count(reader.layout.not_known);
             notes.push(format!(
-                "{n} volume cells are of kinds whose facets are not known, and are not in the picture."
+                "{n} volume cells are of kinds with unknown facets, and are not in the picture."
             ));
         }
         notes.retain(|note| !self.shown.notes.contains(note));

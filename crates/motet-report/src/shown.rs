@@ -119,13 +119,14 @@ impl Shown {
         let mut told = Vec::new();
         if cut > 0 {
             told.push(format!(
-                "Of {} only the cells that some planes cross are on the page; cuts go through those planes.",
+                "For {}, the page contains only the cells that some planes cross; cuts are made at those \
+                 planes.",
                 self.so_many(cut)
             ));
         }
         if all + cut < solid.len() {
             told.push(format!(
-                "Of {} only the surface (and bad tets) is on the page; a cut shows it hollow.",
+                "For {}, the page contains only the surface (and bad tets); a cut shows a hollow body.",
                 self.so_many(solid.len() - all - cut)
             ));
         }

@@ -25,7 +25,7 @@ fn main() -> Result<()> {
         ["implant", host, device, name] => put_in(host, device, name),
         ["contact", first, second] => measure(first, second),
         ["loop", mesh, patch, dx, dy, dz, steps] => there_and_back(mesh, patch, [dx, dy, dz], steps),
-        _ => Err(Error::options("the head of this file says what is expected")),
+        _ => Err(Error::options("see the usage at the top of this file")),
     }
 }
 
@@ -34,7 +34,7 @@ fn told(name: &str, value: f64) {
 }
 
 fn number(text: &str) -> Result<f64> {
-    text.parse().map_err(|_| Error::options(format!("{text} is no number")))
+    text.parse().map_err(|_| Error::options(format!("{text} is not a number")))
 }
 
 fn tell(mesh: &Mesh) {

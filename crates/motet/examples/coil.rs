@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "--pitch" => coil.pitch = value.parse()?,
             "--turns" => coil.turns = value.parse()?,
             "--wire" => coil.wire_radius = value.parse()?,
-            _ => return Err(format!("{word} is no word of this example").into()),
+            _ => return Err(format!("unknown argument {word}").into()),
         }
     }
     io::write(&out, &coil.mesh(72, 16)?, &WriteOptions::default())?;

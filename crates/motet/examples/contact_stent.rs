@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             _ => places.push(numbers(&word)?[..].try_into()?),
         }
     }
-    let out = out.ok_or("where shall it go? contact_stent OUT.pvd")?;
+    let out = out.ok_or("usage: contact_stent OUT.pvd")?;
     let places = if places.is_empty() { ARTERY.to_vec() } else { places };
     let stent =
         Stent { length, rings: 12, crowns: 8, strut_width: 0.08, thickness: 0.06, ..Stent::default() };

@@ -85,7 +85,7 @@ fn rows(motion: &str, mesh: &Mesh) -> Result<Vec<Row>, Box<dyn Error>> {
                 })
                 .into()
         }
-        other => return Err(format!("no motion is called {other}").into()),
+        other => return Err(format!("unknown motion {other}").into()),
     })
 }
 
@@ -235,7 +235,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let threads = Threads::new(n_threads)?;
     println!(
-        "{} vertices, {} tets; as it came: {}\n",
+        "{} vertices, {} tets; input: {}\n",
         mesh.points.len(),
         mesh.cells.tets().count(),
         told(&mesh, &mesh.points)

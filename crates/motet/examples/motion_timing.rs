@@ -38,7 +38,7 @@ impl Call {
             "guided" => Method::Guided,
             "elastic" => Method::Elastic(Elastic { tolerance, factor_bytes, ..Elastic::default() }),
             "laplace" => Method::Laplace(Laplace { tolerance, factor_bytes, ..Laplace::default() }),
-            other => return Err(format!("no method is called {other}").into()),
+            other => return Err(format!("unknown method {other}").into()),
         })
     }
 }

@@ -79,7 +79,9 @@ impl Towards {
             "line" => ([1.0, 1.0, 4.0], [0.5, 0.5, 0.864]),
             "surface" => ([4.0, 4.0, 1.0], [0.657, 0.657, 0.5]),
             "scattered" => return Ok(Self::Scattered),
-            _ => return Err(format!("{name} is no point, line or surface, nor scattered").into()),
+            _ => {
+                return Err(format!("--towards must be point, line, surface or scattered; got {name}").into());
+            }
         };
         Ok(Self::Shape(Shrinking { axes, factors }))
     }
@@ -116,7 +118,7 @@ fn call() -> Any<Call> {
                 call.front = Some(match value()?.as_str() {
                     "plane" => Front::Plane,
                     "sphere" => Front::Sphere,
-                    other => return Err(format!("{other} is no plane or sphere").into()),
+                    other => return Err(format!("--front must be plane or sphere; got {other}").into()),
                 });
             }
             "--generations" => call.generations = Some(value()?.parse()?),
@@ -358,7 +360,7 @@ fn run() -> Any<bool> {
         (None, Some(front)) => run.front(&call, front)?,
         (None, None) => return Err("--towards or --front is needed".into()),
     }
-    println!("\n{}", if run.is_kept { "all promises are kept" } else { "BROKEN" });
+    println!("\n{}", if run.is_kept { "all guarantees hold" } else { "BROKEN" });
     Ok(run.is_kept)
 }
 

@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let around = match words.next().as_deref() {
         None => 48,
         Some("--around") => words.next().ok_or("--around takes a number")?.parse()?,
-        Some(word) => return Err(format!("{word} is no word of this example").into()),
+        Some(word) => return Err(format!("unknown argument {word}").into()),
     };
     let aneurysm = Aneurysm { around, ..Aneurysm::default() };
     let coil = Coil { centre: [0.0; 3], radius: 0.8, pitch: 0.35, turns: 4.0, wire_radius: 0.075 };

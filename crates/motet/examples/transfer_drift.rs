@@ -122,7 +122,7 @@ fn turn(mesh: &Mesh, &Call { turns, steps, rule, .. }: &Call) -> Result<(), Box<
         let phase = k as f64 / (turns * steps) as f64;
         let step = moving.advance(phase, &script.at(phase), &threads)?;
         if !step.complete {
-            return Err(format!("step {k} stopped on its way").into());
+            return Err(format!("step {k} ended early").into());
         }
         for change in &step.changes {
             carried.change(&change.points_before, &change.history, rule)?;

@@ -127,7 +127,7 @@ class Mesh:
     def cell_ids(self, kind: str) -> NDArray[np.int64]:
         """Which cells are of a kind."""
         if kind not in KINDS:
-            raise InputError(f"there is no kind of cell {kind!r}; there are {', '.join(KINDS)}")
+            raise InputError(f"unknown cell kind {kind!r}; there are {', '.join(KINDS)}")
         return np.flatnonzero(self.kinds == KINDS[kind])
 
     def copy(self) -> Mesh:
@@ -278,7 +278,7 @@ def _blocks(cells: Any) -> Iterator[tuple[str, NDArray[np.uint32]]]:
         pairs = list(cells)
     for kind, rows in pairs:
         if kind not in KINDS:
-            raise InputError(f"there is no kind of cell {kind!r}; there are {', '.join(KINDS)}")
+            raise InputError(f"unknown cell kind {kind!r}; there are {', '.join(KINDS)}")
         rows = ids(rows, f"cells of kind {kind}")
         if rows.ndim != 2:
             raise InputError(f"cells of kind {kind}: an array of shape {rows.shape}, expected a row for each")

@@ -364,7 +364,7 @@ def move(
         also_moved = np.unique(np.concatenate([_motet.patch_vertices(given, _facets(list(told))), *also]))
     auto = method == "auto"
     if least is not None and not auto:
-        raise OptionsError("least is a bound to choose a method by, but one is given: method='auto'")
+        raise OptionsError("least is a criterion for choosing a method, but the method is given: method='auto'")
 
     def mover(name: str) -> Mover:
         return Mover(

@@ -35,7 +35,7 @@ class FileError(Error, OSError):
 
 
 class InternalError(Error, RuntimeError):
-    """A fault of motet itself: please report it, with the call. A handle may be left in a state that means nothing."""
+    """An internal error in motet: please report it, with the call. A handle may be left in a state that means nothing."""
 
 
 class OptionsError(Error, ValueError):

@@ -57,7 +57,7 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
     if frames.len() > 1 && !is_series {
         return Err(Error::options("several frames need a series")
             .in_file(&args.output)
-            .remedy("end it in .pvd"));
+            .remedy("use a name that ends in .pvd"));
     }
     let first = read(&frames[0].1, console)?;
     let caps = Caps::of(&first).map_err(|e| e.in_file(&frames[0].1))?;
@@ -90,9 +90,9 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
     ));
     for plane in planes.iter().filter(|plane| args.flatten || plane.deviation > FLAT * plane.radius) {
         console.say(format_args!(
-            "{}: its rim {} {} off its plane, {} of its radius of {}",
+            "{}: its rim {} {} away from its plane, {} of its radius of {}",
             plane.patch,
-            if args.flatten { "is flat now, it was" } else { "is" },
+            if args.flatten { "is now flat; it was" } else { "is" },
             short(plane.deviation),
             short(plane.deviation / plane.radius),
             short(plane.radius)

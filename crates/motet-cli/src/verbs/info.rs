@@ -143,7 +143,7 @@ impl Report<'_> {
         if let Some(boundary) = &summary.boundary {
             console.say(format_args!("  volume    {}", short(summary.volume)));
             console.say(format_args!(
-                "  boundary  {} facets, {} vertices; cells meet facet to facet: {}",
+                "  boundary  {} facets, {} vertices; conforming: {}",
                 count(boundary.facets),
                 count(boundary.vertices),
                 yes_or_no(summary.conforming)
@@ -240,7 +240,8 @@ impl Report<'_> {
         }
         if self.summary.turned > 0 {
             console.say(format_args!(
-                "  {} tets are numbered the other way round; each is judged as its neighbours orient it",
+                "  {} tets are numbered with the opposite orientation; each is judged by the orientation of \
+                 its neighbours",
                 count(self.summary.turned)
             ));
         }
@@ -296,7 +297,7 @@ fn yes_or_no(is: bool) -> &'static str {
 fn series(path: &Path, console: &Console) -> motet::Result<Outcome> {
     let frames = io::read_series(path)?;
     if let Some((_, file)) = frames.iter().find(|(_, file)| !io::file_of(file).exists()) {
-        return Err(Error::input(format!("names {}, which is not there", file.display())).in_file(path));
+        return Err(Error::input(format!("refers to {}, which does not exist", file.display())).in_file(path));
     }
     let mut table = Table::new(["file", "time"]);
     frames.iter().for_each(|(time, file)| table.row([file.display().to_string(), time_of(*time)]));

@@ -46,14 +46,14 @@ pub(crate) fn run(args: &ReportArgs, console: &Console) -> motet::Result<Outcome
             "--budget {}: a number of megabytes is expected",
             args.budget
         ))
-        .remedy("give one above 0, 2000 at most"));
+        .remedy("give a number above 0 and at most 2000"));
     }
     let budget = (args.budget * 1e6) as usize;
     let options = Options { output: args.output.clone(), title: args.title.clone(), budget };
     let report = motet_report::write(&args.inputs, &options)?;
     report.inputs.iter().for_each(|input| tell(input, console));
     console.say(format_args!(
-        "wrote {}: {:.1} MB, of which meshes {:.1} of {} MB allowed",
+        "wrote {}: {:.1} MB; meshes take {:.1} of {} MB allowed",
         report.output.display(),
         report.bytes as f64 / 1e6,
         report.payload_bytes as f64 / 1e6,

@@ -26,7 +26,7 @@ A and B are surfaces (.vtp .stl .obj .vtu ..), volume meshes (their boundary cou
 in units of the mesh, times in those of the velocity or of the series.
 
 A closed surface has an inside, where gaps are negative. A surface that encloses most of another \
-surface's area in the first frame, such as a vessel closed by caps round a stent, is taken as \
+surface's area in the first frame, such as a vessel closed by caps around a stent, is treated as \
 its room: there gaps are negative outside. The report names rooms; --room sets them, --no-room \
 makes all closed surfaces solid.
 
@@ -126,19 +126,19 @@ impl ContactArgs {
     /// Refuses options that contradict each other.
     pub(crate) fn check(&self) -> Result<()> {
         if self.horizon.is_some() && self.velocity.is_none() {
-            return Err(Error::options("--horizon goes with --velocity")
+            return Err(Error::options("--horizon requires --velocity")
                 .remedy("a series without velocities looks ahead to its next frame"));
         }
         if self.own && (self.method == Method::Delaunay || self.gap_tets.is_some()) {
             return Err(Error::options("Delaunay tets span gaps between surfaces, not within one")
-                .remedy("leave --self away, or --method delaunay and --gap-tets"));
+                .remedy("omit --self, or --method delaunay and --gap-tets"));
         }
         if self.gap_tets.is_some() && self.surfaces.iter().any(motet::io::is_series) {
-            return Err(Error::options("--gap-tets goes with one state, not with a series")
-                .remedy("give a frame of it"));
+            return Err(Error::options("--gap-tets requires a single state, not a series")
+                .remedy("give one of its frames"));
         }
         if !self.patches.is_empty() && self.surfaces.len() != 1 {
-            return Err(Error::options("--patches are those of one mesh")
+            return Err(Error::options("--patches requires exactly one mesh")
                 .remedy("give one mesh, or surfaces without --patches"));
         }
         Ok(())

@@ -50,11 +50,11 @@ impl<'a> Frames<'a> {
             }
             let (own, list): (Vec<f64>, Vec<PathBuf>) = io::read_series(path)?.into_iter().unzip();
             if list.is_empty() {
-                return Err(Error::input("a series without frames").in_file(path));
+                return Err(Error::input("the series has no frames").in_file(path));
             }
             if let Some((times, other)) = times.as_ref().filter(|(times, _)| times.len() != own.len()) {
                 return Err(Error::input(format!(
-                    "{} frames, and {} has {}: series go on together",
+                    "{} frames, but {} has {}: all series must have the same number of frames",
                     own.len(),
                     other.display(),
                     times.len()
@@ -93,7 +93,7 @@ impl<'a> Frames<'a> {
             let Some(body) = frame.bodies.iter_mut().find(|body| body.name == *name) else {
                 let known: Vec<_> = frame.bodies.iter().map(|body| body.name.as_str()).collect();
                 return Err(Error::options(format!("--room {name}: no surface of that name"))
-                    .remedy(format!("there are {}", known.join(", "))));
+                    .remedy(format!("the surfaces are: {}", known.join(", "))));
             };
             body.room = Room::Yes;
         }

@@ -36,7 +36,7 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     let n = frames.times.len();
     if n > 1 && !io::can_write_series(&args.output) {
         console.warn(format_args!(
-            "{} is one file: the last of {n} frames is written there; name a .pvd to keep all",
+            "{} is a single file: the last of {n} frames is written there; give a .pvd to keep all",
             args.output.display()
         ));
     }
@@ -85,7 +85,7 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     drop(meter);
     report.seconds.total = begin.elapsed().as_secs_f64();
     let fails = args.fail_on_warning && report.is_warned();
-    let outcome = Outcome::of(fails.then(|| "gaps are smaller than --warn allows".to_owned()));
+    let outcome = Outcome::of(fails.then(|| "some gaps are below --warn".to_owned()));
     report.tell(&outcome, console);
     Ok(outcome)
 }
@@ -129,7 +129,8 @@ fn by_delaunay(
         io::write(file, &mesh, &args.writing.options())?.iter().for_each(|what| console.warn(what));
         if n_flat > 0 {
             console.warn(format_args!(
-                "{n_flat} gaps are triangles or segments, since all vertices are in a plane: not written"
+                "{n_flat} gap tets are not written: they are triangles or segments, since all vertices lie \
+                 in a plane"
             ));
         }
     }

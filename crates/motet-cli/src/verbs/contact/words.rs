@@ -56,7 +56,7 @@ impl Report {
             console.say(format_args!("the first warning is at time {}", time_of(time)));
         }
         if let Some(time) = self.first_touch {
-            console.say(format_args!("the first touching is at time {}", time_of(time)));
+            console.say(format_args!("the first contact is at time {}", time_of(time)));
         }
     }
 
@@ -64,14 +64,15 @@ impl Report {
     fn tell_rooms(&self, console: &Console) {
         for body in self.bodies.iter().filter(|body| body.room && !body.closed) {
             console.warn(format_args!(
-                "{} is open, so nothing tells which side of it is inside: --room {} has no effect; `motet cap` closes rims",
+                "{} is open, so it has no inside: --room {} has no effect; `motet cap` closes rims",
                 body.name, body.name
             ));
         }
         for InRoom { room, surface, share } in &self.rooms {
             if let Some(share) = share {
                 console.say(format_args!(
-                    "{room} is taken for the room of {surface}, {} % of whose area lies inside (--no-room: {room} is solid)",
+                    "{room} is treated as the room of {surface}, {} % of whose area lies inside (use \
+                     --no-room if {room} is solid)",
                     percent(*share)
                 ));
             }
@@ -142,14 +143,14 @@ impl Step {
                 "warned: {} vertices of {} within {}{near}, nearest point {} at {}",
                 count(group.vertices),
                 group.body,
-                group.gap.map_or("the warning distance by their triangles".into(), short),
+                group.gap.map_or("the warning distance at their triangles".into(), short),
                 group.point,
                 group.place.map(short).join(", ")
             ));
         }
         if self.warned.len() > n {
             console.say(format_args!(
-                "and {} groups more: -v and --json tell all",
+                "and {} more groups; -v or --json lists all",
                 count(self.warned.len() - n)
             ));
         }

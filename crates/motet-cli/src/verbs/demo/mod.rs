@@ -36,7 +36,7 @@ const DISSECTION: &str = include_str!("dissection.toml");
 const CALLS: [(&str, &[&str]); 6] = [
     ("a vessel with an aneurysm is filled", &["mesh", "aneurysm.vtp", "-o", "vessel.vtu", "--size", "auto"]),
     (
-        "a coil in the sac and a crimped stent at its neck are put in; what flows goes round them",
+        "a coil in the sac and a crimped stent at its neck are implanted; the flow goes around them",
         &["implant", "vessel.vtu", "coil.vtp", "stent.vtp", "-o", "treated.vtu", "--hollow"],
     ),
     ("the wall pulsates for a cycle; the stent is watched", &["run", "aneurysm.toml"]),
@@ -114,7 +114,7 @@ struct Alone<A: Args> {
 fn parsed<A: Args>(call: &[String]) -> Result<A> {
     match Alone::try_parse_from(&call[1..]) {
         Ok(alone) => Ok(alone.args),
-        Err(_) => Err(Error::options("this name of a folder cannot be part of a call")),
+        Err(_) => Err(Error::options("this folder name cannot be used in a command")),
     }
 }
 

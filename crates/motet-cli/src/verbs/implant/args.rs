@@ -39,7 +39,7 @@ tets of the host that were there.
 
 Examples:
   motet implant aneurysm.vtu coil.stl -o coiled.vtu
-  motet implant aneurysm.vtu coil.stl -o coiled.vtu --hollow        flow round the coil alone
+  motet implant aneurysm.vtu coil.stl -o coiled.vtu --hollow        flow around the coil only
   motet implant vessel.vtu stent.vtu thrombus.stl -o out.vtu --growth 0.3
   motet implant aneurysm.vtu coil.stl -o coiled.vtu --json | jq .report.devices
 
@@ -156,7 +156,7 @@ impl ImplantArgs {
             (Interface::Match, None) => implant::Interface::Match,
             (Interface::Conform, tolerance) => implant::Interface::Conform { tolerance },
             (Interface::Match, Some(_)) => {
-                let what = "--tolerance says how far a new surface may be, and triangles are to be kept";
+                let what = "--tolerance applies to a new surface, but the triangles are to be kept";
                 return Err(Error::options(what).remedy("add --interface conform"));
             }
         };

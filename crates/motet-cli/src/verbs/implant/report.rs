@@ -97,7 +97,7 @@ impl Report {
         for device in &report.devices {
             let Some(fit) = device.fit else { continue };
             console.say(format_args!(
-                "{}: new surface within {} of the old one, the old one within {} of it; {} was asked{}",
+                "{}: new surface within {} of the old one, the old one within {} of it; {} was requested{}",
                 device.name,
                 short(fit.to_old),
                 short(fit.from_old),
@@ -108,7 +108,8 @@ impl Report {
         report.devices.iter().filter_map(at_walls).for_each(|told| console.say(told));
         let worst = report.improved.after.worst;
         console.say(format_args!(
-            "{} tets; {} bad ones near the devices were repaired, {} of those that came are left; worst EAS there {}",
+            "{} tets; {} bad ones near the devices were repaired, {} bad new tets are left; worst EAS there \
+             {}",
             count(report.tets),
             count(report.improved.before.bad.saturating_sub(report.improved.after.bad)),
             count(report.improved.left.len()),
@@ -140,7 +141,7 @@ impl Report {
 
     fn device_table(&self) -> Table {
         let mut table =
-            Table::new(["device", "region", "patch", "triangles", "as they came", "encloses", "volume"]);
+            Table::new(["device", "region", "patch", "triangles", "unchanged", "encloses", "volume"]);
         for device in &self.report.devices {
             table.row([
                 device.name.clone(),
@@ -158,7 +159,7 @@ impl Report {
     fn tell_left(&self, console: &Console) {
         if !self.report.host_left.is_empty() {
             console.say(format_args!(
-                "{} bad tets of the host near the devices are left as they came",
+                "{} bad tets of the host near the devices are left unchanged",
                 count(self.report.host_left.len())
             ));
         }
@@ -185,7 +186,7 @@ impl Report {
             ));
         }
         if told.len() > n {
-            console.say(format_args!("  and {} more: -v and --json tell all", count(told.len() - n)));
+            console.say(format_args!("  and {} more; -v or --json lists all", count(told.len() - n)));
         }
     }
 }
@@ -205,7 +206,7 @@ fn at_walls(device: &implant::DeviceReport) -> Option<String> {
         told += &format!(", {} lay outside and were cut off", count(outside));
     }
     if let Some(patch) = device.contact_patch {
-        told += &format!("; what both have in common is patch {patch}, {}-contact", device.name);
+        told += &format!("; the facets common to both are patch {patch}, {}-contact", device.name);
     }
     Some(told)
 }

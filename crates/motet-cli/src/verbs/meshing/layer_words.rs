@@ -24,7 +24,7 @@ pub(crate) fn layers(text: &str) -> Result<LayersWord, String> {
     let [n, first, growth] = words[..] else {
         return Err(format!("N,FIRST,GROWTH has 3 numbers, this {}", words.len()));
     };
-    let count = n.parse().map_err(|_| format!("`{n}` is no number of layers"))?;
+    let count = n.parse().map_err(|_| format!("`{n}` is not a valid number of layers"))?;
     let stack = Stack { count, first: number(first)?, growth: number(growth)? };
     stack.check().map_err(|error| error.to_string())?;
     Ok(LayersWord { patch, stack })
@@ -54,7 +54,7 @@ pub(super) fn stacks(
         words.iter().filter_map(|word| Some((word.patch.as_deref()?, word.stack))).collect();
     if !on.is_empty() {
         let stack = layers.everywhere.take().ok_or_else(|| {
-            Error::options("--layers-on without layers for it").remedy("give --layers N,FIRST,GROWTH as well")
+            Error::options("--layers-on without --layers").remedy("give --layers N,FIRST,GROWTH as well")
         })?;
         named.extend(on.iter().map(|patch| (patch.as_str(), stack)));
     }

@@ -116,7 +116,8 @@ fn refused(
     console: &Console,
 ) -> motet::Error {
     report.tell(&Outcome::Done, console);
-    let error = preflight.first_error().unwrap_or_else(|| motet::Error::input("the surfaces are not fit"));
+    let error =
+        preflight.first_error().unwrap_or_else(|| motet::Error::input("the surfaces cannot be meshed"));
     let fault = preflight.faults.iter().find(|fault| fault.is_fatal);
     let meshes = fault.and_then(|fault| surfaces.meshes.get(fault.surface as usize));
     let files: Vec<&PathBuf> = args.surfaces.iter().chain(&args.membrane).collect();

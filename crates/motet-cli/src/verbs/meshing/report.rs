@@ -113,14 +113,11 @@ impl<'a> Report<'a> {
         for (kind, what) in [
             (RepairKind::TJunction, "vertices on edges (T-junctions): the edges are divided there"),
             (RepairKind::Imprinted, "pairs of triangles lie on each other: they are divided alike"),
-            (
-                RepairKind::CutCrossing,
-                "pairs of triangles go through each other: they are divided where they do",
-            ),
+            (RepairKind::CutCrossing, "pairs of triangles cross: they are divided along the crossings"),
             (RepairKind::KeptWall, "walls between bodies, on which each body has a triangle: one is kept"),
             (
                 RepairKind::LeftMeeting,
-                "surface that cannot be divided where it meets itself or others: it is left as it is",
+                "surface that cannot be divided where it meets itself or others: it is left unchanged",
             ),
         ] {
             let of_kind = || self.repairs.iter().filter(|repair| repair.kind == kind);
@@ -148,7 +145,7 @@ impl<'a> Report<'a> {
             ));
         }
         console.say(format_args!(
-            "{} of {} triangles are facets as they came; {} points came inside, {} on edges",
+            "{} of {} triangles are facets unchanged; {} points were inserted inside, {} on edges",
             count(filled.triangles_kept),
             count(filled.triangles),
             count(filled.points_inside),
@@ -168,7 +165,7 @@ impl<'a> Report<'a> {
         }
         if filled.not_positive > 0 {
             console.warn(format_args!(
-                "{} tets have no volume in the digits of their coordinates",
+                "{} tets have no volume at the precision of their coordinates",
                 count(filled.not_positive)
             ));
         }
@@ -219,7 +216,7 @@ fn tell_layers(layers: &meshing::layers::Report, console: &Console) {
         short(layers.volume)
     ));
     console.say(format_args!(
-        "as thick as asked at {} of {} vertices of walls, thinner at {}, none at {}",
+        "as thick as requested at {} of {} vertices of walls, thinner at {}, none at {}",
         count(layers.full),
         count(layers.vertices),
         count(layers.reduced - layers.without),
@@ -227,7 +224,7 @@ fn tell_layers(layers: &meshing::layers::Report, console: &Console) {
     ));
     if let Some(place) = layers.least_at {
         console.say(format_args!(
-            "least part of what was asked {}, at {}",
+            "the least fraction of the requested thickness is {}, at {}",
             short(layers.least_share),
             place.map(short).join(", ")
         ));

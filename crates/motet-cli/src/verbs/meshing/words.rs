@@ -22,7 +22,7 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
 /// Parses `X,Y,Z`.
 pub(super) fn place(text: &str) -> Result<Point, String> {
     let numbers = numbers(text)?;
-    <[f64; 3]>::try_from(numbers).map_err(|other| format!("X,Y,Z has 3 numbers, this {}", other.len()))
+    <[f64; 3]>::try_from(numbers).map_err(|other| format!("X,Y,Z has 3 numbers; got {}", other.len()))
 }
 
 /// Parses `X,Y,Z=NAME`, split at the first `=`, since numbers contain none.

@@ -32,7 +32,7 @@ Examples:
   A vessel wall that follows a series of displaced surfaces, inlet and outlet sliding:
     motet move lumen.vtu -o out/lumen.pvd --displacement wall.pvd \\
           --patch inlet=inlet.vtp --patch outlet=outlet.vtp --slide inlet --slide outlet
-  The same, with the thin cells at the wall kept as they are, and velocities for a flow solver:
+  A vessel wall with the thin cells at it kept as they are, and velocities for a flow solver:
     motet move lumen.vtu -o out/lumen.pvd --displacement wall.pvd --rigid-layer 3layers --dt 0.01
   The displacement array of a solid, boundary values only, in 4 steps, last state:
     motet move mesh.vtu -o moved.vtu --displacement u --steps 4

@@ -54,7 +54,7 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     let mut plan = Plan::new(&mesh, &boundary, &patches, args, console)?;
     report.find_hanging(&mesh, &boundary);
     let mut options = options(args, &boundary, &patches, &plan)?;
-    let meter = console.meter("setting the motion up", None);
+    let meter = console.meter("setting up the motion", None);
     let threads = threads.watched(meter.watch());
     if args.method == Method::Auto {
         report.choice = Some(choose(args, (&mesh, &boundary, &patches), &mut options, &threads, console)?);
@@ -130,16 +130,18 @@ fn method(
     wall: impl Fn() -> motet::Result<FacetSet>,
 ) -> motet::Result<motion::Method> {
     if args.least.is_some() && args.method != Method::Auto {
-        return Err(Error::options("--least is a bound to choose a method by, but one is given")
+        return Err(Error::options("--least is a criterion for choosing a method, but the method is given")
             .remedy("add --method auto"));
     }
     if !bodies.is_empty() && !matches!(args.method, Method::Bodies | Method::Auto) {
-        return Err(Error::options("--body names a rigid body, but the method has none")
+        return Err(Error::options("--body names a rigid body, but the method does not use rigid bodies")
             .remedy("add --method bodies"));
     }
     if args.factor.is_some() && !matches!(args.method, Method::Elastic | Method::Laplace) {
-        return Err(Error::options("--factor keeps a factor of a system, but the method has no system")
-            .remedy("add --method elastic"));
+        return Err(Error::options(
+            "--factor keeps the factorisation of a linear system, but the method solves none",
+        )
+        .remedy("add --method elastic"));
     }
     let words = MethodWords {
         bodies,

@@ -45,7 +45,7 @@ impl<'a> Patches<'a> {
             own.chain(self.from_files.iter().map(|facets| facets.name.clone())).collect();
         let give = "give one by --patch NAME=FILE, a surface cut out of the mesh";
         match names.as_slice() {
-            [] => format!("it has none at all: {give}"),
+            [] => format!("it has no patches: {give}"),
             names => format!("it has {}; or {give}", names.join(", ")),
         }
     }

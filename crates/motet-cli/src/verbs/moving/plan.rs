@@ -144,8 +144,8 @@ impl<'a> Asked<'a, '_> {
     fn refuse_steps(&self) -> motet::Result<()> {
         match self.args.steps {
             None => Ok(()),
-            Some(_) => Err(Error::options("--steps goes with one motion, not with a series")
-                .remedy("leave --steps away: each time of the series is a step")),
+            Some(_) => Err(Error::options("--steps applies to a single motion, not to a series")
+                .remedy("omit --steps: each time of the series is a step")),
         }
     }
 
@@ -157,7 +157,10 @@ impl<'a> Asked<'a, '_> {
         };
         let timed = times.is_sorted_by(|a, b| a < b);
         if !timed {
-            self.console.warn(format_args!("{}: its times do not rise: no velocities", file.display()));
+            self.console.warn(format_args!(
+                "{}: the times do not increase, so no velocities are written",
+                file.display()
+            ));
         }
         let (nodes, moving) = (motion.vertices().to_vec(), motion.told());
         let driven = self.driven(&nodes, self.on_interfaces(&moving));
@@ -214,7 +217,7 @@ impl<'a> Asked<'a, '_> {
         let rows = field.to_vectors().map_err(|e| e.in_file(&self.args.mesh))?;
         let bad = self.boundary.vertices.iter().find(|v| rows[v.index()].iter().any(|x| !x.is_finite()));
         if let Some(v) = bad {
-            return Err(Error::input("a displacement that is no finite number")
+            return Err(Error::input("a displacement is not finite")
                 .at(format!("array {word}, point {v}"))
                 .in_file(&self.args.mesh));
         }
@@ -252,7 +255,10 @@ impl<'a> Asked<'a, '_> {
             motion.check_alike(&self.mesh.points, word, vertices, &asked)?;
             let taken = motion.follow(vertices, asked)?;
             if taken.refused > 0 {
-                self.console.detail(format_args!("{word}: {} vertices obey another patch", taken.refused));
+                self.console.detail(format_args!(
+                    "{word}: {} vertices follow the motion of another patch",
+                    taken.refused
+                ));
             }
         }
         let moved: Vec<VertexId> = all.into_iter().flat_map(|(_, vertices)| vertices).collect();

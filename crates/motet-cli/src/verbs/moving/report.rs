@@ -105,11 +105,11 @@ impl Chosen {
             console.say(format_args!("tried {}: {came_to} ({})", tried.method, seconds(tried.seconds)));
         }
         if self.tried.last().is_some_and(|last| last.kept) {
-            console.say(format_args!("{} keeps every cell at {}", self.method, short(self.least)));
+            console.say(format_args!("{} keeps every cell at or above {}", self.method, short(self.least)));
         } else {
             let least = short(self.least);
             console.warn(format_args!(
-                "no method keeps every cell at {least}; {} comes nearest to it",
+                "no method keeps every cell at or above {least}; {} comes closest",
                 self.method
             ));
         }
@@ -199,20 +199,23 @@ impl Report {
     pub(crate) fn warn(&self, console: &Console) {
         if self.before.inverted > 0 {
             console.warn(format_args!(
-                "{}: {} cells are inverted or flat as it comes; they do not stop the motion, `motet info` tells where they are",
+                "{}: {} cells of the input are inverted or flat; they do not stop the motion; `motet info` \
+                 lists them",
                 self.mesh.display(),
                 count(self.before.inverted)
             ));
         }
         for plane in self.sliding.iter().filter(|plane| plane.sliding == 0) {
             console.warn(format_args!(
-                "no vertex of the sliding patch {} slides: all are moved, kept in place, or on facets that do not slide",
+                "no vertex of the sliding patch {} can slide: all are moved, kept in place, or on facets \
+                 that do not slide",
                 plane.patch
             ));
         }
         if let Some(Hanging { vertices, first, place: [x, y, z], .. }) = self.hanging {
             console.warn(format_args!(
-                "{}: {} vertices lie on facets of which they are no corner (hanging_vertex; the first: {first} at ({x:.6}, {y:.6}, {z:.6})): \
+                "{}: {} vertices hang on facets of which they are not corners (hanging_vertex; the first: \
+                 {first} at ({x:.6}, {y:.6}, {z:.6})): \
                  the facets on both sides count as boundary, which stays where nothing moves it; `motet info` lists them, \
                  cells that meet in whole facets move as one",
                 self.mesh.display(),
@@ -239,13 +242,13 @@ impl Report {
         }
         let follow = match self.setup.solved {
             0 => format!(
-                "{} hanging in a graph of {} tets",
+                "{} with weights in a graph of {} tets",
                 count(self.setup.hanging),
                 count(self.setup.graph_tets)
             ),
             n if self.setup.factor_bytes > 0 => {
                 let mib = self.setup.factor_bytes as f64 / f64::from(1 << 20);
-                format!("{} solved for, with a factor of {mib:.1} MiB", count(n))
+                format!("{} unknown, with a factorisation of {mib:.1} MiB", count(n))
             }
             n => {
                 let iterations: usize = self.steps.iter().map(|step| step.certificate.iterations).sum();
@@ -268,7 +271,10 @@ impl Report {
         self.say_planes(console);
         for interface in &self.interfaces {
             let n = count(interface.vertices);
-            console.say(format_args!("{n} vertices of the interface {} driven by the array", interface.name));
+            console.say(format_args!(
+                "{n} vertices of the interface {} are driven by the array",
+                interface.name
+            ));
         }
         console.say(step_table(&self.before, &self.steps));
         if self.before.quality.distribution.is_some() {
@@ -300,14 +306,15 @@ impl Report {
         let reported = self.steps.iter().enumerate().filter(|(k, step)| *k == last || step.file.is_some());
         let steps =
             reported.map(|(_, step)| (format!("step {}", step.step), step.certificate.quality.distribution));
-        quality::table([("as it came".to_owned(), self.before.quality.distribution)].into_iter().chain(steps))
+        quality::table([("input".to_owned(), self.before.quality.distribution)].into_iter().chain(steps))
     }
 
     /// Lists planes that are flat within the tolerance, but not exactly.
     fn say_planes(&self, console: &Console) {
         for plane in self.sliding.iter().filter(|plane| plane.deviation > FLAT * plane.radius) {
             console.say(format_args!(
-                "sliding patch {}: {} off its plane, {} of its radius of {}; its vertices stay as far off",
+                "sliding patch {}: deviates from its plane by {}, {} of its radius of {}; its vertices keep \
+                 their distances from it",
                 plane.patch,
                 short(plane.deviation),
                 short(plane.deviation / plane.radius),
@@ -325,8 +332,10 @@ impl Report {
             farthest
         {
             console.warn(format_args!(
-                "the rim of the sliding patch {patch} leaves its plane, by {} at vertex {vertex}, at first at ({x:.6}, {y:.6}, {z:.6}), \
-                 in step {}: the patch follows its rim; move what it meets within the plane, or let the patch not slide",
+                "the rim of the sliding patch {patch} leaves its plane, by {} at vertex {vertex}, initially \
+                 at ({x:.6}, {y:.6}, {z:.6}), \
+                 in step {}: the patch follows its rim; keep the motion of adjacent patches within the \
+                 plane, or do not let this patch slide",
                 short(*distance),
                 step.step
             ));
@@ -335,13 +344,15 @@ impl Report {
             self.hanging.as_ref().filter(|h| h.opening > h.rounding)
         {
             console.warn(format_args!(
-                "vertices that lie on facets of which they are no corner have left them, by up to {} (vertex {opens_at}): the mesh opens there",
+                "hanging vertices have left their facets, by up to {} (vertex {opens_at}): the mesh opens \
+                 there",
                 short(*opening)
             ));
         }
         if self.unused_inside > 0 && self.untouched == 1.0 {
             console.warn(format_args!(
-                "nothing has moved: the array is zero on the boundary and on interfaces, and its {} other values inside are not used",
+                "nothing has moved: the array is zero on the boundary and on interfaces, and its {} nonzero \
+                 values elsewhere inside are not used",
                 count(self.unused_inside)
             ));
         }
@@ -384,7 +395,7 @@ fn step_table(before: &Certificate, steps: &[Step]) -> Table {
             took.to_string(),
         ]);
     };
-    row("as it came", "", before, "");
+    row("input", "", before, "");
     for step in steps {
         let took = seconds(step.certificate.seconds.total);
         row(&step.step.to_string(), &time(step.time), &step.certificate, &took);

@@ -55,7 +55,7 @@ pub(crate) fn affine(text: &str) -> Result<[[f64; 4]; 3], String> {
     let numbers = numbers(text)?;
     match numbers.as_chunks::<4>() {
         ([a, b, c], []) => Ok([*a, *b, *c]),
-        _ => Err(format!("a 3x4 matrix has 12 numbers, row after row, this {}", numbers.len())),
+        _ => Err(format!("a 3x4 matrix has 12 numbers, row by row; got {}", numbers.len())),
     }
 }
 

@@ -28,7 +28,7 @@ use crate::writing::WritingArgs;
 #[command(after_help = "\
 Several criteria mark every tet that any of them marks. Lengths are in units of the mesh, values \
 in those of the array. ARRAY is an array on points (where cells are not named), or a part of \
-one: v:x, v[0] a component, |v| its magnitude. Ntets, such as 500000tets, requests so many tets \
+one: v:x or v[0] is a component, |v| the magnitude. Ntets, such as 500000tets, requests this many tets \
 instead, divided where it helps most.
 
 Examples:
@@ -38,14 +38,14 @@ Examples:
     motet refine lumen.vtu -o fine.vtu --near stent.stl=0.5 --generations 2
   By pressure and velocity of the mean flow of a first simulation; solve again, and repeat:
     motet refine mean.vtu -o next.vtu --hessian pressure,velocity=2% --smallest 0.02
-  To half a million tets, by the jumps of a gradient:
+  Half a million tets, by jumps of a gradient:
     motet refine mean.vtu -o next.vtu --jump pressure=500000tets
   Where the wall shear is high now, and coarser where it no longer is:
     motet refine step7.vtu -o step8.vtu --where 'wss>4' --limit-generation 3 --coarsen
   One generation back, everywhere:
     motet refine fine.vtu -o coarse.vtu --coarsen
 
-Exit status 2: no criterion, or one without a meaning. 3: an array, region or patch does not \
+Exit status 2: no criterion, or an invalid one. 3: an array, region or patch does not \
 exist, or sizes need more tets than ids can number; nothing is written. 4: a limit or the number \
 of generations was reached before all edges were short enough; the mesh is written.")]
 pub(crate) struct RefineArgs {

@@ -62,5 +62,5 @@ fn hint(error: Error) -> Error {
     if !is_memory {
         return error;
     }
-    Error::new(error.kind(), error.what()).remedy("--forget: the mesh then counts as unrefined")
+    Error::new(error.kind(), error.what()).remedy("use --forget to take the current mesh as the first one")
 }

@@ -107,20 +107,19 @@ impl Report {
     pub(super) fn tell(&self, outcome: &Outcome, console: &Console) {
         console.conclude(self, outcome);
         console.say(format_args!(
-            "{}: {} tets at first, worst EAS {}",
+            "{}: initially {} tets, worst EAS {}",
             self.mesh.display(),
             count(self.first_tets),
             short(self.first_worst_eas)
         ));
         console.say(self.table());
         let at = |step: Option<&Step>| step.map(|step| step.quality);
-        console.say(quality::table([
-            ("as it came", at(self.steps.first())),
-            ("at the end", at(self.steps.last())),
-        ]));
+        console
+            .say(quality::table([("input", at(self.steps.first())), ("at the end", at(self.steps.last()))]));
         if self.left > 0 {
             console.say(format_args!(
-                "{} tets in {} of the first mesh are below the floors of these: no way to divide them is better",
+                "{} tets in {} tets of the first mesh are below the quality bounds of these: no better \
+                 division exists",
                 count(self.left),
                 count(self.left_roots)
             ));
@@ -136,7 +135,8 @@ impl Report {
         let held = self.steps.iter().map(|step| step.held).max().unwrap_or(0);
         if held > 0 {
             console.say(format_args!(
-                "{} tets were left as they are, since cells of other kinds hold their edges (lines do not), or one would be inverted",
+                "{} tets were left unchanged, since cells of other kinds (except lines) hold their edges, \
+                 or a tet would be inverted",
                 count(held)
             ));
         }
@@ -147,7 +147,8 @@ impl Report {
         let Seconds { read, refine, write, total } = self.seconds;
         let [read, refine, write, total] = [read, refine, write, total].map(seconds);
         console.say(format_args!(
-            "read {read}, refined {refine}, wrote {write}, all {total}; {:.0} bytes a tet remember what was divided",
+            "read {read}, refined {refine}, wrote {write}, all {total}; the memory of divisions takes {:.0} \
+             bytes per tet",
             self.memory_per_tet
         ));
     }

@@ -29,7 +29,7 @@ pub(crate) fn near(text: &str) -> Result<Near, String> {
     let (surface, within) = named(text, "SURFACE=DISTANCE, such as stent.stl=0.2,")?;
     match number(within)? {
         within if within >= 0.0 => Ok(Near { surface: surface.into(), within }),
-        within => Err(format!("the distance is {within}: a number of 0 or more is expected")),
+        within => Err(format!("the distance must be 0 or more; got {within}")),
     }
 }
 

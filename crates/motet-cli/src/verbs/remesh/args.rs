@@ -136,7 +136,7 @@ impl RemeshArgs {
             (Surface::Loose, distance) => SurfaceRule::Loose { distance },
             (Surface::Keep, Some(_)) => {
                 return Err(Error::options(
-                    "--distance says how far a surface may stray, and this one is kept",
+                    "--distance bounds how far a surface may stray, but this one is kept",
                 )
                 .remedy("add --surface adapt"));
             }
@@ -170,7 +170,7 @@ impl RemeshArgs {
         let Some(field) = mesh.point_field(name) else {
             let known: Vec<&str> = mesh.point_data.iter().map(|f| f.name.as_str()).collect();
             return Err(Error::options(format!(
-                "--sizes: {name} is no number, and the mesh has no point array of this name"
+                "--sizes: {name} is neither a number nor a point array of the mesh"
             ))
             .remedy(match known[..] {
                 [] => "give a number above 0: the mesh has no point arrays".to_owned(),
@@ -179,7 +179,7 @@ impl RemeshArgs {
         };
         match field.values.to_f64().filter(|_| field.components == 1) {
             Some(sizes) => Ok(Some(Sizes::Vertices(sizes))),
-            None => Err(Error::input("has not one number for each point, which sizes are")
+            None => Err(Error::input("does not have one number for each point, as sizes require")
                 .at(format!("array {name}"))
                 .remedy("give --sizes an array of one component")),
         }

@@ -50,7 +50,8 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     notes.iter().chain(&lost).for_each(|what| console.warn(what));
     if mesh.is_turned() {
         console.warn(format_args!(
-            "{}: most tets are numbered the other way round, and stay so; other programs may call them inverted",
+            "{}: most tets are numbered with the opposite orientation, and stay so; other programs may call \
+             them inverted",
             args.mesh.display()
         ));
     }

@@ -166,7 +166,7 @@ impl Report {
     pub(crate) fn tell(&self, outcome: &Outcome, console: &Console) {
         console.conclude(self, outcome);
         console.say(format_args!(
-            "{}: {} points, {} tets; bad are those below EAS {}",
+            "{}: {} points, {} tets; tets below EAS {} are bad",
             self.mesh.display(),
             count(self.before.points),
             count(self.before.tets),
@@ -251,7 +251,7 @@ impl Report {
         ];
         let made: Vec<String> =
             made.into_iter().filter(|m| m.1 > 0).map(|(what, n)| format!("{what} {}", count(n))).collect();
-        if made.is_empty() { "nothing was done".into() } else { format!("done: {}", made.join(", ")) }
+        if made.is_empty() { "nothing was changed".into() } else { format!("done: {}", made.join(", ")) }
     }
 
     fn state_table(&self) -> Table {
@@ -274,7 +274,7 @@ impl Report {
     /// A table of the arrays of real numbers: how each was carried, its range, and the deviation of its
     /// integral.
     fn field_table(&self) -> Table {
-        let mut table = Table::new(["array", "on", "carried", "before", "after", "integral off by"]);
+        let mut table = Table::new(["array", "on", "carried", "before", "after", "error of integral"]);
         let range =
             |r: Option<[f64; 2]>| r.map_or("-".to_string(), |[a, b]| format!("{} .. {}", short(a), short(b)));
         for field in &self.fields {
@@ -303,7 +303,7 @@ impl Report {
 
     /// A table of edges compared with their sizes.
     fn size_table(sizes: &SizesReport) -> Table {
-        let mut table = Table::new(["edges, beside their sizes", "before", "after"]);
+        let mut table = Table::new(["edges compared with their sizes", "before", "after"]);
         let mut row = |what: &str, of: &dyn Fn(&Lengths) -> String| {
             table.row([what.to_string(), of(&sizes.before), of(&sizes.after)]);
         };
@@ -338,7 +338,7 @@ impl Report {
             ));
         }
         if self.left.len() > n {
-            console.say(format_args!("  and {} more: -v and --json tell all", count(self.left.len() - n)));
+            console.say(format_args!("  and {} more; -v or --json lists all", count(self.left.len() - n)));
         }
     }
 
@@ -347,7 +347,7 @@ impl Report {
         let is_held = |left: &&Left| !matches!(left.reason, Reason::NothingHelps);
         let n_held = self.left.iter().filter(is_held).count();
         let advice = match self.surface_is_kept && n_held > 0 {
-            true => format!("; the surface holds {}, --surface adapt lets it give way", count(n_held)),
+            true => format!("; the surface constrains {}, --surface adapt lets it change", count(n_held)),
             false => String::new(),
         };
         report.not_reached().map(|why| why + &advice)

@@ -10,26 +10,26 @@ use clap::Args;
 /// certified, and written to a series whose meshes may differ from step to step; ParaView plays it.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A job, in TOML; names of files are relative to it. All but `mesh` and `output` is optional:
+A job, in TOML; names of files are relative to it. Everything except `mesh` and `output` is optional:
 
   mesh = \"vessel.vtu\"
-  output = \"out/vessel.pvd\"       # also vessel.jsonl, a line a step; vessel.state.vtu
-  every = 1                       # steps from frame to frame of the output
-  contents = [\"dye\"]              # densities whose integral over a cell stays
+  output = \"out/vessel.pvd\"       # also vessel.jsonl, a line per step; vessel.state.vtu
+  every = 1                       # steps between frames of the output
+  contents = [\"dye\"]              # densities whose integral over each cell is conserved
 
   [time]
   period = 1.0                    # in the unit of time of the output
-  steps = 25                      # in a period [20; for measured walls one a frame]
+  steps = 25                      # per period [20; for measured walls one per frame]
   periods = 3
 
   [[device]]                      # put into the mesh first, as `motet implant` does
   file = \"coil.stl\"
-  hollow = true                   # the flow goes round it
+  hollow = true                   # the flow goes around it
 
   [motion]
   method = \"delaunay\"             # bodies, guided, ... as `motet move --method`
-  strain = \"band\"                 # of bodies: beside them (band) or everywhere (even); band where one goes on or far
-  returns = true                  # walls come back: tets are kept good at rest, too; false where one goes on or far
+  strain = \"band\"                 # of bodies: beside them (band) or everywhere (even) [band if one moves on or far]
+  returns = true                  # walls come back: tets are kept good at rest, too [false if one moves on or far]
   smooth = 2
   rigid_layer = \"3layers\"         # or a distance
   within_walls = false
@@ -39,9 +39,9 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` i
   inside = [\"flap\"]               # patches inside the volume that are driven
   surfaces = \"wall.pvd\"           # measured walls, over a period
   match = \"nearest\"               # id (default), position, nearest (another mesh)
-  patch = \"wall\"                  # what follows the surfaces, for match = \"nearest\"
+  patch = \"wall\"                  # the patch that follows the surfaces, for match = \"nearest\"
 
-  [[motion.move]]                 # or walls that move by rule; the first that names a vertex counts
+  [[motion.move]]                 # or walls that move by rule; a vertex follows the first entry that contains it
   patch = \"sac\"
   swell = 0.1                     # along its normals; or one or several of
   # shift = [0.5, 0, 0]   turn = { axis = [0, 0, 1], degrees = 40, centre = [0, 0, 0] }
@@ -55,10 +55,10 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` i
   hold = [\"solid\"]                # regions and patches that repairs leave as they are
   margin = 0.05                   # repaired tets reach min_eas + margin
   floor = 0.05                    # no step goes below this before it is repaired
-  improve_below = 0.75            # what is below near a repair gets better, too, and the count is kept; 0: off
-  valid_at_start = false          # true: repairs bring no tet that has no volume where the step began
+  improve_below = 0.75            # tets below this near a repair are improved, too, and the count is kept; 0: off
+  valid_at_start = false          # true: no tet made by a repair is flat or inverted at the start of the step
 
-  [[refine]]                      # words as those of `motet refine`
+  [[refine]]                      # arguments as for `motet refine`
   near_size = [\"coil.stl=0.05,0.3\"]
   every = 5
   coarsen = true
@@ -67,7 +67,7 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` i
   [contact]
   patches = [\"flap\", \"wall\"]
   warn = 0.1
-  # hold = 0.02   walls stop at this distance, wherever they are requested to go: each patch gives way to those after it
+  # hold = 0.02   walls stop at this distance, whatever the requested motion: each patch gives way to those after it
 
   [carry]
   pressure = \"mean\"               # or linear, inherit, drop

@@ -104,7 +104,7 @@ fn options(job: &Job, mesh: &Mesh, motion: Motion, returns: bool) -> Result<Opti
     if let Some(name) = job.contents.iter().find(|name| mesh.cell_field(name).is_none()) {
         let known: Vec<&str> = mesh.cell_data.iter().map(|field| field.name.as_str()).collect();
         return Err(Error::input(format!("there is no cell array `{name}` for `contents`"))
-            .remedy(format!("the mesh has these: {}", known.join(", "))));
+            .remedy(format!("the mesh has: {}", known.join(", "))));
     }
     let repair = &job.repair;
     let asked = remesh::Options {
@@ -136,7 +136,7 @@ fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
         Some(name) => Method::of_name(name, MethodWords::default())?,
     };
     if !asked.bodies.is_empty() && !matches!(method, Method::Bodies(_)) {
-        return Err(Error::input("motion.bodies names rigid bodies, but the method has none")
+        return Err(Error::input("motion.bodies names rigid bodies, but the method does not use them")
             .remedy("add method = \"bodies\""));
     }
     let rigid_layer = match &asked.rigid_layer {
@@ -160,10 +160,10 @@ fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
 fn strain(job: &Job, method: &Method, goes_on: bool) -> Result<Strain> {
     let is_of_bodies = matches!(method, Method::Bodies(_));
     match &job.motion.strain {
-        Some(_) if !is_of_bodies => {
-            Err(Error::input("motion.strain says where bodies put the strain, but the method has none")
-                .remedy("add method = \"bodies\""))
-        }
+        Some(_) if !is_of_bodies => Err(Error::input(
+            "motion.strain says where bodies put the strain, but the method does not use bodies",
+        )
+        .remedy("add method = \"bodies\"")),
         Some(name) => Strain::of_name(name),
         None if is_of_bodies && goes_on => Ok(Strain::Band),
         None => Ok(Strain::Even),
@@ -229,12 +229,12 @@ fn wanted(job: &Job, asked: &Refine, threads: &Threads) -> Result<(usize, Wanted
     if asked.gaps {
         criteria.push(Criterion::Size(Size::Array(GAP.into())));
         if asked.smallest.is_none() {
-            return Err(off("gaps can be as narrow as they like")
-                .remedy("add smallest, the length at which dividing ends"));
+            return Err(off("gaps can become arbitrarily narrow")
+                .remedy("add smallest, the edge length at which division stops"));
         }
     }
     if criteria.is_empty() && !asked.coarsen {
-        return Err(off("an entry that marks nothing")
+        return Err(off("the entry has no criterion")
             .remedy("say where: near, near_size, where, ball, box, patch, ..."));
     }
     let limits = Limits { generation: asked.limit_generation, smallest: asked.smallest, ..Limits::default() };
@@ -246,9 +246,8 @@ fn wanted(job: &Job, asked: &Refine, threads: &Threads) -> Result<(usize, Wanted
         ..Wanted::default()
     };
     match asked.every {
-        Some(0) => {
-            Err(off("every is 0").remedy("give a number of steps, or leave it away: once, before the first"))
-        }
+        Some(0) => Err(off("every is 0")
+            .remedy("give a number of steps, or omit it to refine once, before the first step")),
         every => Ok((every.unwrap_or(usize::MAX), wanted)),
     }
 }

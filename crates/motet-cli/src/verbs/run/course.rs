@@ -62,7 +62,7 @@ fn frames(
             driven = now;
         } else if now != driven {
             return Err(
-                Error::input("is about other vertices of the mesh than the first frame").in_file(file)
+                Error::input("matches other vertices of the mesh than the first frame does").in_file(file)
             );
         }
         frames.push(by);
@@ -119,19 +119,20 @@ fn obey(asked: &Move, mesh: &Mesh, script: &mut Script) -> Result<()> {
         }
         (None, false) => script.follow(&facets.vertices, Prescribed::sequence(motions), in_time)?,
         (None, true) => {
-            return Err(Error::input(format!("motion.move of patch {} says no motion", asked.patch))
+            return Err(Error::input(format!("motion.move of patch {} specifies no motion", asked.patch))
                 .remedy("add shift, turn, affine, bend or swell"));
         }
         (Some(_), false) => {
-            return Err(Error::input(format!("motion.move of patch {} both swells and goes", asked.patch))
-                .remedy("give two entries for two patches; a vertex obeys the first that is about it"));
+            return Err(Error::input(format!(
+                "motion.move of patch {} has both swell and another motion",
+                asked.patch
+            ))
+            .remedy("give two entries for two patches; a vertex follows the first entry that contains it"));
         }
     };
     match n {
         0 => Err(Error::input(format!("no vertex of patch {} is left to move by this entry", asked.patch))
-            .remedy(
-                "entries before it are about all of them, or the patch is inside: name it in motion.inside",
-            )),
+            .remedy("earlier entries move all of them, or the patch is inside: name it in motion.inside")),
         _ => Ok(()),
     }
 }
@@ -143,7 +144,8 @@ fn warn_of_contradiction(asked: &Move, mesh: &Mesh, script: &Script, console: &C
     if let Some(&first) = contradicted.first() {
         let [x, y, z] = mesh.points[first.index()];
         console.warn(format_args!(
-            "motion.move of patch {}: {} of its vertices obey an entry before it that moves them elsewhere; the first: {first} at ({x:.6}, {y:.6}, {z:.6})",
+            "motion.move of patch {}: {} of its vertices follow an earlier entry that moves them elsewhere; \
+             the first: {first} at ({x:.6}, {y:.6}, {z:.6})",
             asked.patch,
             contradicted.len()
         ));
@@ -175,7 +177,7 @@ fn in_time(course: &Course) -> Result<InTime> {
             "swing" => InTime::Swing,
             "ramp" => InTime::Ramp,
             _ => {
-                return Err(Error::input(format!("in_time = \"{name}\" is no course in time")).remedy(
+                return Err(Error::input(format!("in_time = \"{name}\" is not a known course")).remedy(
                     "give \"beat\", \"swing\", \"ramp\", or a table such as [[0, 0], [0.3, 1], [1, 0]]",
                 ));
             }

@@ -299,16 +299,16 @@ impl Job {
     fn check(&self) -> Result<()> {
         let off = |what: &str, remedy: &str| Err(Error::input(what).remedy(remedy));
         if !(self.time.period > 0.0 && self.time.period.is_finite()) {
-            return off("time.period is no length of time", "give a number above 0");
+            return off("time.period must be positive", "give a number above 0");
         }
         if self.every == 0 || self.time.steps == Some(0) || self.time.periods == 0 {
-            return off("every, time.steps or time.periods is 0", "give numbers from 1 on");
+            return off("every, time.steps or time.periods is 0", "give numbers of at least 1");
         }
         if self.steps_in_period().checked_mul(self.time.periods).is_none_or(|n| n > MOST_STEPS) {
-            return off("there are far too many steps", "a run has a hundred million at most");
+            return off("too many steps", "a run has at most a hundred million steps");
         }
         if !motet::io::can_write_series(&self.output) {
-            return off("output is no series", "name a file that ends in .pvd");
+            return off("output is not a series", "name a file that ends in .pvd");
         }
         let share = |x: f64| (0.0..1.0).contains(&x);
         let repair = &self.repair;
@@ -336,7 +336,7 @@ impl Job {
             );
         }
         if self.device.iter().any(|device| device.hollow && device.fill) {
-            return off("a device is both hollow and to be filled", "say one of them");
+            return off("a device has both hollow and fill", "give one of them");
         }
         Ok(())
     }
@@ -349,7 +349,7 @@ const MOST_STEPS: usize = 100_000_000;
 /// The error of the TOML parser, with the line.
 fn off(text: &str, error: &toml::de::Error) -> Error {
     let told = Error::input(error.message().trim().replace('\n', "; "));
-    let told = told.remedy("`motet help run` shows a job with all that it may say");
+    let told = told.remedy("`motet help run` shows a job with all keys");
     match error.span() {
         Some(span) => {
             told.at(format!("line {}", 1 + text[..span.start.min(text.len())].matches('\n').count()))

@@ -84,13 +84,13 @@ impl Run {
         if let Some(state) = state {
             let moving = MovingMesh::load(&state, options, threads)?;
             if moving.driven_places() != script.places() {
-                return Err(Error::input("is of another job: other vertices are driven")
+                return Err(Error::input("belongs to another job: other vertices are driven")
                     .in_file(state)
-                    .remedy("leave --resume away to start anew"));
+                    .remedy("omit --resume to start anew"));
             }
             output.go_on(moving.step())?;
             report.go_on(moving.step());
-            console.say(format_args!("goes on after step {}", moving.step()));
+            console.say(format_args!("resumes after step {}", moving.step()));
             return Ok(Self { moving, script, refining });
         }
         let moving = MovingMesh::new(&mesh, options, threads)?;

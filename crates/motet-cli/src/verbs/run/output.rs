@@ -72,13 +72,9 @@ impl Output {
         let differ = record::differences(&record::read(&self.record)?, now);
         match differ.is_empty() {
             true => Ok(()),
-            false => {
-                Err(Error::input(format!("is another job than the one to go on with: {}", differ.join("; ")))
-                    .in_file(&job.file)
-                    .remedy(
-                        "change it back, or leave --resume away to start anew; time.periods alone may differ",
-                    ))
-            }
+            false => Err(Error::input(format!("differs from the job to resume: {}", differ.join("; ")))
+                .in_file(&job.file)
+                .remedy("change it back, or omit --resume to start anew; only time.periods may differ")),
         }
     }
 
@@ -89,11 +85,11 @@ impl Output {
     pub(super) fn go_on(&mut self, step: usize) -> Result<()> {
         let n_frames = 1 + step / self.every;
         self.series.go_on_after(n_frames)?;
-        let remedy = "put it back, or leave --resume away to start anew";
+        let remedy = "restore it, or omit --resume to start anew";
         let is_there = |file: &PathBuf| file.metadata().is_ok_and(|it| it.is_file() && it.len() > 0);
         let mut frames = (0..n_frames).map(|k| self.series.frame_path(k));
         if let Some(file) = frames.find(|file| !is_there(file)) {
-            return Err(Error::input("is a frame of the run to go on with, and is missing or empty")
+            return Err(Error::input("is a frame of the run to resume, but is missing or empty")
                 .in_file(file)
                 .remedy(remedy));
         }
@@ -105,12 +101,9 @@ impl Output {
         };
         let n_lines = text.split_inclusive('\n').enumerate().take_while(|line| is_of_step(*line)).count();
         if n_lines <= step {
-            return Err(Error::input(format!(
-                "has the lines of {n_lines} steps from 0 on, expected {}",
-                step + 1
-            ))
-            .in_file(&self.log)
-            .remedy(remedy));
+            return Err(Error::input(format!("has lines for {n_lines} steps, expected {}", step + 1))
+                .in_file(&self.log)
+                .remedy(remedy));
         }
         // Timings do not matter for what follows.
         for file in [&self.log, &self.times] {

@@ -55,11 +55,11 @@ pub(super) fn differences(was: &Record, is: &Record) -> Vec<String> {
 /// # Errors
 /// When it does not exist, or is not a record.
 pub(super) fn read(file: &Path) -> Result<Record> {
-    let off = |what: &str| Err(Error::input(what).in_file(file).remedy("leave --resume away to start anew"));
+    let off = |what: &str| Err(Error::input(what).in_file(file).remedy("omit --resume to start anew"));
     match std::fs::read(file) {
-        Err(_) => off("is not there, and tells by which job the state was made"),
+        Err(_) => off("does not exist; it records the job that made the state"),
         Ok(bytes) => serde_json::from_slice(&bytes)
-            .or_else(|_| off("is damaged: it tells by which job the state was made")),
+            .or_else(|_| off("is damaged; it records the job that made the state")),
     }
 }
 

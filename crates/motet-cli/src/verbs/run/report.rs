@@ -107,7 +107,7 @@ pub(super) fn line(step: &Step, console: &Console) {
         text += &format!("  [{:?}: {} bad, {part:.2} % new]", change.why, change.bad_before);
     }
     if !step.complete {
-        text += &format!("  gone {} of the way", percent(step.fraction));
+        text += &format!("  completed {} of the step", percent(step.fraction));
     }
     console.say(text);
 }
@@ -193,7 +193,8 @@ impl Report {
             &self.leaves_plane
         {
             console.warn(format_args!(
-                "walls take the rim of the sliding patch {patch} out of its plane, by up to {} at vertex {vertex}, at first at ({x:.6}, {y:.6}, {z:.6}): \
+                "walls take the rim of the sliding patch {patch} out of its plane, by up to {} at vertex \
+                 {vertex}, initially at ({x:.6}, {y:.6}, {z:.6}): \
                  the patch follows its rim",
                 short(*distance)
             ));
@@ -207,7 +208,9 @@ impl Report {
             (!self.complete).then(|| format!("step {} stopped before its end", self.steps)),
             (inverted > 0).then(|| format!("up to {inverted} tets are inverted or flat in a step")),
             self.cramped.as_ref().map(|patch| {
-                format!("the patch {patch} has no room to keep its distance (hold) from the patches after it")
+                format!(
+                    "the patch {patch} has no space to keep its distance (hold) from the patches after it"
+                )
             }),
             (bad > 0).then(|| format!("up to {bad} bad tets are left in a step that no wall forces")),
         ]))
@@ -218,7 +221,7 @@ impl Report {
         let n = self.steps - self.resumed_after;
         console.say(format_args!(
             "\n{n} steps{}: {} changes in {} of them, {} tets at the end",
-            if self.complete { "" } else { ", the last not to its end" },
+            if self.complete { "" } else { ", the last one incomplete" },
             self.changes,
             self.changed_steps,
             count(self.tets[1])
@@ -233,7 +236,8 @@ impl Report {
             let [first, last] = self.quality.map(Some);
             console.say(quality::table([("at first", first), ("at last", last)]));
             console.say(format_args!(
-                "from {} tets at first; mean EAS of a step at least {:.3}; {:.2} % of the cells changed in a step",
+                "initially {} tets; mean EAS of a step at least {:.3}; on average {:.2} % of the cells \
+                 changed per step",
                 count(self.tets[0]),
                 self.least_mean,
                 100.0 * self.changed / n as f64
@@ -241,16 +245,18 @@ impl Report {
         }
         if self.most_inverted_at_start > 0 {
             console.say(format_args!(
-                "up to {} tets of a changed mesh are inverted where their vertices were as the step began (inverted_at_start in the log): \
-                 no volume for schemes of earlier time levels (`valid_at_start` of the repair avoids them)",
+                "up to {} tets of a changed mesh are inverted at the vertex positions from the start of the \
+                 step (inverted_at_start in the log): \
+                 schemes that use earlier time levels have no valid volume there (`valid_at_start` of the \
+                 repair avoids them)",
                 self.most_inverted_at_start
             ));
         }
         if let Some(gap) = self.least_gap {
             let at = self.least_gap_at.map_or_else(String::new, time);
             let warned = match self.first_warned_at {
-                Some(first) => format!("warned first at time {}", time(first)),
-                None => "nothing warned".to_owned(),
+                Some(first) => format!("first warning at time {}", time(first)),
+                None => "no warnings".to_owned(),
             };
             let held = match self.held_steps {
                 0 => String::new(),
@@ -262,7 +268,7 @@ impl Report {
             });
             console.say(format_args!("least gap {} at time {at}; {warned}{held}{farthest}", short(gap)));
         }
-        let mut table = Table::new(["stage", "seconds", "a step"]);
+        let mut table = Table::new(["stage", "seconds", "per step"]);
         let all = &self.seconds;
         let writing = self.seconds_total - all.total;
         for (name, s) in [
