@@ -13,7 +13,7 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
-use crate::error::{input, raised};
+use crate::error::{input, to_exception};
 
 /// An array that is read in place. Another type, another number of axes, or memory that another call is
 /// writing to are errors of the input.
@@ -153,7 +153,7 @@ macro_rules! across {
             }
             match array.extract::<Vec<String>>() {
                 Ok(texts) => Ok(Field::scalars(name, texts)),
-                Err(_) => Err(raised(
+                Err(_) => Err(to_exception(
                     motet::Error::input(format!(
                         "{} is neither an array of numbers nor a list of strings",
                         array.get_type()

@@ -4,10 +4,10 @@ use std::ffi::OsString;
 
 use pyo3::prelude::*;
 
-use crate::error::called;
+use crate::error::call;
 
 /// Runs the command line with these arguments, the name of the program first, and returns the exit status.
 #[pyfunction]
 pub(crate) fn command(py: Python<'_>, words: Vec<OsString>) -> PyResult<u8> {
-    called(py, || Ok(motet_cli::run(words)))
+    call(py, || Ok(motet_cli::run(words)))
 }

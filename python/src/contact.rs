@@ -9,8 +9,8 @@ use pyo3::types::PyDict;
 use serde::Serialize;
 
 use crate::arrays::{Read, Vectors, ids, rows, table, vectors};
-use crate::border::Given;
-use crate::error::{OrRaise, called, input};
+use crate::convert::MeshArg;
+use crate::error::{OrRaise, call, input};
 use crate::report::report;
 use crate::words::threads;
 
@@ -84,7 +84,7 @@ impl Contact {
         let bodies: Vec<Body> = bodies.into_iter().map(body).collect::<PyResult<_>>()?;
         let names = bodies.iter().map(|body| body.name.clone()).collect();
         let options = Options { warn, own, within, facing, fold };
-        let contact = called(py, || contact::Contact::new(points, bodies, options, &threads))?;
+        let contact = call(py, || contact::Contact::new(points, bodies, options, &threads))?;
         Ok(Self { contact, names, threads })
     }
 
@@ -98,11 +98,11 @@ impl Contact {
 
     fn refit(&mut self, py: Python<'_>, points: Vectors<'_>) -> PyResult<()> {
         let points = rows(&points, "points")?;
-        called(py, || self.contact.refit(points, &self.threads))
+        call(py, || self.contact.refit(points, &self.threads))
     }
 
     fn measure<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let gaps = called(py, || Ok(self.contact.measure(&self.threads)))?;
+        let gaps = call(py, || Ok(self.contact.measure(&self.threads)))?;
         let all = PyDict::new(py);
         all.set_item("least", gaps.least())?;
         all.set_item("pairs", report(py, &self.pairs(&gaps))?)?;
@@ -131,7 +131,7 @@ impl Contact {
         horizon: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let velocity = rows(&velocity, "velocity")?;
-        let ahead = called(py, || self.contact.look_ahead(velocity, horizon, &self.threads))?;
+        let ahead = call(py, || self.contact.look_ahead(velocity, horizon, &self.threads))?;
         self.ahead(py, ahead)
     }
 
@@ -143,7 +143,7 @@ impl Contact {
         dt: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let points = rows(&points, "points")?;
-        let ahead = called(py, || self.contact.look_ahead_to(points, dt, &self.threads))?;
+        let ahead = call(py, || self.contact.look_ahead_to(points, dt, &self.threads))?;
         self.ahead(py, ahead)
     }
 }
@@ -185,7 +185,7 @@ fn signed<'py>(py: Python<'py>, ids: &[u32]) -> Bound<'py, PyArray1<i64>> {
 #[pyfunction]
 pub(crate) fn bodies<'py>(
     py: Python<'py>,
-    mesh: Given,
+    mesh: MeshArg,
     name: &str,
     patches: Vec<String>,
     first: usize,

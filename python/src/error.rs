@@ -11,18 +11,18 @@ use pyo3::types::PyType;
 static CLASSES: PyOnceLock<Vec<Py<PyType>>> = PyOnceLock::new();
 
 /// The exception for an error, by its kind.
-pub(crate) fn raised(error: Error) -> PyErr {
+pub(crate) fn to_exception(error: Error) -> PyErr {
     Python::attach(|py| exception(py, &error).unwrap_or_else(|failed| failed))
 }
 
 /// An error of the input.
 pub(crate) fn input(what: impl Into<String>) -> PyErr {
-    raised(Error::input(what))
+    to_exception(Error::input(what))
 }
 
 /// An error of the options.
 pub(crate) fn options(what: impl Into<String>) -> PyErr {
-    raised(Error::options(what))
+    to_exception(Error::options(what))
 }
 
 fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
@@ -57,15 +57,15 @@ fn class(py: Python<'_>, place: usize) -> PyResult<Bound<'_, PyType>> {
 ///
 /// # Errors
 /// The exception for the error of the library; `InternalError` where it panics.
-pub(crate) fn called<T: Send>(py: Python<'_>, call: impl FnOnce() -> motet::Result<T> + Send) -> PyResult<T> {
+pub(crate) fn call<T: Send>(py: Python<'_>, call: impl FnOnce() -> motet::Result<T> + Send) -> PyResult<T> {
     match py.detach(|| catch_unwind(AssertUnwindSafe(call))) {
         Ok(outcome) => outcome.or_raise(),
-        Err(panic) => Err(fault(&*panic)),
+        Err(panic) => Err(internal_error(&*panic)),
     }
 }
 
 /// A panic of the library as an exception.
-pub(crate) fn fault(panic: &(dyn Any + Send)) -> PyErr {
+pub(crate) fn internal_error(panic: &(dyn Any + Send)) -> PyErr {
     let what = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let what = what.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
     Python::attach(|py| internal(py, &what).unwrap_or_else(|failed| failed))
@@ -84,6 +84,6 @@ pub(crate) trait OrRaise<T> {
 
 impl<T> OrRaise<T> for motet::Result<T> {
     fn or_raise(self) -> PyResult<T> {
-        self.map_err(raised)
+        self.map_err(to_exception)
     }
 }

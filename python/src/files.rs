@@ -10,28 +10,28 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::border::{Given, parts};
-use crate::error::called;
+use crate::convert::{MeshArg, parts};
+use crate::error::call;
 use crate::report::report;
 use crate::words::one_of;
 
 /// Reads a mesh from a file; also returns notes on what the reader skipped.
 #[pyfunction]
 pub(crate) fn read(py: Python<'_>, path: PathBuf) -> PyResult<(Bound<'_, PyDict>, Vec<String>)> {
-    let (mesh, notes) = called(py, || io::read_noted(&path))?;
+    let (mesh, notes) = call(py, || io::read_noted(&path))?;
     Ok((parts(py, mesh)?, notes))
 }
 
 /// Writes a mesh; returns what the format cannot hold.
 #[pyfunction]
-pub(crate) fn write(py: Python<'_>, path: PathBuf, mesh: Given) -> PyResult<Vec<String>> {
-    called(py, || io::write(&path, &mesh.0, &WriteOptions::default()))
+pub(crate) fn write(py: Python<'_>, path: PathBuf, mesh: MeshArg) -> PyResult<Vec<String>> {
+    call(py, || io::write(&path, &mesh.0, &WriteOptions::default()))
 }
 
 /// The region label and the patch label of each cell, 0 for cells without one; `None` where the mesh has no
 /// such labels.
 #[pyfunction]
-pub(crate) fn labels(py: Python<'_>, mesh: Given) -> [Option<Bound<'_, PyArray1<i32>>>; 2] {
+pub(crate) fn labels(py: Python<'_>, mesh: MeshArg) -> [Option<Bound<'_, PyArray1<i32>>>; 2] {
     let ids = |labels: Option<Labels>| labels.map(|labels| PyArray1::from_vec(py, labels.ids));
     [ids(mesh.0.regions()), ids(mesh.0.patches())]
 }
@@ -72,14 +72,14 @@ pub(crate) fn formats() -> BTreeMap<String, bool> {
 
 /// The content, quality and defects of a mesh.
 #[pyfunction]
-pub(crate) fn summary(py: Python<'_>, mesh: Given) -> PyResult<Bound<'_, PyAny>> {
-    let summary = called(py, || Ok(Summary::of(&mesh.0)))?;
+pub(crate) fn summary(py: Python<'_>, mesh: MeshArg) -> PyResult<Bound<'_, PyAny>> {
+    let summary = call(py, || Ok(Summary::of(&mesh.0)))?;
     report(py, &summary)
 }
 
 /// A quality measure of each tet; NaN for other cells.
 #[pyfunction]
-pub(crate) fn quality<'py>(py: Python<'py>, mesh: Given, measure: &str) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn quality<'py>(py: Python<'py>, mesh: MeshArg, measure: &str) -> PyResult<Bound<'py, PyAny>> {
     type Measure = fn([[f64; 3]; 4]) -> f64;
     let known: [(&str, Measure); 6] = [
         ("eas", eas),
@@ -90,6 +90,6 @@ pub(crate) fn quality<'py>(py: Python<'py>, mesh: Given, measure: &str) -> PyRes
         ("volume", volume),
     ];
     let of = one_of("measure", measure, &known)?;
-    let field = called(py, || Ok(mesh.0.tet_field(measure, of)))?;
+    let field = call(py, || Ok(mesh.0.tet_field(measure, of)))?;
     Ok(PyArray1::from_vec(py, field.values.to_f64().unwrap_or_default()).into_any())
 }

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{from_field, ids, to_field};
-use crate::error::{called, input};
+use crate::error::{call, input};
 use crate::report::report;
 use crate::words::one_of;
 use motet::mesh::history::Rule;
@@ -70,7 +70,7 @@ impl History {
                 one_of("rule", rule, &[("mean", mean), ("linear", linear), ("inherit", Rule::Inherit)])
             })
             .transpose()?;
-        let new = called(py, || match (on_points, rule) {
+        let new = call(py, || match (on_points, rule) {
             (true, None) => self.0.transfer_points(&field).map(Some),
             (false, None) => self.0.transfer_cells(&field).map(Some),
             (true, Some(rule)) => self.0.transfer_points_by(&field, rule),

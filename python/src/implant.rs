@@ -7,7 +7,7 @@ use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Options, Outsi
 use motet::remesh;
 use pyo3::prelude::*;
 
-use crate::border::{Given, parts};
+use crate::convert::{MeshArg, parts};
 use crate::history::{Changed, History};
 use crate::report::{quality, report};
 use crate::watch::watched;
@@ -21,8 +21,8 @@ use crate::words::{one_of, rules};
 #[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
 pub(crate) fn implant<'py>(
     py: Python<'py>,
-    host: Given,
-    devices: Vec<(Given, String)>,
+    host: MeshArg,
+    devices: Vec<(MeshArg, String)>,
     inside: &str,
     interface: &str,
     tolerance: Option<f64>,
@@ -41,7 +41,7 @@ pub(crate) fn implant<'py>(
 ) -> PyResult<Changed<'py>> {
     let insides = [("own", None), ("fill", Some(Inside::Filled)), ("hollow", Some(Inside::Hollow))];
     let inside = one_of("inside", inside, &insides)?;
-    let device = |(mesh, name): (Given, String)| {
+    let device = |(mesh, name): (MeshArg, String)| {
         let device = Device::new(mesh.0, name);
         Device { inside: inside.unwrap_or(device.inside), ..device }
     };

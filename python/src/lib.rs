@@ -4,7 +4,7 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `arrays` | conversion between numpy arrays and lists of the library |
-//! | `border` | conversion of whole meshes |
+//! | `convert` | conversion of whole meshes |
 //! | `command` | the command line |
 //! | `error` | errors as Python exceptions |
 //! | `watch` | long calls: Ctrl-C and progress |
@@ -13,9 +13,9 @@
 //! | `files`, `meshing`, `motion`, `remesh`, `implant`, `refine`, `contact`, `moving` | one verb or handle each |
 
 mod arrays;
-mod border;
 mod command;
 mod contact;
+mod convert;
 mod error;
 mod files;
 mod history;

@@ -11,14 +11,14 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
 
-use crate::border::{Given, parts};
-use crate::error::{OrRaise, called};
+use crate::convert::{MeshArg, parts};
+use crate::error::{OrRaise, call};
 use crate::report::{quality, report};
 use crate::watch::watched;
 
 /// The request of a call; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
-pub(crate) struct Asked {
+pub(crate) struct Request {
     size: Option<f64>,
     surface: String,
     is_graded: bool,
@@ -40,7 +40,7 @@ pub(crate) struct Asked {
 
 /// The report of a call.
 #[derive(Serialize)]
-struct Told<'a> {
+struct MeshReport<'a> {
     #[serde(flatten)]
     report: &'a motet::meshing::Report,
     improved: Option<&'a remesh::Report>,
@@ -53,8 +53,8 @@ struct Told<'a> {
 #[pyfunction]
 pub(crate) fn mesh<'py>(
     py: Python<'py>,
-    surfaces: Vec<(Given, String, bool)>,
-    asked: Asked,
+    surfaces: Vec<(MeshArg, String, bool)>,
+    request: Request,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyAny>, Option<String>)> {
@@ -64,7 +64,7 @@ pub(crate) fn mesh<'py>(
         .map(|(mesh, name, is_membrane)| (&mesh.0, role(*is_membrane), name.as_str()))
         .collect();
     let mut joined = Surfaces::new(&meshes).or_raise()?;
-    let by_array = match &asked.size_array {
+    let sizes = match &request.size_array {
         None => None,
         Some(name) => {
             let each: Vec<Vec<f64>> =
@@ -73,21 +73,21 @@ pub(crate) fn mesh<'py>(
         }
     };
     let (repaired, options, filled) = watched(py, threads, progress, |threads| {
-        let (repaired, at_points) = match asked.repairs() {
+        let (repaired, at_points) = match request.repairs() {
             Some(repairs) => {
                 let repaired = joined.repair(&repairs, threads)?;
-                let at_points = by_array.map(|sizes| repaired.at_points(&sizes));
+                let at_points = sizes.map(|sizes| repaired.at_points(&sizes));
                 (repaired.done, at_points)
             }
-            None => (Vec::new(), by_array),
+            None => (Vec::new(), sizes),
         };
-        let options = asked.options(at_points, &joined)?;
+        let options = request.options(at_points, &joined)?;
         let filled = fill(&joined, &joined.preflight(threads), &options, threads)?;
         Ok((repaired, options, filled))
     })?;
     let (improved, layers) = (filled.improved.as_ref(), filled.layers.as_ref());
     let not_reached = filled.not_reached(&options);
-    let reported = report(py, &Told { report: &filled.report, improved, layers, repaired: &repaired })?;
+    let reported = report(py, &MeshReport { report: &filled.report, improved, layers, repaired: &repaired })?;
     reported.set_item("quality", quality(py, &filled.mesh)?)?;
     Ok((parts(py, filled.mesh)?, reported, not_reached))
 }
@@ -99,17 +99,17 @@ pub(crate) struct Caps(meshing::Caps);
 #[pymethods]
 impl Caps {
     #[new]
-    fn new(py: Python<'_>, surface: Given) -> PyResult<Self> {
-        called(py, || meshing::Caps::of(&surface.0)).map(Self)
+    fn new(py: Python<'_>, surface: MeshArg) -> PyResult<Self> {
+        call(py, || meshing::Caps::of(&surface.0)).map(Self)
     }
 
     /// Closes a frame of the surface.
-    fn close<'py>(&self, py: Python<'py>, frame: Given) -> PyResult<Bound<'py, PyDict>> {
-        parts(py, called(py, || self.0.close(&frame.0))?)
+    fn close<'py>(&self, py: Python<'py>, frame: MeshArg) -> PyResult<Bound<'py, PyDict>> {
+        parts(py, call(py, || self.0.close(&frame.0))?)
     }
 }
 
-impl Asked {
+impl Request {
     fn options(&self, at_points: Option<Vec<f64>>, surfaces: &Surfaces) -> motet::Result<Options> {
         let sizes = Sizes::of(self.size, self.is_graded, self.growth, at_points);
         let seed = |(place, name): &(Point, String)| Seed { place: *place, name: name.clone() };
@@ -142,7 +142,7 @@ impl Asked {
 
     fn repairs(&self) -> Option<Repairs> {
         let all = || Repairs::all(self.merge, self.hole_edges);
-        let asked = if self.repair { all() } else { Repairs::default() };
-        (self.repair || self.cut).then_some(Repairs { cut: self.cut, keep_inward: self.voids, ..asked })
+        let repairs = if self.repair { all() } else { Repairs::default() };
+        (self.repair || self.cut).then_some(Repairs { cut: self.cut, keep_inward: self.voids, ..repairs })
     }
 }

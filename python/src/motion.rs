@@ -11,15 +11,15 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::arrays::{Ids, Vectors, VectorsOut, ids, rows, rows_mut, vectors, vertices};
-use crate::border::Given;
-use crate::error::{OrRaise, called, input};
-use crate::report::{concluded, report};
-use crate::watch::{beside, watched};
+use crate::convert::MeshArg;
+use crate::error::{OrRaise, call, input};
+use crate::report::{report, with_not_reached};
+use crate::watch::{run_watched, watched};
 use crate::words::{Facets, all_facets, threads};
 
 /// Options of a mover; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
-pub(crate) struct Asked<'py> {
+pub(crate) struct Request<'py> {
     method: String,
     bodies: Vec<Facets<'py>>,
     within_walls: bool,
@@ -35,7 +35,7 @@ pub(crate) struct Asked<'py> {
     substeps: usize,
 }
 
-impl Asked<'_> {
+impl Request<'_> {
     fn options(&self, mesh: &Mesh) -> PyResult<Options> {
         let also_moved = match &self.also_moved {
             Some(array) => vertices(array, mesh.points.len())?,
@@ -76,12 +76,12 @@ impl Mover {
     #[new]
     fn new(
         py: Python<'_>,
-        mesh: Given,
-        asked: Asked<'_>,
+        mesh: MeshArg,
+        request: Request<'_>,
         threads: usize,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let options = asked.options(&mesh.0)?;
+        let options = request.options(&mesh.0)?;
         let new = |threads: &Threads| motion::Mover::new(&mesh.0, &options, threads);
         Ok(Self { mover: watched(py, threads, progress, new)?, threads: self::threads(threads)? })
     }
@@ -111,7 +111,7 @@ impl Mover {
     /// Makes a step; reads and writes the arrays in place.
     fn step(&self, py: Python<'_>, displacement: Vectors<'_>, mut out: VectorsOut<'_>) -> PyResult<()> {
         let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out, "out")?);
-        called(py, || self.mover.step(displacement, out, &self.threads))
+        call(py, || self.mover.step(displacement, out, &self.threads))
     }
 
     fn advance<'py>(
@@ -124,10 +124,10 @@ impl Mover {
         let watch = Watch::new();
         let threads = std::mem::take(&mut self.threads).watched(&watch);
         let advance = |threads: &Threads| self.mover.advance(displacement, out, threads);
-        let (threads, certificate) = beside(py, &watch, threads, None, advance);
+        let (threads, certificate) = run_watched(py, &watch, threads, None, advance);
         self.threads = threads;
         let certificate = certificate?;
-        concluded(py, &certificate, certificate.not_reached())
+        with_not_reached(py, &certificate, certificate.not_reached())
     }
 }
 
@@ -144,7 +144,7 @@ impl PointMover {
     fn new(py: Python<'_>, nodes: Vectors<'_>, points: Vectors<'_>, threads: usize) -> PyResult<Self> {
         let (nodes, points) = (rows(&nodes, "nodes")?, rows(&points, "points")?);
         let threads = self::threads(threads)?;
-        let mover = called(py, || motion::PointMover::new(nodes, points, &threads))?;
+        let mover = call(py, || motion::PointMover::new(nodes, points, &threads))?;
         Ok(Self { mover, threads })
     }
 
@@ -157,7 +157,7 @@ impl PointMover {
     /// Makes a step; reads and writes the arrays in place.
     fn step(&self, py: Python<'_>, displacement: Vectors<'_>, mut out: VectorsOut<'_>) -> PyResult<()> {
         let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out, "out")?);
-        called(py, || self.mover.step(displacement, out, &self.threads))
+        call(py, || self.mover.step(displacement, out, &self.threads))
     }
 }
 
@@ -174,22 +174,22 @@ pub(crate) enum Motion {
 #[pyfunction]
 pub(crate) fn prescribed<'py>(
     py: Python<'py>,
-    mesh: Given,
+    mesh: MeshArg,
     boundary: Ids<'_>,
     motions: Vec<(Facets<'_>, Vec<Motion>)>,
     fractions: Vec<f64>,
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
     let mesh = mesh.0;
     let boundary = vertices(&boundary, mesh.points.len())?;
-    let mut asked = BoundaryMotion::still(&boundary);
+    let mut requested = BoundaryMotion::still(&boundary);
     for (word, motions) in &motions {
         let set = crate::words::facets(&mesh, word)?;
         let all = motions.iter().map(|motion| of(motion, &mesh, &set.vertices)).collect();
         let motion = Prescribed::sequence(all);
-        asked.check_alike(&mesh.points, &set.name, &set.vertices, &motion).or_raise()?;
-        asked.follow(&set.vertices, motion).or_raise()?;
+        requested.check_alike(&mesh.points, &set.name, &set.vertices, &motion).or_raise()?;
+        requested.follow(&set.vertices, motion).or_raise()?;
     }
-    fractions.iter().map(|&f| Ok(vectors(py, asked.displacements(&mesh.points, f))?.into_any())).collect()
+    fractions.iter().map(|&f| Ok(vectors(py, requested.displacements(&mesh.points, f))?.into_any())).collect()
 }
 
 fn of(motion: &Motion, mesh: &Mesh, vertices: &[VertexId]) -> Prescribed {
@@ -208,14 +208,14 @@ fn of(motion: &Motion, mesh: &Mesh, vertices: &[VertexId]) -> Prescribed {
 #[pyfunction]
 pub(crate) fn choose<'py>(
     py: Python<'py>,
-    mesh: Given,
-    asked: Asked<'_>,
+    mesh: MeshArg,
+    request: Request<'_>,
     least: Option<f64>,
     frames: Vec<Vectors<'_>>,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, f64, Bound<'py, PyAny>)> {
-    let options = asked.options(&mesh.0)?;
+    let options = request.options(&mesh.0)?;
     let frames: Vec<Vec<Point>> =
         frames.iter().map(|frame| Ok(rows(frame, "displacement")?.to_vec())).collect::<PyResult<_>>()?;
     let all = || Ok(frames.iter().map(|frame| Ok(frame.clone())));
@@ -241,7 +241,7 @@ pub(crate) fn mesh_velocity<'py>(
 #[pyfunction]
 pub(crate) fn interface_vertices<'py>(
     py: Python<'py>,
-    mesh: Given,
+    mesh: MeshArg,
     displacement: Vectors<'_>,
 ) -> PyResult<Bound<'py, PyArray1<u32>>> {
     let boundary = Boundary::of(&mesh.0.cells);
@@ -256,7 +256,7 @@ pub(crate) fn interface_vertices<'py>(
 #[pyfunction]
 pub(crate) fn patch_vertices<'py>(
     py: Python<'py>,
-    mesh: Given,
+    mesh: MeshArg,
     patches: Vec<Facets<'_>>,
 ) -> PyResult<Bound<'py, PyArray1<u32>>> {
     let joined = FacetSet::joined(all_facets(&mesh.0, &patches)?);

@@ -14,17 +14,17 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Vectors, rows, to_field, vectors};
-use crate::border::{Given, parts};
-use crate::error::{OrRaise, called};
+use crate::convert::{MeshArg, parts};
+use crate::error::{OrRaise, call};
 use crate::history::History;
 use crate::refine::Criterion;
-use crate::report::{concluded, report};
-use crate::watch::{beside, watched};
+use crate::report::{report, with_not_reached};
+use crate::watch::{run_watched, watched};
 use crate::words::{one_of, rules, threads};
 
 /// Options of a moving mesh; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
-pub(crate) struct Asked {
+pub(crate) struct Request {
     method: String,
     bodies: Vec<String>,
     strain: String,
@@ -56,7 +56,7 @@ pub(crate) struct Asked {
     remembered: usize,
 }
 
-impl Asked {
+impl Request {
     fn options(&self, mesh: &Mesh) -> PyResult<Options> {
         let labels = |words: &[String]| mesh.find_patches(words).or_raise();
         let extent = self.rigid_layer.map(Extent::Distance).or(self.rigid_layer_cells.map(Extent::Cells));
@@ -116,7 +116,7 @@ impl MovingMesh {
         let watch = Watch::new();
         let threads = std::mem::take(&mut self.threads).watched(&watch);
         let moving = &mut self.moving;
-        let (threads, outcome) = beside(py, &watch, threads, progress, |threads| call(moving, threads));
+        let (threads, outcome) = run_watched(py, &watch, threads, progress, |threads| call(moving, threads));
         self.threads = threads;
         outcome
     }
@@ -127,27 +127,27 @@ impl MovingMesh {
     #[new]
     fn new(
         py: Python<'_>,
-        mesh: Given,
-        asked: Asked,
+        mesh: MeshArg,
+        request: Request,
         threads: usize,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let options = asked.options(&mesh.0)?;
+        let options = request.options(&mesh.0)?;
         let new = |threads: &Threads| moving::MovingMesh::new(&mesh.0, options, threads);
         Ok(Self { moving: watched(py, threads, progress, new)?, threads: self::threads(threads)? })
     }
 
     /// Continues from what `save` wrote, with the same options.
     #[staticmethod]
-    fn load(py: Python<'_>, path: PathBuf, asked: Asked, threads: usize) -> PyResult<Self> {
-        let mesh = called(py, || motet::io::read(&path))?;
-        let options = asked.options(&mesh)?;
+    fn load(py: Python<'_>, path: PathBuf, request: Request, threads: usize) -> PyResult<Self> {
+        let mesh = call(py, || motet::io::read(&path))?;
+        let options = request.options(&mesh)?;
         let load = |threads: &Threads| moving::MovingMesh::load(&path, options, threads);
         Ok(Self { moving: watched(py, threads, None, load)?, threads: self::threads(threads)? })
     }
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        called(py, || self.moving.save(&path))
+        call(py, || self.moving.save(&path))
     }
 
     #[getter]
@@ -200,7 +200,7 @@ impl MovingMesh {
         let displacement = rows(&displacement, "displacement")?;
         let step =
             self.watched(py, progress, |moving, threads| moving.advance(time, displacement, threads))?;
-        concluded(py, &step, step.not_reached())
+        with_not_reached(py, &step, step.not_reached())
     }
 
     fn refine<'py>(
@@ -231,6 +231,6 @@ impl MovingMesh {
     }
 
     fn history_since(&self, py: Python<'_>, step: usize) -> PyResult<Option<History>> {
-        Ok(called(py, || self.moving.history_since(step))?.map(History))
+        Ok(call(py, || self.moving.history_since(step))?.map(History))
     }
 }

@@ -17,8 +17,8 @@ use pyo3::types::PyDict;
 use serde::Serialize;
 
 use crate::arrays::Read;
-use crate::border::{Given, parts};
-use crate::error::{OrRaise, called, input, options};
+use crate::convert::{MeshArg, parts};
+use crate::error::{OrRaise, call, input, options};
 use crate::history::{Changed, History};
 use crate::report::report;
 use crate::watch::watched;
@@ -31,7 +31,7 @@ pub(crate) struct Criterion(pub(crate) refine::Criterion);
 
 /// A share of the error, or a number of tets.
 #[derive(FromPyObject)]
-enum Much {
+enum AmountArg {
     Tets(usize),
     Share(f64),
 }
@@ -41,14 +41,14 @@ fn checked(criterion: refine::Criterion) -> PyResult<Criterion> {
     Ok(Criterion(criterion))
 }
 
-fn target(surface: &Given) -> PyResult<Arc<Target>> {
+fn target(surface: &MeshArg) -> PyResult<Arc<Target>> {
     Target::of_mesh(&surface.0, &threads(1)?).map(Arc::new).or_raise()
 }
 
-fn estimate(array: String, by: Estimator, amount: Much) -> PyResult<Criterion> {
+fn estimate(array: String, by: Estimator, amount: AmountArg) -> PyResult<Criterion> {
     let amount = match amount {
-        Much::Tets(n) => Amount::Tets(n),
-        Much::Share(share) => Amount::Share(share),
+        AmountArg::Tets(n) => Amount::Tets(n),
+        AmountArg::Share(share) => Amount::Share(share),
     };
     checked(refine::Criterion::Estimate { array, by, amount })
 }
@@ -69,12 +69,12 @@ impl Criterion {
     }
 
     #[staticmethod]
-    fn near(surface: Given, within: f64) -> PyResult<Self> {
+    fn near(surface: MeshArg, within: f64) -> PyResult<Self> {
         checked(refine::Criterion::Near { target: target(&surface)?, within })
     }
 
     #[staticmethod]
-    fn near_size(surface: Given, size: f64, growth: f64) -> PyResult<Self> {
+    fn near_size(surface: MeshArg, size: f64, growth: f64) -> PyResult<Self> {
         checked(refine::Criterion::NearSize { target: target(&surface)?, size, growth })
     }
 
@@ -132,12 +132,12 @@ impl Criterion {
     }
 
     #[staticmethod]
-    fn jump(array: String, amount: Much) -> PyResult<Self> {
+    fn jump(array: String, amount: AmountArg) -> PyResult<Self> {
         estimate(array, Estimator::Jump, amount)
     }
 
     #[staticmethod]
-    fn recovery(array: String, amount: Much) -> PyResult<Self> {
+    fn recovery(array: String, amount: AmountArg) -> PyResult<Self> {
         estimate(array, Estimator::Recovery, amount)
     }
 
@@ -163,7 +163,7 @@ impl Criterion {
 
 /// The request of a call; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
-pub(crate) struct Asked {
+pub(crate) struct Request {
     criteria: Vec<Criterion>,
     coarsen: bool,
     coarsen_where: Vec<String>,
@@ -171,7 +171,7 @@ pub(crate) struct Asked {
     limit_generation: Option<u8>,
     smallest: Option<f64>,
     at_most: Option<usize>,
-    surface: Option<Given>,
+    surface: Option<MeshArg>,
     carry: BTreeMap<String, String>,
     forget: bool,
 }
@@ -192,7 +192,7 @@ impl Done {
 }
 
 #[derive(Serialize)]
-struct Told {
+struct RefineReport {
     complete: bool,
     steps: Vec<refine::Step>,
 }
@@ -201,26 +201,26 @@ struct Told {
 #[pyfunction]
 pub(crate) fn refined<'py>(
     py: Python<'py>,
-    mesh: Given,
-    asked: Asked,
+    mesh: MeshArg,
+    request: Request,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Changed<'py>> {
-    let mut mesh = if asked.forget { MeshRefinement::forget(&mesh.0) } else { mesh.0 };
-    let rules = rules(&mesh, &asked.carry)?;
+    let mut mesh = if request.forget { MeshRefinement::forget(&mesh.0) } else { mesh.0 };
+    let rules = rules(&mesh, &request.carry)?;
     let conditions =
-        asked.coarsen_where.iter().map(|text| text.parse().or_raise()).collect::<PyResult<_>>()?;
+        request.coarsen_where.iter().map(|text| text.parse().or_raise()).collect::<PyResult<_>>()?;
     let mut wanted = Wanted {
-        criteria: asked.criteria.into_iter().map(|c| c.0).collect(),
-        coarsen: asked.coarsen,
+        criteria: request.criteria.into_iter().map(|c| c.0).collect(),
+        coarsen: request.coarsen,
         coarsen_where: conditions,
-        generations: asked.generations,
+        generations: request.generations,
         limits: Limits {
-            generation: asked.limit_generation,
-            smallest: asked.smallest,
-            n_tets: asked.at_most,
+            generation: request.limit_generation,
+            smallest: request.smallest,
+            n_tets: request.at_most,
         },
-        surface: asked.surface.as_ref().map(target).transpose()?,
+        surface: request.surface.as_ref().map(target).transpose()?,
         keeps_history: true,
     };
     let (new, done) = watched(py, threads, progress, |threads| {
@@ -232,9 +232,9 @@ pub(crate) fn refined<'py>(
         Ok((new, done))
     })?;
     let not_reached = done.not_reached();
-    let told = report(py, &Told { complete: done.is_reached, steps: done.steps })?;
+    let report = report(py, &RefineReport { complete: done.is_reached, steps: done.steps })?;
     let history = done.history.ok_or_else(|| input("no history was kept"))?;
-    Ok((parts(py, new)?, History(history), told, not_reached))
+    Ok((parts(py, new)?, History(history), report, not_reached))
 }
 
 /// A mesh whose tets are divided, and divisions taken back, step after step.
@@ -247,9 +247,9 @@ pub(crate) struct Refinement {
 #[pymethods]
 impl Refinement {
     #[new]
-    fn new(py: Python<'_>, mesh: Given, threads: usize) -> PyResult<Self> {
+    fn new(py: Python<'_>, mesh: MeshArg, threads: usize) -> PyResult<Self> {
         let threads = self::threads(threads)?;
-        let refinement = called(py, || MeshRefinement::new(&mesh.0, Options::default(), &threads))?;
+        let refinement = call(py, || MeshRefinement::new(&mesh.0, Options::default(), &threads))?;
         Ok(Self { refinement, threads })
     }
 
@@ -294,7 +294,7 @@ impl Refinement {
             .filter(|(_, cell)| is_marked[cell.index()])
             .map(|(t, _)| TetId::new(t))
             .collect();
-        let (summary, history): (_, history::History) = called(py, || match is_back {
+        let (summary, history): (_, history::History) = call(py, || match is_back {
             false => self.refinement.refine(&marked, &rules, &self.threads),
             true => self.refinement.coarsen(&marked, &rules, &self.threads),
         })?;

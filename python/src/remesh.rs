@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use motet::remesh::{Goal, Held, MeshOutcome, Options, Sizes, SurfaceRule, remesh_mesh};
 use pyo3::prelude::*;
 
-use crate::border::{Given, parts};
+use crate::convert::{MeshArg, parts};
 use crate::error::OrRaise;
 use crate::history::{Changed, History};
 use crate::report::{quality, report};
@@ -14,7 +14,7 @@ use crate::words::{one_of, rules};
 
 /// The requested edge lengths: everywhere, or at each point.
 #[derive(FromPyObject)]
-pub(crate) enum AskedSizes {
+pub(crate) enum SizesArg {
     Uniform(f64),
     Points(Vec<f64>),
 }
@@ -25,7 +25,7 @@ pub(crate) enum AskedSizes {
 #[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
 pub(crate) fn remesh<'py>(
     py: Python<'py>,
-    mesh: Given,
+    mesh: MeshArg,
     min_eas: f64,
     min_dihedral_deg: f64,
     goal: &str,
@@ -33,7 +33,7 @@ pub(crate) fn remesh<'py>(
     distance: Option<f64>,
     keep_layers: bool,
     hold: Vec<String>,
-    sizes: Option<AskedSizes>,
+    sizes: Option<SizesArg>,
     rounds: usize,
     carry: BTreeMap<String, String>,
     threads: usize,
@@ -47,8 +47,8 @@ pub(crate) fn remesh<'py>(
         keep_layers,
         held: Held::of_names(&mesh.0, &hold).or_raise()?,
         sizes: sizes.map(|sizes| match sizes {
-            AskedSizes::Uniform(h) => Sizes::Uniform(h),
-            AskedSizes::Points(all) => Sizes::Vertices(all),
+            SizesArg::Uniform(h) => Sizes::Uniform(h),
+            SizesArg::Points(all) => Sizes::Vertices(all),
         }),
         rounds,
         ..Options::default()

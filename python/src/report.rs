@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 use serde::Serialize;
 
 /// A report as dictionaries, lists and numbers.
-pub(crate) fn report<'py>(py: Python<'py>, told: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
-    Ok(pythonize::pythonize(py, told)?)
+pub(crate) fn report<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    Ok(pythonize::pythonize(py, value)?)
 }
 
 /// The quality of all tets of a mesh; `None` where it has none.
@@ -17,12 +17,12 @@ pub(crate) fn quality<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, 
 }
 
 /// A report with the key `not_reached`: why the requested result was not reached, `None` where it was.
-pub(crate) fn concluded<'py>(
+pub(crate) fn with_not_reached<'py>(
     py: Python<'py>,
-    told: &impl Serialize,
+    value: &impl Serialize,
     not_reached: Option<String>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let all = report(py, told)?;
+    let all = report(py, value)?;
     all.set_item("not_reached", not_reached)?;
     Ok(all)
 }

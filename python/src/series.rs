@@ -8,8 +8,8 @@ use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::Read;
-use crate::border::Given;
-use crate::error::{OrRaise, called, input};
+use crate::convert::MeshArg;
+use crate::error::{OrRaise, call, input};
 
 /// The times and files of a series.
 #[pyfunction]
@@ -35,8 +35,8 @@ impl SeriesWriter {
     }
 
     /// Adds a mesh; returns its file, and what the format cannot hold.
-    fn add(&mut self, py: Python<'_>, time: f64, mesh: Given) -> PyResult<(PathBuf, Vec<String>)> {
-        called(py, || self.0.add(time, &mesh.0))
+    fn add(&mut self, py: Python<'_>, time: f64, mesh: MeshArg) -> PyResult<(PathBuf, Vec<String>)> {
+        call(py, || self.0.add(time, &mesh.0))
     }
 }
 
@@ -46,7 +46,7 @@ type Nodal<'py> = (Vec<f64>, Vec<i64>, Bound<'py, PyAny>);
 /// Reads values of nodes over time.
 #[pyfunction]
 pub(crate) fn read_nodal(py: Python<'_>, path: PathBuf) -> PyResult<Nodal<'_>> {
-    let series = called(py, || NodalSeries::read(path))?;
+    let series = call(py, || NodalSeries::read(path))?;
     let shape = [series.ids.len(), series.times.len(), series.components];
     let values = numpy::PyArray1::from_vec(py, series.values).reshape(shape)?;
     Ok((series.times, series.ids, values.into_any()))
@@ -70,5 +70,5 @@ pub(crate) fn write_nodal(
         )));
     }
     let series = NodalSeries { times, ids, components, values: values.as_array().iter().copied().collect() };
-    called(py, || series.write(path))
+    call(py, || series.write(path))
 }

@@ -6,7 +6,7 @@ use motet::mesh::shapes::{self, Aneurysm, Coil, Stent, TubeOptions, WallCells};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::border::parts;
+use crate::convert::parts;
 use crate::error::{OrRaise, options};
 
 #[pyfunction]

@@ -8,7 +8,7 @@ use std::time::Duration;
 use motet::base::{Progress, Threads, Watch};
 use pyo3::prelude::*;
 
-use crate::error::{OrRaise, fault};
+use crate::error::{OrRaise, internal_error};
 use crate::words::threads;
 
 /// How often it checks.
@@ -24,11 +24,11 @@ pub(crate) fn watched<T: Send>(
     work: impl FnOnce(&Threads) -> motet::Result<T> + Send,
 ) -> PyResult<T> {
     let watch = Watch::new();
-    beside(py, &watch, threads(n_threads)?.watched(&watch), progress, |threads| work(threads)).1
+    run_watched(py, &watch, threads(n_threads)?.watched(&watch), progress, |threads| work(threads)).1
 }
 
 /// Runs `work` with the given threads, watched through `watch`, and returns them with its result.
-pub(crate) fn beside<T: Send>(
+pub(crate) fn run_watched<T: Send>(
     py: Python<'_>,
     watch: &Watch,
     threads: Threads,
@@ -44,16 +44,16 @@ pub(crate) fn beside<T: Send>(
                 let outcome = work(&threads);
                 (threads, outcome)
             });
-            let (mut raised, mut told) = (None, Progress::default());
+            let (mut raised, mut last) = (None, Progress::default());
             while is_done.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
                 if raised.is_none() {
-                    raised = Python::attach(|py| listen(py, progress.as_ref(), watch, &mut told)).err();
+                    raised = Python::attach(|py| listen(py, progress.as_ref(), watch, &mut last)).err();
                     raised.iter().for_each(|_| watch.stop());
                 }
             }
             let (threads, outcome) = match worker.join() {
                 Ok((threads, outcome)) => (threads, outcome.or_raise()),
-                Err(panic) => (Threads::single(), Err(fault(&*panic))),
+                Err(panic) => (Threads::single(), Err(internal_error(&*panic))),
             };
             (threads, raised.map_or(outcome, Err))
         })
@@ -61,11 +61,11 @@ pub(crate) fn beside<T: Send>(
 }
 
 /// Handles signals, and reports the progress if it has changed.
-fn listen(py: Python<'_>, progress: Option<&Py<PyAny>>, watch: &Watch, told: &mut Progress) -> PyResult<()> {
+fn listen(py: Python<'_>, progress: Option<&Py<PyAny>>, watch: &Watch, last: &mut Progress) -> PyResult<()> {
     py.check_signals()?;
     let now = watch.progress();
-    if let Some(progress) = progress.filter(|_| now != *told) {
-        *told = now;
+    if let Some(progress) = progress.filter(|_| now != *last) {
+        *last = now;
         progress.call1(py, (now.stage, now.done, now.of))?;
     }
     Ok(())

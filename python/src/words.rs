@@ -9,7 +9,7 @@ use motet::{Error, Mesh};
 use pyo3::prelude::*;
 
 use crate::arrays::Ids;
-use crate::error::{OrRaise, raised};
+use crate::error::{OrRaise, to_exception};
 
 /// The number of threads; 0 means all cores.
 pub(crate) fn threads(n: usize) -> PyResult<Threads> {
@@ -20,7 +20,7 @@ pub(crate) fn threads(n: usize) -> PyResult<Threads> {
 pub(crate) fn one_of<T: Copy>(option: &str, word: &str, known: &[(&str, T)]) -> PyResult<T> {
     known.iter().find(|(name, _)| *name == word).map(|(_, value)| *value).ok_or_else(|| {
         let names: Vec<String> = known.iter().map(|(name, _)| format!("{name:?}")).collect();
-        raised(
+        to_exception(
             Error::options(format!("{option}={word:?} means nothing"))
                 .remedy(format!("choose one of {}", names.join(", "))),
         )

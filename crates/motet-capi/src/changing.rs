@@ -12,10 +12,10 @@ use motet::remesh::{Goal, MeshOutcome, SurfaceRule, remesh_mesh};
 use motet::{Error, Mesh, Result, implant, remesh};
 use serde_json::json;
 
-use crate::guard::{MotetError, guarded, quiet};
+use crate::guard::{MotetError, guarded, or_default};
 use crate::memory::{
-    count, expect, free, give, handle, optional, owned, place, room, sized, text, texts, threads, values,
-    versioned,
+    count, expect, free, handle, optional, out_handle, owned, read_versioned, set_handle, text, texts,
+    threads, values, values_mut, versioned,
 };
 use crate::mesh::{MotetMesh, field, json, on_points};
 
@@ -47,7 +47,7 @@ impl MotetOutcome {
 
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_outcome_complete(outcome: *const MotetOutcome) -> i32 {
-    quiet(0, || Some(handle(outcome, "outcome").ok()?.not_reached.is_none().into()))
+    or_default(0, || Some(handle(outcome, "outcome").ok()?.not_reached.is_none().into()))
 }
 
 #[unsafe(no_mangle)]
@@ -81,7 +81,7 @@ pub(crate) unsafe extern "C" fn motet_outcome_to_old(
             false => history.cells.kept().iter().map(|c| c.0).collect(),
         };
         expect(n, kept.len(), "ids")?;
-        let out = room(old, kept.len(), "old")?;
+        let out = values_mut(old, kept.len(), "old")?;
         out.iter_mut().zip(kept).for_each(|(out, old)| *out = crate::memory::id(old));
         Ok(())
     })
@@ -116,7 +116,7 @@ pub(crate) unsafe extern "C" fn motet_outcome_transfer(
         };
         let new = new.and_then(|field| field.values.to_f64()).unwrap_or_default();
         expect(n_out, new.len() / field.components, "rows")?;
-        room(out, new.len(), "out")?.copy_from_slice(&new);
+        values_mut(out, new.len(), "out")?.copy_from_slice(&new);
         Ok(())
     })
 }
@@ -186,12 +186,12 @@ pub(crate) unsafe extern "C" fn motet_remesh(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(outcome, "outcome")?;
+        let place = out_handle(outcome, "outcome")?;
         let mesh = &handle(mesh, "mesh")?.0;
-        let asked = sized(options)?;
-        let done = remesh_mesh(mesh, &asked.options(mesh)?, &Rules::default(), &threads(asked.threads)?)?;
+        let given = read_versioned(options)?;
+        let done = remesh_mesh(mesh, &given.options(mesh)?, &Rules::default(), &threads(given.threads)?)?;
         let MeshOutcome { mesh, history, report, .. } = done;
-        give(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
+        set_handle(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
         Ok(())
     })
 }
@@ -261,17 +261,17 @@ pub(crate) unsafe extern "C" fn motet_implant(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(outcome, "outcome")?;
+        let place = out_handle(outcome, "outcome")?;
         let host = &handle(host, "host")?.0;
-        let asked = sized(options)?;
+        let given = read_versioned(options)?;
         let meshes = values(devices, count(n_devices, "devices")?, "devices")?;
         let names = texts(names, n_devices, "names")?;
         let device =
-            |(mesh, name): (&*const MotetMesh, &str)| asked.device(&handle(*mesh, "device")?.0, name);
+            |(mesh, name): (&*const MotetMesh, &str)| given.device(&handle(*mesh, "device")?.0, name);
         let devices: Vec<Device> = meshes.iter().zip(names).map(device).collect::<Result<_>>()?;
-        let made = implant(host, &devices, &asked.options()?, &Rules::default(), &threads(asked.threads)?)?;
+        let made = implant(host, &devices, &given.options()?, &Rules::default(), &threads(given.threads)?)?;
         let Implanted { mesh, history, report } = made;
-        give(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
+        set_handle(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
         Ok(())
     })
 }
@@ -326,9 +326,9 @@ pub(crate) unsafe extern "C" fn motet_fill(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(outcome, "outcome")?;
-        let asked = sized(options)?;
-        let threads = threads(asked.threads)?;
+        let place = out_handle(outcome, "outcome")?;
+        let given = read_versioned(options)?;
+        let threads = threads(given.threads)?;
         let n = count(n_surfaces, "surfaces")?;
         let (meshes, names) = (values(surfaces, n, "surfaces")?, values(names, n, "names")?);
         let membranes =
@@ -339,21 +339,21 @@ pub(crate) unsafe extern "C" fn motet_fill(
         };
         let all: Vec<(&Mesh, Role, &str)> = (0..n).map(one).collect::<Result<_>>()?;
         let mut surfaces = Surfaces::new(&all)?;
-        if asked.repair != 0 || asked.cut != 0 {
-            let all = || Repairs::all(0.0, MOST_HOLE_EDGES);
-            let repairs = if asked.repair != 0 { all() } else { Repairs::default() };
-            let repairs = Repairs { cut: asked.cut != 0, keep_inward: asked.voids != 0, ..repairs };
+        if given.repair != 0 || given.cut != 0 {
+            let all = || Repairs::all(0.0, MAX_HOLE_EDGES);
+            let repairs = if given.repair != 0 { all() } else { Repairs::default() };
+            let repairs = Repairs { cut: given.cut != 0, keep_inward: given.voids != 0, ..repairs };
             surfaces.repair(&repairs, &threads)?;
         }
         let preflight = surfaces.preflight(&threads);
-        let options = asked.options()?;
+        let options = given.options()?;
         let filled = fill(&surfaces, &preflight, &options, &threads)?;
         let not_reached = filled.not_reached(&options);
         let report = json!({ "filled": filled.report, "improved": filled.improved, "layers": filled.layers });
-        give(place, MotetOutcome::new(filled.mesh, None, &report, not_reached)?);
+        set_handle(place, MotetOutcome::new(filled.mesh, None, &report, not_reached)?);
         Ok(())
     })
 }
 
 /// Holes with more edges than this are not closed as small ones.
-const MOST_HOLE_EDGES: usize = 32;
+const MAX_HOLE_EDGES: usize = 32;

@@ -6,8 +6,8 @@ use motet::{Error, Result};
 
 use crate::guard::{MotetError, guarded};
 use crate::memory::{
-    count, expect, free, give, handle, handle_mut, id, optional, place, room, rows, sized, threads, values,
-    versioned, vertex,
+    count, expect, free, handle, handle_mut, id, optional, out_handle, read_versioned, rows, set_handle,
+    threads, values, values_mut, versioned, vertex,
 };
 
 /// Surfaces and the threads that measure them.
@@ -42,20 +42,20 @@ pub(crate) unsafe extern "C" fn motet_contact_new(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(contact, "contact")?;
-        let asked = sized(options)?;
-        let threads = threads(asked.threads)?;
+        let place = out_handle(contact, "contact")?;
+        let given = read_versioned(options)?;
+        let threads = threads(given.threads)?;
         let points = rows(points, n_points, stride, "points")?.into_owned();
         let bodies = bodies(points.len(), triangles, counts, is_room, n_bodies)?;
         let options = Options {
-            warn: optional(asked.warn),
-            own: asked.own != 0,
-            within: optional(asked.within).unwrap_or(f64::INFINITY),
-            facing: asked.facing != 0,
-            fold: asked.fold,
+            warn: optional(given.warn),
+            own: given.own != 0,
+            within: optional(given.within).unwrap_or(f64::INFINITY),
+            facing: given.facing != 0,
+            fold: given.fold,
         };
         let contact = Contact::new(points, bodies, options, &threads)?;
-        give(place, MotetContact { contact, threads });
+        set_handle(place, MotetContact { contact, threads });
         Ok(())
     })
 }
@@ -120,7 +120,7 @@ pub(crate) unsafe extern "C" fn motet_contact_measure(
     guarded(error, || {
         let MotetContact { contact, threads } = handle_mut(contact, "contact")?;
         expect(n_points, contact.points().len(), "gaps")?;
-        let out = room(gaps, contact.points().len(), "gaps")?;
+        let out = values_mut(gaps, contact.points().len(), "gaps")?;
         let measured = contact.measure(threads);
         out.fill(f64::INFINITY);
         for body in &measured.bodies {
@@ -149,11 +149,11 @@ pub(crate) unsafe extern "C" fn motet_contact_nearest(
     guarded(error, || {
         let MotetContact { contact, threads } = handle_mut(contact, "contact")?;
         let distance = handle_mut(distance, "distance")?;
-        let asked = [first, second].map(i64::from);
+        let pair = [first, second].map(i64::from);
         let found = contact.nearest(threads).into_iter();
         let mut found = found.map(|(bodies, nearest)| (bodies.map(i64::from), nearest));
         let Some((bodies, nearest)) =
-            found.find(|(bodies, _)| *bodies == asked || [bodies[1], bodies[0]] == asked)
+            found.find(|(bodies, _)| *bodies == pair || [bodies[1], bodies[0]] == pair)
         else {
             return Err(Error::options(format!(
                 "bodies {first} and {second} are not measured against each other"
@@ -162,16 +162,16 @@ pub(crate) unsafe extern "C" fn motet_contact_nearest(
         };
         *distance = nearest.map_or(f64::INFINITY, |nearest| nearest.distance);
         let Some(nearest) = nearest else { return Ok(()) };
-        let is_turned = bodies != asked;
+        let is_turned = bodies != pair;
         let order = |[a, b]: [usize; 2]| if is_turned { [b, a] } else { [a, b] };
         if !places.is_null() {
-            let out = room(places, 6, "places")?;
+            let out = values_mut(places, 6, "places")?;
             for (k, of) in order([0, 1]).into_iter().enumerate() {
                 out[3 * k..][..3].copy_from_slice(&nearest.points[of]);
             }
         }
         if !triangles.is_null() {
-            let out = room(triangles, 2, "triangles")?;
+            let out = values_mut(triangles, 2, "triangles")?;
             out.copy_from_slice(&order([0, 1]).map(|of| id(nearest.triangles[of])));
         }
         Ok(())

@@ -79,7 +79,7 @@ pub(crate) fn guarded(error: *mut *mut MotetError, call: impl FnOnce() -> Result
 }
 
 /// Runs a call that fails only by a bug in this library; returns `otherwise` then.
-pub(crate) fn quiet<T>(otherwise: T, call: impl FnOnce() -> Option<T>) -> T {
+pub(crate) fn or_default<T>(otherwise: T, call: impl FnOnce() -> Option<T>) -> T {
     catch_unwind(AssertUnwindSafe(call)).ok().flatten().unwrap_or(otherwise)
 }
 

@@ -41,7 +41,7 @@ pub(crate) fn values<'a, T>(start: *const T, n: usize, what: &str) -> Result<&'a
 }
 
 /// A slice of `n` values to write.
-pub(crate) fn room<'a, T>(start: *mut T, n: usize, what: &str) -> Result<&'a mut [T]> {
+pub(crate) fn values_mut<'a, T>(start: *mut T, n: usize, what: &str) -> Result<&'a mut [T]> {
     match (start.is_null(), n) {
         (_, 0) => Ok(&mut []),
         (true, _) => Err(missing(what)),
@@ -83,7 +83,7 @@ pub(crate) fn fill_rows<T>(
     fill: impl FnOnce(&mut [Point]) -> Result<T>,
 ) -> Result<T> {
     let (n, step) = (count(n, what)?, stride(step, what)?);
-    let flat = room(start, extent(n, step), what)?;
+    let flat = values_mut(start, extent(n, step), what)?;
     if step == 3 {
         return fill(flat.as_chunks_mut::<3>().0);
     }
@@ -94,7 +94,7 @@ pub(crate) fn fill_rows<T>(
 }
 
 /// Fails where rows to be read share memory with rows to be written. Copied rows do not.
-pub(crate) fn apart(read: &[Point], written: *mut f64, n: i64, step: i64) -> Result<()> {
+pub(crate) fn check_no_overlap(read: &[Point], written: *mut f64, n: i64, step: i64) -> Result<()> {
     let length = extent(count(n, "rows")?, stride(step, "rows")?);
     let end = written.addr().saturating_add(length.saturating_mul(size_of::<f64>()));
     let read = read.as_ptr_range();
@@ -140,14 +140,14 @@ pub(crate) fn handle_mut<'a, T>(handle: *mut T, what: &str) -> Result<&'a mut T>
 }
 
 /// The place for a new handle, set to NULL until there is one.
-pub(crate) fn place<'a, T>(place: *mut *mut T, what: &str) -> Result<&'a mut *mut T> {
+pub(crate) fn out_handle<'a, T>(place: *mut *mut T, what: &str) -> Result<&'a mut *mut T> {
     let place = handle_mut(place, what)?;
     *place = std::ptr::null_mut();
     Ok(place)
 }
 
 /// Moves a new object to the heap and gives its handle to the caller.
-pub(crate) fn give<T>(place: &mut *mut T, thing: T) {
+pub(crate) fn set_handle<T>(place: &mut *mut T, thing: T) {
     *place = Box::into_raw(Box::new(thing));
 }
 
@@ -189,7 +189,7 @@ macro_rules! versioned {
         #[unsafe(no_mangle)]
         pub(crate) unsafe extern "C" fn $init(place: *mut $name, size: usize) {
             let default: $name = crate::memory::Versioned::DEFAULT;
-            crate::memory::put(&default, place, size);
+            crate::memory::copy_out(&default, place, size);
         }
     };
 }
@@ -197,7 +197,7 @@ pub(crate) use versioned;
 
 /// Copies a struct given by a program that may know fewer members: the others keep their defaults, as do all
 /// for NULL.
-pub(crate) fn sized<T: Versioned>(given: *const T) -> Result<T> {
+pub(crate) fn read_versioned<T: Versioned>(given: *const T) -> Result<T> {
     let mut all = T::DEFAULT;
     if given.is_null() {
         return Ok(all);
@@ -215,7 +215,7 @@ pub(crate) fn sized<T: Versioned>(given: *const T) -> Result<T> {
 }
 
 /// Copies a struct to the program, up to the size that the program knows.
-pub(crate) fn put<T: Versioned>(value: &T, place: *mut T, size: usize) {
+pub(crate) fn copy_out<T: Versioned>(value: &T, place: *mut T, size: usize) {
     if place.is_null() {
         return;
     }

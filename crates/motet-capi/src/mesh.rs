@@ -9,9 +9,10 @@ use motet::mesh::{CellKind, Cells, Field, Summary, Values};
 use motet::motion::FacetSet;
 use motet::{Error, Mesh, Result};
 
-use crate::guard::{MotetError, guarded, quiet, text as c_text};
+use crate::guard::{MotetError, guarded, or_default, text as c_text};
 use crate::memory::{
-    count, expect, fill_rows, free, give, handle, handle_mut, id, place, room, rows, text, values, vertex,
+    count, expect, fill_rows, free, handle, handle_mut, id, out_handle, rows, set_handle, text, values,
+    values_mut, vertex,
 };
 
 /// A mesh.
@@ -37,11 +38,11 @@ pub(crate) unsafe extern "C" fn motet_mesh_new(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(mesh, "mesh")?;
+        let place = out_handle(mesh, "mesh")?;
         let points = rows(points, n, stride, "points")?.into_owned();
         let mesh = Mesh::new(points, Cells::new());
         mesh.validate()?;
-        give(place, MotetMesh(mesh));
+        set_handle(place, MotetMesh(mesh));
         Ok(())
     })
 }
@@ -204,8 +205,8 @@ pub(crate) unsafe extern "C" fn motet_mesh_read(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(mesh, "mesh")?;
-        give(place, MotetMesh(io::read(text(path, "path")?)?));
+        let place = out_handle(mesh, "mesh")?;
+        set_handle(place, MotetMesh(io::read(text(path, "path")?)?));
         Ok(())
     })
 }
@@ -228,8 +229,8 @@ pub(crate) unsafe extern "C" fn motet_mesh_copy(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(copy, "copy")?;
-        give(place, MotetMesh(handle(mesh, "mesh")?.0.clone()));
+        let place = out_handle(copy, "copy")?;
+        set_handle(place, MotetMesh(handle(mesh, "mesh")?.0.clone()));
         Ok(())
     })
 }
@@ -241,7 +242,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_free(mesh: *mut MotetMesh) {
 
 /// A number computed from a mesh; `otherwise` for NULL.
 fn number<T>(mesh: *const MotetMesh, otherwise: T, of: impl FnOnce(&Mesh) -> T) -> T {
-    quiet(otherwise, || handle(mesh, "mesh").ok().map(|mesh| of(&mesh.0)))
+    or_default(otherwise, || handle(mesh, "mesh").ok().map(|mesh| of(&mesh.0)))
 }
 
 #[unsafe(no_mangle)]
@@ -295,7 +296,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_of_kind(
         let kind = self::kind(kind)?;
         let cells = mesh.cells.iter().filter(|(_, of, _)| *of == kind).map(|(_, _, vertices)| vertices);
         expect(n, cells.clone().map(<[VertexId]>::len).sum(), "vertices")?;
-        let out = room(vertices, count(n, "vertices")?, "vertices")?;
+        let out = values_mut(vertices, count(n, "vertices")?, "vertices")?;
         out.iter_mut().zip(cells.flatten()).for_each(|(out, v)| *out = id(v.0));
         Ok(())
     })
@@ -317,8 +318,8 @@ pub(crate) unsafe extern "C" fn motet_mesh_cells(
         expect(n_cells, cells.len(), "cells")?;
         expect(n_vertices, lists.items().len(), "vertices")?;
         let (kinds, offsets) =
-            (room(kinds, cells.len(), "kinds")?, room(offsets, cells.len() + 1, "offsets")?);
-        let vertices = room(vertices, lists.items().len(), "vertices")?;
+            (values_mut(kinds, cells.len(), "kinds")?, values_mut(offsets, cells.len() + 1, "offsets")?);
+        let vertices = values_mut(vertices, lists.items().len(), "vertices")?;
         kinds.iter_mut().zip(cells.kinds()).for_each(|(out, kind)| *out = kind.0.into());
         offsets.iter_mut().zip(lists.offsets()).for_each(|(out, &offset)| *out = offset.into());
         vertices.iter_mut().zip(lists.items()).for_each(|(out, v)| *out = id(v.0));
@@ -336,7 +337,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_labels(
     guarded(error, || {
         let mesh = &handle(mesh, "mesh")?.0;
         expect(n, mesh.cells.len(), "labels")?;
-        let out = room(labels, mesh.cells.len(), "labels")?;
+        let out = values_mut(labels, mesh.cells.len(), "labels")?;
         out.fill(0);
         for (dim, labels) in [(3, mesh.regions()), (2, mesh.patches())] {
             let Some(labels) = labels else { continue };
@@ -380,7 +381,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_patch_vertices(
     guarded(error, || {
         let patch = FacetSet::find(&handle(mesh, "mesh")?.0, text(name, "name")?)?;
         expect(n, patch.vertices.len(), "vertices")?;
-        let out = room(vertices, patch.vertices.len(), "vertices")?;
+        let out = values_mut(vertices, patch.vertices.len(), "vertices")?;
         out.iter_mut().zip(&patch.vertices).for_each(|(out, v)| *out = id(v.0));
         Ok(())
     })
@@ -419,7 +420,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_array(
         };
         expect(n, field.n_rows(), "rows")?;
         let all = field.values.to_f64().unwrap_or_default();
-        room(values, all.len(), "values")?.copy_from_slice(&all);
+        values_mut(values, all.len(), "values")?.copy_from_slice(&all);
         Ok(())
     })
 }
@@ -434,7 +435,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_eas(
     guarded(error, || {
         let mesh = &handle(mesh, "mesh")?.0;
         expect(n, mesh.cells.len(), "cells")?;
-        let out = room(values, mesh.cells.len(), "eas")?;
+        let out = values_mut(values, mesh.cells.len(), "eas")?;
         out.fill(f64::NAN);
         mesh.cells.tets().for_each(|(cell, tet): (CellId, _)| {
             out[cell.index()] = eas(tet.map(|v| mesh.points[v.index()]));
@@ -450,16 +451,16 @@ pub(crate) unsafe extern "C" fn motet_mesh_summary(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(summary, "summary")?;
-        let told = json(&Summary::of(&handle(mesh, "mesh")?.0))?;
-        give(place, MotetText(told));
+        let place = out_handle(summary, "summary")?;
+        let report = json(&Summary::of(&handle(mesh, "mesh")?.0))?;
+        set_handle(place, MotetText(report));
         Ok(())
     })
 }
 
 /// A report as JSON text.
-pub(crate) fn json(told: &impl serde::Serialize) -> Result<CString> {
-    let text = serde_json::to_string(told);
+pub(crate) fn json(report: &impl serde::Serialize) -> Result<CString> {
+    let text = serde_json::to_string(report);
     text.map(c_text).map_err(|e| Error::input(format!("the report cannot be serialized: {e}")))
 }
 

@@ -10,10 +10,10 @@ use motet::motion::{
 };
 use motet::{Error, Mesh, Result};
 
-use crate::guard::{MotetError, guarded, quiet};
+use crate::guard::{MotetError, guarded, or_default};
 use crate::memory::{
-    apart, count, expect, fill_rows, free, give, handle, handle_mut, id, optional, place, put, room, rows,
-    sized, texts, threads, values, versioned, vertex,
+    check_no_overlap, copy_out, count, expect, fill_rows, free, handle, handle_mut, id, optional, out_handle,
+    read_versioned, rows, set_handle, texts, threads, values, values_mut, versioned, vertex,
 };
 use crate::mesh::MotetMesh;
 
@@ -94,8 +94,8 @@ pub(crate) fn extent(distance: f64, cells: usize) -> Result<Option<Extent>> {
 /// A method by its number in the header.
 pub(crate) fn method(number: i32, words: MethodWords) -> Result<Method> {
     words.check()?;
-    let asked = usize::try_from(number).ok().and_then(|k| Method::all(words).into_iter().nth(k));
-    asked.ok_or_else(|| Error::options(format!("unknown method {number}")).remedy("MOTET_DELAUNAY is 0"))
+    let method = usize::try_from(number).ok().and_then(|k| Method::all(words).into_iter().nth(k));
+    method.ok_or_else(|| Error::options(format!("unknown method {number}")).remedy("MOTET_DELAUNAY is 0"))
 }
 
 #[unsafe(no_mangle)]
@@ -106,13 +106,13 @@ pub(crate) unsafe extern "C" fn motet_mover_new(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(mover, "mover")?;
+        let place = out_handle(mover, "mover")?;
         let mesh = &handle(mesh, "mesh")?.0;
         mesh.validate()?;
-        let asked = sized(options)?;
-        let threads = threads(asked.threads)?;
-        let mover = Mover::new(mesh, &asked.options(mesh)?, &threads)?;
-        give(place, MotetMover { mover, threads });
+        let given = read_versioned(options)?;
+        let threads = threads(given.threads)?;
+        let mover = Mover::new(mesh, &given.options(mesh)?, &threads)?;
+        set_handle(place, MotetMover { mover, threads });
         Ok(())
     })
 }
@@ -124,12 +124,12 @@ pub(crate) unsafe extern "C" fn motet_mover_free(mover: *mut MotetMover) {
 
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_mover_n_points(mover: *const MotetMover) -> i64 {
-    quiet(0, || Some(handle(mover, "mover").ok()?.mover.reference().len() as i64))
+    or_default(0, || Some(handle(mover, "mover").ok()?.mover.reference().len() as i64))
 }
 
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_mover_n_boundary(mover: *const MotetMover) -> i64 {
-    quiet(0, || Some(handle(mover, "mover").ok()?.mover.boundary().len() as i64))
+    or_default(0, || Some(handle(mover, "mover").ok()?.mover.boundary().len() as i64))
 }
 
 #[unsafe(no_mangle)]
@@ -142,7 +142,7 @@ pub(crate) unsafe extern "C" fn motet_mover_boundary(
     guarded(error, || {
         let boundary = handle(mover, "mover")?.mover.boundary();
         expect(n, boundary.len(), "vertices")?;
-        let out = room(vertices, boundary.len(), "vertices")?;
+        let out = values_mut(vertices, boundary.len(), "vertices")?;
         out.iter_mut().zip(boundary).for_each(|(out, v)| *out = id(v.0));
         Ok(())
     })
@@ -163,8 +163,8 @@ pub(crate) unsafe extern "C" fn motet_mover_weights(
         let found = mover.weights(vertex);
         *handle_mut(is_hanging, "is_hanging")? = found.is_some().into();
         if let Some((of, with)) = found {
-            room(vertices, 4, "vertices")?.copy_from_slice(&of.map(|v| id(v.0)));
-            room(weights, 4, "weights")?.copy_from_slice(&with);
+            values_mut(vertices, 4, "vertices")?.copy_from_slice(&of.map(|v| id(v.0)));
+            values_mut(weights, 4, "weights")?.copy_from_slice(&with);
         }
         Ok(())
     })
@@ -186,7 +186,7 @@ pub(crate) unsafe extern "C" fn motet_mover_step(
         expect(n_boundary, mover.boundary().len(), "displacements")?;
         expect(n_points, mover.reference().len(), "points")?;
         let displacement = rows(displacement, n_boundary, displacement_stride, "displacement")?;
-        apart(&displacement, points, n_points, points_stride)?;
+        check_no_overlap(&displacement, points, n_points, points_stride)?;
         fill_rows(points, n_points, points_stride, "points", |out| mover.step(&displacement, out, threads))
     })
 }
@@ -253,13 +253,13 @@ pub(crate) unsafe extern "C" fn motet_mover_advance(
         expect(n_boundary, mover.boundary().len(), "displacements")?;
         expect(n_points, mover.reference().len(), "points")?;
         let displacement = rows(displacement, n_boundary, displacement_stride, "displacement")?;
-        apart(&displacement, points, n_points, points_stride)?;
+        check_no_overlap(&displacement, points, n_points, points_stride)?;
         let reached = fill_rows(points, n_points, points_stride, "points", |out| {
             mover.advance(&displacement, out, threads)
         })?;
         if !certificate.is_null() {
-            let size = sized(certificate.cast_const())?.size;
-            put(&MotetCertificate::of(&reached), certificate, size);
+            let size = read_versioned(certificate.cast_const())?.size;
+            copy_out(&MotetCertificate::of(&reached), certificate, size);
         }
         Ok(())
     })
@@ -284,11 +284,11 @@ pub(crate) unsafe extern "C" fn motet_point_mover_new(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(mover, "mover")?;
+        let place = out_handle(mover, "mover")?;
         let threads = threads(n_threads)?;
         let nodes = rows(nodes, n_nodes, node_stride, "nodes")?;
         let mover = PointMover::new(&nodes, &rows(points, n_points, point_stride, "points")?, &threads)?;
-        give(place, MotetPointMover { mover, threads });
+        set_handle(place, MotetPointMover { mover, threads });
         Ok(())
     })
 }
@@ -314,7 +314,7 @@ pub(crate) unsafe extern "C" fn motet_point_mover_step(
         expect(n_nodes, mover.n_nodes(), "displacements")?;
         expect(n_points, mover.reference().len(), "points")?;
         let displacement = rows(displacement, n_nodes, displacement_stride, "displacement")?;
-        apart(&displacement, points, n_points, points_stride)?;
+        check_no_overlap(&displacement, points, n_points, points_stride)?;
         fill_rows(points, n_points, points_stride, "points", |out| mover.step(&displacement, out, threads))
     })
 }

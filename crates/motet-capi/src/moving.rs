@@ -11,10 +11,10 @@ use motet::{Error, Mesh, Result, contact, io, remesh};
 use serde_json::json;
 
 use crate::changing::{MotetOutcome, surface_rule};
-use crate::guard::{MotetError, guarded, quiet};
+use crate::guard::{MotetError, guarded, or_default};
 use crate::memory::{
-    count, expect, fill_rows, free, give, handle, handle_mut, optional, owned, place, put, rows, sized, text,
-    threads, versioned,
+    copy_out, count, expect, fill_rows, free, handle, handle_mut, optional, out_handle, owned,
+    read_versioned, rows, set_handle, text, threads, versioned,
 };
 use crate::mesh::{MotetMesh, field, on_points};
 use crate::motion::{extent, method};
@@ -128,13 +128,13 @@ pub(crate) unsafe extern "C" fn motet_moving_new(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(moving, "moving")?;
+        let place = out_handle(moving, "moving")?;
         let mesh = &handle(mesh, "mesh")?.0;
         mesh.validate()?;
-        let asked = sized(options)?;
-        let threads = threads(asked.threads)?;
-        let moving = MovingMesh::new(mesh, asked.options(mesh)?, &threads)?;
-        give(place, MotetMoving { moving, threads });
+        let given = read_versioned(options)?;
+        let threads = threads(given.threads)?;
+        let moving = MovingMesh::new(mesh, given.options(mesh)?, &threads)?;
+        set_handle(place, MotetMoving { moving, threads });
         Ok(())
     })
 }
@@ -147,12 +147,12 @@ pub(crate) unsafe extern "C" fn motet_moving_load(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(moving, "moving")?;
+        let place = out_handle(moving, "moving")?;
         let path = text(path, "path")?;
-        let asked = sized(options)?;
-        let threads = threads(asked.threads)?;
-        let moving = MovingMesh::load(path, asked.options(&io::read(path)?)?, &threads)?;
-        give(place, MotetMoving { moving, threads });
+        let given = read_versioned(options)?;
+        let threads = threads(given.threads)?;
+        let moving = MovingMesh::load(path, given.options(&io::read(path)?)?, &threads)?;
+        set_handle(place, MotetMoving { moving, threads });
         Ok(())
     })
 }
@@ -173,17 +173,17 @@ pub(crate) unsafe extern "C" fn motet_moving_free(moving: *mut MotetMoving) {
 
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_moving_n_driven(moving: *const MotetMoving) -> i64 {
-    quiet(0, || Some(handle(moving, "moving").ok()?.moving.driven_places().len() as i64))
+    or_default(0, || Some(handle(moving, "moving").ok()?.moving.driven_places().len() as i64))
 }
 
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_moving_time(moving: *const MotetMoving) -> f64 {
-    quiet(f64::NAN, || Some(handle(moving, "moving").ok()?.moving.time()))
+    or_default(f64::NAN, || Some(handle(moving, "moving").ok()?.moving.time()))
 }
 
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_moving_step(moving: *const MotetMoving) -> i64 {
-    quiet(0, || Some(handle(moving, "moving").ok()?.moving.step() as i64))
+    or_default(0, || Some(handle(moving, "moving").ok()?.moving.step() as i64))
 }
 
 #[unsafe(no_mangle)]
@@ -309,16 +309,16 @@ pub(crate) unsafe extern "C" fn motet_moving_advance(
     guarded(error, || {
         let MotetMoving { moving, threads } = handle_mut(moving, "moving")?;
         expect(n_driven, moving.driven_places().len(), "displacements")?;
-        let size = sized(step.cast_const())?.size;
+        let size = read_versioned(step.cast_const())?.size;
         let reached =
             moving.advance(time, &rows(displacement, n_driven, stride, "displacement")?, threads)?;
-        put(&MotetStep::of(&reached), step, size);
+        copy_out(&MotetStep::of(&reached), step, size);
         Ok(())
     })
 }
 
 /// Stores the number of changes of a call, unless `changes` is NULL.
-fn tell(n_changes: usize, changes: *mut i64) {
+fn store_count(n_changes: usize, changes: *mut i64) {
     // SAFETY: the header requires NULL or a place for a number.
     if let Some(place) = unsafe { changes.as_mut() } {
         *place = n_changes as i64;
@@ -333,7 +333,7 @@ pub(crate) unsafe extern "C" fn motet_moving_repair(
 ) -> i32 {
     guarded(error, || {
         let MotetMoving { moving, threads } = handle_mut(moving, "moving")?;
-        tell(moving.repair(threads)?.into_iter().count(), changes);
+        store_count(moving.repair(threads)?.into_iter().count(), changes);
         Ok(())
     })
 }
@@ -344,7 +344,7 @@ fn refined(
     changes: *mut i64,
 ) -> Result<()> {
     let MotetMoving { moving, threads } = handle_mut(moving, "moving")?;
-    tell(moving.refine(&wanted(threads)?, threads)?.len(), changes);
+    store_count(moving.refine(&wanted(threads)?, threads)?.len(), changes);
     Ok(())
 }
 
@@ -392,7 +392,7 @@ pub(crate) unsafe extern "C" fn motet_moving_refine_gaps(
 
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_moving_remembers(moving: *const MotetMoving, step: i64) -> i32 {
-    quiet(0, || {
+    or_default(0, || {
         let moving = &handle(moving, "moving").ok()?.moving;
         Some(moving.remembers(usize::try_from(step).ok()?).into())
     })
@@ -406,12 +406,12 @@ pub(crate) unsafe extern "C" fn motet_moving_since(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(outcome, "outcome")?;
+        let place = out_handle(outcome, "outcome")?;
         let moving = &handle(moving, "moving")?.moving;
         let step = count(step, "steps")?;
         if let Some(history) = moving.history_since(step)? {
             let report = json!({ "since": step, "step": moving.step() });
-            give(place, MotetOutcome::new(moving.mesh().clone(), Some(history), &report, None)?);
+            set_handle(place, MotetOutcome::new(moving.mesh().clone(), Some(history), &report, None)?);
         }
         Ok(())
     })

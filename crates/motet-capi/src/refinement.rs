@@ -8,7 +8,7 @@ use serde_json::json;
 
 use crate::changing::MotetOutcome;
 use crate::guard::{MotetError, guarded};
-use crate::memory::{expect, free, give, handle, handle_mut, place, room, threads, values};
+use crate::memory::{expect, free, handle, handle_mut, out_handle, set_handle, threads, values, values_mut};
 use crate::mesh::MotetMesh;
 
 /// A refinement and the threads that it uses.
@@ -25,10 +25,10 @@ pub(crate) unsafe extern "C" fn motet_refinement_new(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let place = place(refinement, "refinement")?;
+        let place = out_handle(refinement, "refinement")?;
         let threads = threads(n_threads)?;
         let refinement = MeshRefinement::new(&handle(mesh, "mesh")?.0, Options::default(), &threads)?;
-        give(place, MotetRefinement { refinement, threads });
+        set_handle(place, MotetRefinement { refinement, threads });
         Ok(())
     })
 }
@@ -57,7 +57,7 @@ pub(crate) unsafe extern "C" fn motet_refinement_generations(
         let MotetRefinement { refinement, .. } = handle(refinement, "refinement")?;
         let n_cells = refinement.mesh().cells.len();
         expect(n, n_cells, "cells")?;
-        let out = room(generations, n_cells, "generations")?;
+        let out = values_mut(generations, n_cells, "generations")?;
         out.fill(-1);
         let cells = refinement.part().tet_to_cell;
         let all = cells.iter().zip(refinement.refinement().generations());
@@ -67,7 +67,7 @@ pub(crate) unsafe extern "C" fn motet_refinement_generations(
 }
 
 /// Stores the outcome of a change, unless `outcome` is NULL.
-fn done(
+fn store_outcome(
     refinement: &MeshRefinement,
     history: History,
     not_reached: Option<String>,
@@ -76,10 +76,10 @@ fn done(
     if outcome.is_null() {
         return Ok(());
     }
-    let place = place(outcome, "outcome")?;
+    let place = out_handle(outcome, "outcome")?;
     let mesh = refinement.mesh().clone();
     let report = json!({ "tets": refinement.refinement().summary().n_tets });
-    give(place, MotetOutcome::new(mesh, Some(history), &report, not_reached)?);
+    set_handle(place, MotetOutcome::new(mesh, Some(history), &report, not_reached)?);
     Ok(())
 }
 
@@ -91,7 +91,7 @@ fn change(
     outcome: *mut *mut MotetOutcome,
 ) -> Result<()> {
     if !outcome.is_null() {
-        place(outcome, "outcome")?;
+        out_handle(outcome, "outcome")?;
     }
     let MotetRefinement { refinement, threads } = handle_mut(refinement, "refinement")?;
     expect(n, refinement.mesh().cells.len(), "marks")?;
@@ -105,7 +105,7 @@ fn change(
         true => refinement.coarsen(&marked, &rules, threads)?,
     };
     let held = (summary.n_held > 0).then(|| format!("{} marked tets could not be changed", summary.n_held));
-    done(refinement, history, held, outcome)
+    store_outcome(refinement, history, held, outcome)
 }
 
 #[unsafe(no_mangle)]
@@ -141,7 +141,7 @@ pub(crate) unsafe extern "C" fn motet_refinement_near(
 ) -> i32 {
     guarded(error, || {
         if !outcome.is_null() {
-            place(outcome, "outcome")?;
+            out_handle(outcome, "outcome")?;
         }
         let MotetRefinement { refinement, threads } = handle_mut(refinement, "refinement")?;
         let target = Target::of_mesh(&handle(surface, "surface")?.0, threads)?.into();
@@ -151,6 +151,6 @@ pub(crate) unsafe extern "C" fn motet_refinement_near(
         let reached = refinement.reach(&wanted, &Rules::default(), threads, |_| ())?;
         let not_reached = reached.not_reached();
         let history = reached.history.ok_or_else(|| Error::input("no history was kept"))?;
-        done(refinement, history, not_reached, outcome)
+        store_outcome(refinement, history, not_reached, outcome)
     })
 }

@@ -71,7 +71,7 @@ impl Console {
     }
 
     /// Prints a result for people on standard output; nothing where JSON is requested.
-    pub(crate) fn say(&self, text: impl Display) {
+    pub(crate) fn print(&self, text: impl Display) {
         if !self.json && !self.quiet {
             self.put(format!("{}\n", lines(&text)).as_bytes());
         }
@@ -91,7 +91,7 @@ impl Console {
                     text.push(b'\n');
                     self.put(&text);
                 }
-                Err(e) => self.keep(e.into()),
+                Err(e) => self.record_failure(e.into()),
             }
         }
     }
@@ -111,17 +111,17 @@ impl Console {
     /// Prints the help text of the call on standard output.
     pub(crate) fn help(&self, help: &clap::Error) {
         if let Err(e) = help.print() {
-            self.keep(e);
+            self.record_failure(e);
         }
     }
 
     fn put(&self, bytes: &[u8]) {
         if let Err(e) = io::stdout().write_all(bytes) {
-            self.keep(e);
+            self.record_failure(e);
         }
     }
 
-    fn keep(&self, error: io::Error) {
+    fn record_failure(&self, error: io::Error) {
         self.failed.borrow_mut().get_or_insert(error);
     }
 
@@ -131,7 +131,7 @@ impl Console {
     /// The first failure of standard output, unless a reader has closed it.
     pub(crate) fn finish(&self) -> motet::Result<()> {
         if let Err(e) = io::stdout().flush() {
-            self.keep(e);
+            self.record_failure(e);
         }
         match self.failed.take().filter(|e| e.kind() != ErrorKind::BrokenPipe) {
             None => Ok(()),

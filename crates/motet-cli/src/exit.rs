@@ -8,16 +8,16 @@ use crate::outcome::Outcome;
 use crate::words::shown;
 
 const DONE: u8 = 0;
-const ELSE: u8 = 1;
-const WORDS: u8 = 2;
-const INPUT: u8 = 3;
+const OTHER_ERROR: u8 = 1;
+const USAGE_ERROR: u8 = 2;
+const INPUT_ERROR: u8 = 3;
 const NOT_REACHED: u8 = 4;
 
-fn of_kind(kind: ErrorKind) -> u8 {
+fn exit_code(kind: ErrorKind) -> u8 {
     match kind {
-        ErrorKind::Options => WORDS,
-        ErrorKind::Input | ErrorKind::Io => INPUT,
-        _ => ELSE,
+        ErrorKind::Options => USAGE_ERROR,
+        ErrorKind::Input | ErrorKind::Io => INPUT_ERROR,
+        _ => OTHER_ERROR,
     }
 }
 
@@ -30,7 +30,7 @@ pub(crate) fn status(outcome: motet::Result<Outcome>, console: &Console) -> u8 {
             NOT_REACHED
         }
         Err(error) => {
-            let code = of_kind(error.kind());
+            let code = exit_code(error.kind());
             console.report(&json!({ "error": described(&error, code) }));
             console.error(&error);
             code
@@ -40,7 +40,7 @@ pub(crate) fn status(outcome: motet::Result<Outcome>, console: &Console) -> u8 {
         Ok(()) => code,
         Err(error) => {
             console.error(&error);
-            if code == DONE { ELSE } else { code }
+            if code == DONE { OTHER_ERROR } else { code }
         }
     }
 }
@@ -57,8 +57,8 @@ fn described(error: &Error, code: u8) -> serde_json::Value {
 }
 
 /// The exit status of a call that could not be parsed, or that only requested help.
-pub(crate) fn misread(misread: &clap::Error, json: bool) -> u8 {
-    let code = u8::try_from(misread.exit_code()).unwrap_or(ELSE);
+pub(crate) fn parse_failure_status(misread: &clap::Error, json: bool) -> u8 {
+    let code = u8::try_from(misread.exit_code()).unwrap_or(OTHER_ERROR);
     let console = Console::plain(json);
     if code == DONE {
         // Help and versions are for people, even where JSON is requested.
@@ -72,7 +72,7 @@ pub(crate) fn misread(misread: &clap::Error, json: bool) -> u8 {
     match console.finish() {
         Err(error) if code == DONE => {
             console.error(&error);
-            ELSE
+            OTHER_ERROR
         }
         _ => code,
     }

@@ -30,7 +30,9 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     let call = match Call::try_parse_from(&words) {
         Ok(call) => call,
-        Err(misread) => return exit::misread(&misread, words.iter().any(|word| word == "--json")),
+        Err(misread) => {
+            return exit::parse_failure_status(&misread, words.iter().any(|word| word == "--json"));
+        }
     };
     let console = Console::new(&call.common);
     let outcome = match call.verb {

@@ -9,9 +9,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use motet::base::{Progress, Watch};
 
 /// How often the line is redrawn.
-const EVERY: Duration = Duration::from_millis(200);
+const REDRAW_INTERVAL: Duration = Duration::from_millis(200);
 /// No estimate before this: the first parts of a stage say little about the others.
-const SOONEST: Duration = Duration::from_secs(1);
+const MIN_ESTIMATE_AGE: Duration = Duration::from_secs(1);
 
 /// A progress line on standard error, drawn by a thread of its own until dropped. Where standard error is no
 /// terminal, there is neither line nor thread.
@@ -79,12 +79,12 @@ struct Line {
 impl Line {
     fn follow(&self, is_done: &Receiver<()>) {
         let begin = Instant::now();
-        let mut stage = Pace::default();
-        let mut steps = self.steps.map(|of| Pace::new(Progress { stage: self.verb, done: 0, of }));
+        let mut stage = Activity::default();
+        let mut steps = self.steps.map(|of| Activity::new(Progress { stage: self.verb, done: 0, of }));
         // A line of 80 columns has room for the longest stage.
         let styles = ["{bar:12} {wide_msg}", "{spinner} {wide_msg}"]
             .map(|text| ProgressStyle::with_template(text).unwrap_or_else(|_| ProgressStyle::default_bar()));
-        while is_done.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
+        while is_done.recv_timeout(REDRAW_INTERVAL) == Err(RecvTimeoutError::Timeout) {
             let at = begin.elapsed();
             stage.take(self.watch.progress(), at);
             let (text, of) = match &mut steps {
@@ -110,14 +110,14 @@ impl Line {
 
 /// One activity and when it began.
 #[derive(Default)]
-struct Pace {
+struct Activity {
     now: Progress,
     /// How much was done when it began, and the time then.
     first: usize,
     began: Duration,
 }
 
-impl Pace {
+impl Activity {
     fn new(now: Progress) -> Self {
         Self { now, ..Self::default() }
     }
@@ -132,10 +132,10 @@ impl Pace {
 
     /// How long the rest takes at the speed so far; `None` where the amount is unknown or it is too early to
     /// say.
-    fn left(&self, at: Duration) -> Option<Duration> {
+    fn remaining(&self, at: Duration) -> Option<Duration> {
         let took = at.saturating_sub(self.began);
         let (made, rest) = (self.now.done - self.first, self.now.of.saturating_sub(self.now.done));
-        let is_known = made > 0 && rest > 0 && took >= SOONEST;
+        let is_known = made > 0 && rest > 0 && took >= MIN_ESTIMATE_AGE;
         is_known.then(|| took.mul_f64(rest as f64 / made as f64))
     }
 
@@ -148,7 +148,7 @@ impl Pace {
     }
 
     fn text(&self, at: Duration) -> String {
-        match self.left(at) {
+        match self.remaining(at) {
             Some(left) => format!("{}, {} left", self.part(), rough(left)),
             None => self.part(),
         }
@@ -173,28 +173,28 @@ mod tests {
 
     #[test]
     fn what_is_left_is_told_of_a_stage_alone_and_by_work_done() {
-        let mut pace = Pace::default();
-        pace.take(Progress { stage: "reading", done: 0, of: 0 }, seconds(0));
-        assert_eq!((pace.left(seconds(50)), pace.text(seconds(50)).as_str()), (None, "reading"));
+        let mut activity = Activity::default();
+        activity.take(Progress { stage: "reading", done: 0, of: 0 }, seconds(0));
+        assert_eq!((activity.remaining(seconds(50)), activity.text(seconds(50)).as_str()), (None, "reading"));
         // The 50 seconds before say nothing about this stage.
-        pace.take(Progress { stage: "repairing", done: 0, of: 40 }, seconds(50));
-        assert_eq!(pace.text(seconds(60)), "repairing, 0 of 40");
-        pace.take(Progress { stage: "repairing", done: 10, of: 40 }, seconds(60));
-        assert_eq!(pace.left(seconds(60)), Some(seconds(30)));
-        assert_eq!(pace.text(seconds(60)), "repairing, 10 of 40, 30 s left");
-        pace.take(Progress { stage: "repairing", done: 40, of: 40 }, seconds(90));
-        assert_eq!(pace.left(seconds(90)), None);
+        activity.take(Progress { stage: "repairing", done: 0, of: 40 }, seconds(50));
+        assert_eq!(activity.text(seconds(60)), "repairing, 0 of 40");
+        activity.take(Progress { stage: "repairing", done: 10, of: 40 }, seconds(60));
+        assert_eq!(activity.remaining(seconds(60)), Some(seconds(30)));
+        assert_eq!(activity.text(seconds(60)), "repairing, 10 of 40, 30 s left");
+        activity.take(Progress { stage: "repairing", done: 40, of: 40 }, seconds(90));
+        assert_eq!(activity.remaining(seconds(90)), None);
         // The same stage again, a second round.
-        pace.take(Progress { stage: "repairing", done: 2, of: 10 }, seconds(100));
-        pace.take(Progress { stage: "repairing", done: 6, of: 10 }, seconds(104));
-        assert_eq!(pace.left(seconds(104)), Some(seconds(4)));
+        activity.take(Progress { stage: "repairing", done: 2, of: 10 }, seconds(100));
+        activity.take(Progress { stage: "repairing", done: 6, of: 10 }, seconds(104));
+        assert_eq!(activity.remaining(seconds(104)), Some(seconds(4)));
     }
 
     #[test]
     fn more_done_than_there_was_to_do_is_no_time() {
-        let mut pace = Pace::default();
-        pace.take(Progress { stage: "moving", done: 9, of: 8 }, seconds(0));
-        assert_eq!(pace.left(seconds(5)), None);
+        let mut activity = Activity::default();
+        activity.take(Progress { stage: "moving", done: 9, of: 8 }, seconds(0));
+        assert_eq!(activity.remaining(seconds(5)), None);
         assert_eq!([50, 300, 9000].map(|s| rough(seconds(s))), ["50 s", "5 min", "2 h"]);
     }
 }

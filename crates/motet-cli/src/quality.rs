@@ -5,19 +5,19 @@ use motet::mesh::Qualities;
 use crate::table::{Table, short};
 
 /// The column headings of [`row`].
-pub(crate) const HEAD: [&str; 6] = ["worst EAS", "1 % below", "5 % below", "median", "mean", "mean ratio"];
+pub(crate) const HEADER: [&str; 6] = ["worst EAS", "1 % below", "5 % below", "median", "mean", "mean ratio"];
 
 /// The distribution of the EAS of all tets and the mean of their mean ratios; dashes where there are no tets.
 pub(crate) fn row(quality: Option<&Qualities>) -> [String; 6] {
     let Some(Qualities { worst, p1, p5, median, mean, mean_ratio }) = quality else {
-        return HEAD.map(|_| "-".into());
+        return HEADER.map(|_| "-".into());
     };
     [worst, p1, p5, median, mean, mean_ratio].map(|x| short(*x))
 }
 
 /// A table with a row for each mesh, or each time of a mesh.
 pub(crate) fn table<S: Into<String>>(rows: impl IntoIterator<Item = (S, Option<Qualities>)>) -> Table {
-    let mut table = Table::new(["quality of all tets"].into_iter().chain(HEAD));
+    let mut table = Table::new(["quality of all tets"].into_iter().chain(HEADER));
     for (name, quality) in rows {
         table.row([name.into()].into_iter().chain(row(quality.as_ref())));
     }

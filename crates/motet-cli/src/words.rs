@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn what_is_off_is_told() {
-        assert!(numbers("1,x").is_err_and(|told| told.contains("`x` is no finite number")));
+        assert!(numbers("1,x").is_err_and(|why| why.contains("`x` is not a finite number")));
         for text in ["0", "-1", "nan", "inf", "x", ""] {
             assert_eq!(positive(text), Err("a positive number is expected".into()));
         }

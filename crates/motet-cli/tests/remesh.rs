@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::chance::Chance;
+use common::random::Random;
 use common::{Folder, stderr, stdout};
 use motet::Mesh;
 use motet::base::{CellId, Id, Point, VertexId};
@@ -21,9 +21,9 @@ fn linear(p: Point) -> f64 {
 /// A box whose inner vertices were shaken by up to `shake` of a cell, with a linear and two constant fields.
 fn shaken(shake: f64) -> Mesh {
     let mut mesh = box_grid([5; 3], [[0.0; 3], [1.0; 3]]);
-    let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
+    let mut random = Random(0x9e37_79b9_7f4a_7c15);
     for point in mesh.points.iter_mut().filter(|p| p.iter().all(|&x| x > 0.0 && x < 1.0)) {
-        *point = point.map(|x| x + shake / 5.0 * chance.between(-1.0, 1.0));
+        *point = point.map(|x| x + shake / 5.0 * random.between(-1.0, 1.0));
     }
     let (n_points, n_cells) = (mesh.points.len(), mesh.cells.len());
     mesh.set_point_field(Field::scalars(
@@ -212,10 +212,10 @@ fn the_report_tells_how_well_arrays_were_carried() {
     let folder = Folder::new();
     // Without inverted tets, since overlapping tets contain too much.
     let mut mesh = shaken(0.3);
-    let mut chance = Chance(0x1234_5678_9abc_def1);
+    let mut random = Random(0x1234_5678_9abc_def1);
     mesh.set_cell_field(Field::scalars(
         "pressure",
-        (0..mesh.cells.len()).map(|_| chance.between(-1.0, 1.0)).collect::<Vec<_>>(),
+        (0..mesh.cells.len()).map(|_| random.between(-1.0, 1.0)).collect::<Vec<_>>(),
     ));
     folder.mesh("shaken.vtu", &mesh);
     let words = ["remesh", "shaken.vtu", "-o", "out.vtu", "--json", "--quality"];
@@ -337,12 +337,12 @@ fn other_formats_in_and_out() {
 fn a_surface_that_adapts_lets_more_be_repaired() {
     let folder = Folder::new();
     let mut mesh = shaken(0.0);
-    let mut chance = Chance(0x2545_f491_4f6c_dd1d);
+    let mut random = Random(0x2545_f491_4f6c_dd1d);
     // Within the sides as well.
     for point in &mut mesh.points {
         let n_free = point.iter().filter(|&&x| x > 0.0 && x < 1.0).count();
         *point = point.map(|x| {
-            x + if n_free >= 2 && x > 0.0 && x < 1.0 { 0.08 * chance.between(-1.0, 1.0) } else { 0.0 }
+            x + if n_free >= 2 && x > 0.0 && x < 1.0 { 0.08 * random.between(-1.0, 1.0) } else { 0.0 }
         });
     }
     folder.mesh("sides.vtu", &mesh);

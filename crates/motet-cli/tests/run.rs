@@ -7,7 +7,7 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use common::chance::Chance;
+use common::random::Random;
 use common::{Folder, stderr, stdout};
 use motet::base::VertexId;
 use motet::io::{read, read_series};
@@ -123,7 +123,7 @@ fn a_run_that_is_killed_goes_on_and_ends_with_the_same_bytes() {
     whole.motet(["run", "job.toml", "-q"]).assert().code(0);
     let expected = bytes(&whole, "out");
     let broken = folder();
-    let mut chance = Chance(7);
+    let mut random = Random(7);
     let program = broken.motet(["run"]).get_program().to_owned();
     let mut killed = 0;
     for _ in 0..40 {
@@ -133,7 +133,7 @@ fn a_run_that_is_killed_goes_on_and_ends_with_the_same_bytes() {
             .stdout(Stdio::null())
             .spawn()
             .expect("it starts");
-        std::thread::sleep(Duration::from_millis(chance.between(30.0, 430.0) as u64));
+        std::thread::sleep(Duration::from_millis(random.between(30.0, 430.0) as u64));
         if run.try_wait().expect("it can be asked").is_some_and(|status| status.success()) {
             break;
         }

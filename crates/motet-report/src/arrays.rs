@@ -14,11 +14,11 @@ use crate::skin::NONE;
 /// Name of the array that is computed here.
 pub(crate) const EAS: &str = "EAS quality";
 /// Above this number, labels cannot be told apart by colour.
-const MOST_LABELS: usize = 64;
+const MAX_LABELS: usize = 64;
 /// The code of a missing value among packed ones.
-const NO_NUMBER: u32 = 65_535;
+const MISSING: u32 = 65_535;
 /// Values are clamped to this size, which stays within the range of WebGL's numbers.
-const LARGEST: f64 = 1e37;
+const MAX_VALUE: f64 = 1e37;
 
 /// Whether values belong to cells or points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -87,7 +87,7 @@ fn label_array(name: &str, mesh: &Mesh, dim: usize, labels: &Labels) -> Array {
         if kind.dim() == Some(dim) { f64::from(id) } else { f64::NAN }
     };
     let values = mesh.cells.kinds().iter().zip(&labels.ids).map(value).collect();
-    let is_label = labels.used().len() <= MOST_LABELS;
+    let is_label = labels.used().len() <= MAX_LABELS;
     Array {
         names: labels.names.clone(),
         is_of_surface: dim == 2,
@@ -143,14 +143,14 @@ pub(crate) struct Packed {
 
 /// Packs values, integers exactly where they fit; `None` where there are no numbers.
 pub(crate) fn pack(on: Place, values: &[f64]) -> Option<Packed> {
-    let numbers = || values.iter().filter(|x| x.is_finite()).map(|x| x.clamp(-LARGEST, LARGEST));
+    let numbers = || values.iter().filter(|x| x.is_finite()).map(|x| x.clamp(-MAX_VALUE, MAX_VALUE));
     let low = numbers().reduce(f64::min)?;
     let high = numbers().reduce(f64::max)?;
-    let is_whole = high - low < f64::from(NO_NUMBER) && numbers().all(|x| x.fract() == 0.0);
-    let step = if is_whole || high == low { 1.0 } else { (high - low) / f64::from(NO_NUMBER - 1) };
+    let is_whole = high - low < f64::from(MISSING) && numbers().all(|x| x.fract() == 0.0);
+    let step = if is_whole || high == low { 1.0 } else { (high - low) / f64::from(MISSING - 1) };
     let code = |&x: &f64| match x.is_finite() {
-        true => (((x.clamp(-LARGEST, LARGEST) - low) / step).round() as u32).min(NO_NUMBER - 1),
-        false => NO_NUMBER,
+        true => (((x.clamp(-MAX_VALUE, MAX_VALUE) - low) / step).round() as u32).min(MISSING - 1),
+        false => MISSING,
     };
     let codes: Vec<u32> = values.iter().map(code).collect();
     let kind = if on == Place::Point { Kind::Steps } else { Kind::Plain };
@@ -183,8 +183,8 @@ mod tests {
         assert!(pack(Place::Cell, &[f64::NAN, f64::INFINITY]).is_none());
         assert!(pack(Place::Cell, &[]).is_none());
         let packed = pack(Place::Cell, &[1.0, f64::NAN, 1e300, -1e300]).unwrap();
-        assert_eq!(unpacked(&packed.block)[1], [NO_NUMBER]);
-        assert!(packed.step.is_finite() && packed.high == LARGEST);
+        assert_eq!(unpacked(&packed.block)[1], [MISSING]);
+        assert!(packed.step.is_finite() && packed.high == MAX_VALUE);
     }
 
     #[test]

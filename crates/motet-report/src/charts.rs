@@ -11,7 +11,7 @@ const HEIGHT: f64 = 190.0;
 /// Margins left, right, above and below the lines.
 const MARGINS: [f64; 4] = [50.0, 12.0, 10.0, 34.0];
 /// Above this number of points, they are not marked by dots.
-const MOST_DOTS: usize = 40;
+const MAX_DOTS: usize = 40;
 
 /// Values over time (or steps), as one or several lines.
 #[derive(Clone, Debug, Default)]
@@ -59,7 +59,7 @@ impl Scale {
 
 impl Chart {
     /// Whether there is something to draw: a line with at least two values.
-    pub(crate) fn is_worth_it(&self) -> bool {
+    pub(crate) fn is_drawable(&self) -> bool {
         self.x.len() > 1 && self.lines.iter().any(|line| line.y.iter().flatten().count() > 1)
     }
 
@@ -177,7 +177,7 @@ impl Chart {
             is_open = true;
         }
         let _ = write!(svg, "<g class=\"line l{}\"><path d=\"{path}\"/>", i % 8);
-        if self.x.len() <= MOST_DOTS {
+        if self.x.len() <= MAX_DOTS {
             svg.push_str(&dots);
         }
         svg.push_str("</g>");
@@ -254,6 +254,6 @@ mod tests {
         let svg = chart.drawn().svg;
         assert!(!svg.contains("NaN") && !svg.contains("inf") && svg.contains("a &lt; b"), "{svg}");
         assert_eq!(svg.matches('M').count(), 3);
-        assert!(chart.is_worth_it() && !Chart::default().is_worth_it());
+        assert!(chart.is_drawable() && !Chart::default().is_drawable());
     }
 }

@@ -116,7 +116,7 @@ impl Layout {
     fn put_triangles(&mut self, skin: &Skin, place: &[u32]) {
         let rows = (0..skin.triangles.len()).map(|i| {
             let triangle = skin.triangles[i].map(|v| place[v.index()]);
-            let (triangle, edges) = turned(triangle, skin.edges[i]);
+            let (triangle, edges) = from_lowest(triangle, skin.edges[i]);
             (triangle, edges, [skin.volume_cell[i], skin.surface_cell[i]])
         });
         let mut rows: Vec<_> = rows.collect();
@@ -164,13 +164,13 @@ fn solid(mesh: &Mesh, facets: &Facets, cell: CellId, place: &[u32]) -> Vec<([u32
         let (kind, vertices) = facets.vertices(FacetUse { cell, local });
         let vertices: Vec<VertexId> = vertices.collect();
         let local = pieces(mesh, kind, &vertices);
-        triangles.extend(local.into_iter().map(|(t, edges)| turned(t.map(|v| place[v.index()]), edges)));
+        triangles.extend(local.into_iter().map(|(t, edges)| from_lowest(t.map(|v| place[v.index()]), edges)));
     }
     triangles
 }
 
 /// The triangle rotated to start at its lowest id, with its edges.
-fn turned([a, b, c]: [u32; 3], edges: u8) -> ([u32; 3], u8) {
+fn from_lowest([a, b, c]: [u32; 3], edges: u8) -> ([u32; 3], u8) {
     match a.min(b).min(c) {
         low if low == a => ([a, b, c], edges),
         low if low == b => ([b, c, a], (edges >> 1 | edges << 2) & 7),
@@ -230,9 +230,9 @@ mod tests {
     #[test]
     fn edges_turn_with_their_triangle() {
         // Only the side from 9 to 4 is an edge.
-        assert_eq!(turned([9, 4, 7], 1), ([4, 7, 9], 4));
-        assert_eq!(turned([7, 9, 4], 2), ([4, 7, 9], 4));
-        assert_eq!(turned([4, 7, 9], 4), ([4, 7, 9], 4));
+        assert_eq!(from_lowest([9, 4, 7], 1), ([4, 7, 9], 4));
+        assert_eq!(from_lowest([7, 9, 4], 2), ([4, 7, 9], 4));
+        assert_eq!(from_lowest([4, 7, 9], 4), ([4, 7, 9], 4));
     }
 
     #[test]

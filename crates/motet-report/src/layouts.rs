@@ -20,7 +20,7 @@ use crate::skin::pieces;
 
 /// How many ids of layouts are kept in memory: a quarter of a gigabyte. One layout is kept however large it
 /// is.
-const MOST_IDS: usize = 1 << 26;
+const MAX_IDS: usize = 1 << 26;
 
 /// A hash of everything that a layout depends on except the order of vertices: cells, which points are not
 /// finite, and how facets with more than three corners are divided. It has 128 bits, so that two topologies
@@ -40,7 +40,7 @@ pub(crate) struct Layouts {
 
 impl Default for Layouts {
     fn default() -> Self {
-        Self::of_at_most(MOST_IDS)
+        Self::of_at_most(MAX_IDS)
     }
 }
 
@@ -165,7 +165,7 @@ mod tests {
         let (a, b) = (ball(2, 2), box_grid([2; 3], [[0.0; 3], [1.0; 3]]));
         let frames = [a.clone(), b.clone(), mirrored(&a), mixed(1), mirrored(&b)];
         let input = meshes(folder.path(), &frames);
-        for most_ids in [0, MOST_IDS] {
+        for most_ids in [0, MAX_IDS] {
             let mut layouts = Layouts::of_at_most(most_ids);
             let mut first: [Option<Vec<VertexId>>; 5] = Default::default();
             for frame in [0, 1, 2, 3, 4, 2, 0, 4, 1, 3, 3, 2, 1, 0] {

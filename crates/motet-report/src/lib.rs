@@ -123,7 +123,7 @@ pub fn write(inputs: &[PathBuf], options: &Options) -> Result<Report> {
     }
     let page = page::rendered(&parts, options, &store, &paid)?;
     io::replace(&options.output, page.as_bytes())?;
-    let inputs = inputs.iter().zip(&parts).map(|(file, part)| told(file, part)).collect();
+    let inputs = inputs.iter().zip(&parts).map(|(file, part)| report_of(file, part)).collect();
     Ok(Report {
         output: options.output.clone(),
         bytes: page.len(),
@@ -157,7 +157,7 @@ fn check(inputs: &[PathBuf], options: &Options) -> Result<()> {
     Ok(())
 }
 
-fn told(file: &Path, part: &page::Part) -> InputReport {
+fn report_of(file: &Path, part: &page::Part) -> InputReport {
     let mut report = InputReport {
         file: file.to_owned(),
         frames: 0,
@@ -169,12 +169,12 @@ fn told(file: &Path, part: &page::Part) -> InputReport {
     };
     match part {
         page::Part::Log(log) => report.rows = log.tables.iter().map(|table| table.n_rows).max().unwrap_or(0),
-        page::Part::Meshes(shown) => tell_meshes(&mut report, shown),
+        page::Part::Meshes(shown) => report_meshes(&mut report, shown),
     }
     report
 }
 
-fn tell_meshes(report: &mut InputReport, shown: &Shown) {
+fn report_meshes(report: &mut InputReport, shown: &Shown) {
     let count = |is: fn(Holds) -> bool| {
         shown.frames.iter().filter(|frame| frame.inside.as_ref().is_some_and(|x| is(x.holds))).count()
     };

@@ -90,12 +90,12 @@ impl Table {
 /// # Errors
 /// When it cannot be read, or contains anything else.
 pub(crate) fn read_object(path: &Path) -> Result<Log> {
-    let value: Value = serde_json::from_slice(&bytes(path)?).map_err(|e| no_json(path, e.line(), &e))?;
+    let value: Value = serde_json::from_slice(&bytes(path)?).map_err(|e| invalid_json(path, e.line(), &e))?;
     let mut log = Log { file: path.to_owned(), ..Log::default() };
     match &value {
         Value::Object(object) => log.add("", object),
         Value::Array(rows) if is_table(rows) => log.tables.push(table("rows", rows)),
-        other => return Err(no_object(path, other)),
+        other => return Err(not_an_object(path, other)),
     }
     Ok(log)
 }
@@ -111,9 +111,9 @@ pub(crate) fn read_lines(path: &Path) -> Result<Log> {
         if text.trim_ascii().is_empty() {
             continue;
         }
-        match serde_json::from_slice(text).map_err(|e| no_json(path, line, &e))? {
+        match serde_json::from_slice(text).map_err(|e| invalid_json(path, line, &e))? {
             Value::Object(object) => rows.add(&object),
-            other => return Err(no_object(path, &other).at(format!("line {line}"))),
+            other => return Err(not_an_object(path, &other).at(format!("line {line}"))),
         }
     }
     if rows.n_rows == 0 {
@@ -134,14 +134,14 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn no_json(path: &Path, line: usize, e: &serde_json::Error) -> Error {
-    Error::input(format!("is no JSON: {e}"))
+fn invalid_json(path: &Path, line: usize, e: &serde_json::Error) -> Error {
+    Error::input(format!("is not valid JSON: {e}"))
         .in_file(path)
         .at(format!("line {line}"))
         .remedy("give the --json output of a verb, or a .jsonl log with one object per line")
 }
 
-fn no_object(path: &Path, value: &Value) -> Error {
+fn not_an_object(path: &Path, value: &Value) -> Error {
     let found = match value {
         Value::Null => "null",
         Value::Bool(_) => "a boolean",
@@ -254,11 +254,11 @@ mod tests {
 
     #[test]
     fn what_is_no_object_is_told_with_its_line() {
-        let told = |text| lines(text).unwrap_err().to_string();
+        let message = |text| lines(text).unwrap_err().to_string();
         assert!(
-            told("{}\n3\n").contains("line 2: an object or a list of objects is expected, found a number")
+            message("{}\n3\n").contains("line 2: an object or a list of objects is expected, found a number")
         );
-        assert!(told("{}\n{\n").contains("line 2: is no JSON"));
-        assert!(told(" \n").contains("is empty"));
+        assert!(message("{}\n{\n").contains("line 2: is not valid JSON"));
+        assert!(message(" \n").contains("is empty"));
     }
 }

@@ -13,7 +13,7 @@ use crate::Options;
 use crate::log::Log;
 use crate::numbers::megabytes;
 use crate::sections::{self, Section};
-use crate::shown::{Shipped, Shown};
+use crate::shown::{Shown, ShownFrame};
 use crate::store::{BlockId, Store};
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -126,14 +126,14 @@ fn described(part: &Part) -> Option<Value> {
         .zip(&shown.names)
         .map(|(key, names)| json!({ "name": key.name, "on": key.on, "is_label": key.is_label, "names": names }))
         .collect();
-    let frame = |shipped: &Shipped| {
-        let facts = &shown.facts[shipped.frame];
+    let frame = |shown_frame: &ShownFrame| {
+        let facts = &shown.facts[shown_frame.frame];
         let bars = facts.quality.as_ref().map(|q| json!({ "eas": q.eas_bars, "angle": q.angle_bars }));
         json!({
-            "frame": shipped.frame,
+            "frame": shown_frame.frame,
             "time": facts.time,
-            "skin": shipped.skin,
-            "inside": shipped.inside,
+            "skin": shown_frame.skin,
+            "inside": shown_frame.inside,
             "bars": bars,
             "bad": facts.quality.as_ref().map(|q| q.bad),
             "tets": facts.quality.as_ref().map(|q| q.tets),

@@ -13,9 +13,9 @@ use crate::skin::NONE;
 use crate::store::{BlockId, Store};
 
 /// Coordinates are stored as integers up to this: a resolution of a millionth of the frame's bounding box.
-const FINEST: f64 = 1_048_575.0;
+const MAX_COORDINATE: f64 = 1_048_575.0;
 /// How many bad tets are stored where the inside is not.
-const MOST_BAD: usize = 20_000;
+const MAX_BAD: usize = 20_000;
 
 /// The values of one array: `low + step * n`.
 #[derive(Clone, Debug, Serialize)]
@@ -107,7 +107,7 @@ pub(crate) struct Frame<'a> {
 pub(crate) fn grid(mesh: &Mesh) -> (Point, Point) {
     let [low, high] = mesh.bounds().unwrap_or([[0.0; 3]; 2]);
     // Divide first: the difference of huge numbers may overflow.
-    (low, [0, 1, 2].map(|i| (high[i] / FINEST) - (low[i] / FINEST)))
+    (low, [0, 1, 2].map(|i| (high[i] / MAX_COORDINATE) - (low[i] / MAX_COORDINATE)))
 }
 
 impl Frame<'_> {
@@ -186,7 +186,8 @@ impl Frame<'_> {
     fn planes(&self, holds: Holds) -> [Vec<f64>; 3] {
         let n = if let Holds::Planes(n) = holds { n } else { 0 };
         let (low, step) = self.grid;
-        let at = |axis: usize, i: usize| low[axis] + step[axis] * FINEST * (i + 1) as f64 / (n + 1) as f64;
+        let at =
+            |axis: usize, i: usize| low[axis] + step[axis] * MAX_COORDINATE * (i + 1) as f64 / (n + 1) as f64;
         [0, 1, 2].map(|axis| (0..n).map(|i| at(axis, i)).collect())
     }
 
@@ -194,7 +195,7 @@ impl Frame<'_> {
         let all = 0..self.n_solids();
         match holds {
             Holds::All => all.collect(),
-            Holds::Bad => all.filter(|&i| self.is_bad(i)).take(MOST_BAD).collect(),
+            Holds::Bad => all.filter(|&i| self.is_bad(i)).take(MAX_BAD).collect(),
             Holds::Planes(_) => all.filter(|&i| self.is_crossed(i, planes) || self.is_bad(i)).collect(),
         }
     }

@@ -13,7 +13,7 @@ use crate::layouts::Layouts;
 use crate::numbers::{count, counted};
 use crate::part::{Frame, Holds, InsidePart, grid};
 use crate::quality::{self, Quality};
-use crate::shown::{Facts, Shipped, Shown};
+use crate::shown::{Facts, Shown, ShownFrame};
 use crate::store::{BlockId, Store};
 
 /// Levels of detail for insides, the best first: which cells, and whether with all arrays.
@@ -39,7 +39,7 @@ pub(crate) fn shown(
     plan.choose_frames();
     plan.insides()?;
     let mut shown = plan.shown;
-    shown.tell();
+    shown.note_left_out();
     paid.extend(shown.frames.iter().flat_map(|frame| frame.blocks(shown.with_arrays)));
     Ok(shown)
 }
@@ -109,17 +109,17 @@ impl Plan<'_> {
             let arrays = self.reader.arrays(&mut self.shown);
             let packed = self.reader.frame(&arrays);
             let (n_solids, skin) = (packed.n_solids(), packed.skin(self.store));
-            let mut shipped = Shipped { frame, skin, inside: None, n_solids };
+            let mut shown_frame = ShownFrame { frame, skin, inside: None, n_solids };
             if left > 0 && n_solids > 0 {
-                shipped.inside = packed.inside(Holds::All, true, self.store);
+                shown_frame.inside = packed.inside(Holds::All, true, self.store);
             }
-            let blocks = shipped.blocks(true);
+            let blocks = shown_frame.blocks(true);
             left = left.saturating_sub(self.store.cost(&blocks, &spent));
             spent.extend(blocks);
-            self.shown.frames.push(shipped);
+            self.shown.frames.push(shown_frame);
         }
         if left == 0 {
-            self.shown.frames.iter_mut().for_each(|shipped| shipped.inside = None);
+            self.shown.frames.iter_mut().for_each(|shown_frame| shown_frame.inside = None);
         }
         Ok(())
     }

@@ -66,7 +66,7 @@ pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, ByCell) {
     let is_linear = |i: usize| mesh.cells.kind(tets.cells[i]) == CellKind::TETRA;
     quality.inverted = low.iter().filter(|&&i| is_linear(i) && tets.is_inverted(i, &mesh.points)).count();
     let is_quadratic_tet = |cell: &&CellId| mesh.cells.kind(**cell) == CellKind::QUADRATIC_TETRA;
-    quality.inverted += not_upright(mesh).iter().filter(is_quadratic_tet).count();
+    quality.inverted += folded_cells(mesh).iter().filter(is_quadratic_tet).count();
     let judged = tets.judge(&mesh.points, low, BAD_EAS);
     (quality.bad, quality.layers) = (judged.bad.len(), judged.layers.len());
     let bad = judged.bad.into_iter().map(|i| tets.cells[i]).collect();
@@ -76,10 +76,10 @@ pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, ByCell) {
 }
 
 /// Quadratic cells whose Jacobian determinant is not positive everywhere, in ascending order.
-fn not_upright(mesh: &Mesh) -> Vec<CellId> {
+fn folded_cells(mesh: &Mesh) -> Vec<CellId> {
     let curved = CurvedCells::of(&mesh.cells, &mesh.points);
-    let fallen = (0..curved.len()).filter(|&i| !curved.is_upright(i, &mesh.points));
-    fallen.map(|i| curved.cells[i]).collect()
+    let folded = (0..curved.len()).filter(|&i| !curved.is_upright(i, &mesh.points));
+    folded.map(|i| curved.cells[i]).collect()
 }
 
 impl Quality {

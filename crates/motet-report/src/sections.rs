@@ -9,11 +9,11 @@ use crate::numbers::{count, counted, short, time};
 use crate::shown::{Facts, Shown};
 
 /// The maximum number of charts of one table; the other columns are in the table only.
-const MOST_CHARTS: usize = 12;
+const MAX_CHARTS: usize = 12;
 /// The maximum number of rows of one table; of more, the first, the last and evenly chosen ones are shown.
-const MOST_ROWS: usize = 400;
+const MAX_ROWS: usize = 400;
 /// The most informative columns, in the order in which they are charted.
-const TELLING: [&str; 12] = [
+const INFORMATIVE: [&str; 12] = [
     "worst_eas",
     "worst_eas.value",
     "bad",
@@ -90,7 +90,7 @@ fn sentences(shown: &Shown) -> Vec<String> {
         if kinds.is_empty() { "no cells".to_owned() } else { kinds.join(", ") }
     };
     let size = |facts: &Facts| format!("{} points, {}", count(facts.points), cells(facts));
-    let mut told = Vec::new();
+    let mut sentences = Vec::new();
     if shown.is_series {
         let span = format!(
             "{}, time {} to {}",
@@ -99,20 +99,20 @@ fn sentences(shown: &Shown) -> Vec<String> {
             time(last.time)
         );
         let same = size(first) == size(last);
-        told.push(match same {
+        sentences.push(match same {
             true => format!("{span}: {}.", size(first)),
             false => format!("{span}: {} at first, {} at last.", size(first), size(last)),
         });
     } else {
-        told.push(format!("{}.", size(first)));
+        sentences.push(format!("{}.", size(first)));
     }
-    told.extend(quality_sentence(shown));
+    sentences.extend(quality_sentence(shown));
     let gap = shown.facts.iter().filter_map(|f| f.least_gap.map(|gap| (gap.0, f.time)));
     if let Some((gap, at)) = gap.min_by(|a, b| a.0.total_cmp(&b.0)) {
         let when = if shown.is_series { format!(" at time {}", time(at)) } else { String::new() };
-        told.push(format!("The least gap is {}{when}.", short(gap)));
+        sentences.push(format!("The least gap is {}{when}.", short(gap)));
     }
-    told
+    sentences
 }
 
 /// The number of cells of a kind, in words.
@@ -185,7 +185,7 @@ fn charts(shown: &Shown) -> Vec<Drawn> {
     let varies = |chart: &Chart| chart.lines[0].y.windows(2).any(|w| w[0] != w[1]);
     let tets = Some(tets).filter(varies);
     let all = [eas, bad, angle].into_iter().chain(tets).chain([gap]);
-    all.filter(Chart::is_worth_it).map(|chart| chart.drawn()).collect()
+    all.filter(Chart::is_drawable).map(|chart| chart.drawn()).collect()
 }
 
 /// The table of certificates, with a row per frame.
@@ -307,8 +307,9 @@ fn table_charts(table: &Table) -> (Vec<Drawn>, usize) {
     };
     let (seconds, mut others): (Vec<&Column>, Vec<&Column>) =
         table.columns.iter().filter(changes).partition(|column| is_seconds(&column.name));
-    others
-        .sort_by_key(|column| TELLING.iter().position(|name| *name == column.name).unwrap_or(TELLING.len()));
+    others.sort_by_key(|column| {
+        INFORMATIVE.iter().position(|name| *name == column.name).unwrap_or(INFORMATIVE.len())
+    });
     let chart = |title: String, columns: &[&Column]| Chart {
         title,
         x_name: x_name.clone(),
@@ -317,18 +318,18 @@ fn table_charts(table: &Table) -> (Vec<Drawn>, usize) {
         from_zero: columns.len() > 1,
         ..Chart::default()
     };
-    let single = others.iter().take(MOST_CHARTS).map(|column| chart(column.name.clone(), &[*column]));
+    let single = others.iter().take(MAX_CHARTS).map(|column| chart(column.name.clone(), &[*column]));
     let mut charts: Vec<Chart> = qualities.iter().cloned().chain(single).collect();
     if !seconds.is_empty() {
         charts.push(chart("seconds by stage".to_owned(), &seconds[..seconds.len().min(8)]));
     }
-    let left = others.len().saturating_sub(MOST_CHARTS) + seconds.len().saturating_sub(8);
+    let left = others.len().saturating_sub(MAX_CHARTS) + seconds.len().saturating_sub(8);
     let title = |mut drawn: Drawn| {
         drawn.title =
             if table.name == "steps" { drawn.title } else { format!("{}: {}", table.name, drawn.title) };
         drawn
     };
-    (charts.iter().filter(|c| c.is_worth_it()).map(|c| title(c.drawn())).collect(), left)
+    (charts.iter().filter(|c| c.is_drawable()).map(|c| title(c.drawn())).collect(), left)
 }
 
 /// Whether the numbers under a key are identifiers, whose course is not worth a chart.
@@ -375,10 +376,10 @@ fn grid(table: &Table) -> Grid {
 
 fn thinned(mut grid: Grid) -> Grid {
     let n = grid.rows.len();
-    if n > MOST_ROWS {
-        let kept = |i: usize| i * (n - 1) / (MOST_ROWS - 1);
-        grid.rows = (0..MOST_ROWS).map(|i| grid.rows[kept(i)].clone()).collect();
-        grid.note = Some(format!("{} of {} rows, evenly chosen.", count(MOST_ROWS), count(n)));
+    if n > MAX_ROWS {
+        let kept = |i: usize| i * (n - 1) / (MAX_ROWS - 1);
+        grid.rows = (0..MAX_ROWS).map(|i| grid.rows[kept(i)].clone()).collect();
+        grid.note = Some(format!("{} of {} rows, evenly chosen.", count(MAX_ROWS), count(n)));
     }
     grid
 }

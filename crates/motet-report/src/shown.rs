@@ -23,7 +23,7 @@ pub(crate) struct Shown {
     pub(crate) names: Vec<BTreeMap<i32, String>>,
     pub(crate) facts: Vec<Facts>,
     /// The frames with a picture.
-    pub(crate) frames: Vec<Shipped>,
+    pub(crate) frames: Vec<ShownFrame>,
     pub(crate) with_arrays: bool,
     /// What is not on the page, a sentence each.
     pub(crate) left_out: Vec<String>,
@@ -43,14 +43,14 @@ pub(crate) struct Facts {
 
 /// A frame with a picture.
 #[derive(Debug)]
-pub(crate) struct Shipped {
+pub(crate) struct ShownFrame {
     pub(crate) frame: usize,
     pub(crate) skin: SkinPart,
     pub(crate) inside: Option<InsidePart>,
     pub(crate) n_solids: usize,
 }
 
-impl Shipped {
+impl ShownFrame {
     pub(crate) fn blocks(&self, with_arrays: bool) -> Vec<BlockId> {
         let inside = self.inside.iter().flat_map(InsidePart::blocks);
         self.skin.blocks(with_arrays).into_iter().chain(inside).collect()
@@ -91,49 +91,50 @@ impl Shown {
     }
 
     /// Lists what is not on the page.
-    pub(crate) fn tell(&mut self) {
+    pub(crate) fn note_left_out(&mut self) {
         let (n, m) = (self.facts.len(), self.frames.len());
-        let mut told = Vec::new();
+        let mut sentences = Vec::new();
         if m < n {
-            told.push(format!(
+            sentences.push(format!(
                 "{} of {} frames have a picture: the first, the last and evenly chosen ones between. The others are in the charts and tables.",
                 count(m),
                 count(n)
             ));
         }
         if !self.with_arrays {
-            told.push("Arrays are left out: pictures have one colour.".to_owned());
+            sentences.push("Arrays are left out: pictures have one colour.".to_owned());
         }
-        told.extend(self.insides_left_out());
-        self.left_out = told;
+        sentences.extend(self.insides_left_out());
+        self.left_out = sentences;
         self.notes.iter_mut().filter(|note| !note.ends_with('.')).for_each(|note| note.push('.'));
     }
 
     fn insides_left_out(&self) -> Vec<String> {
-        let solid: Vec<&Shipped> = self.frames.iter().filter(|frame| frame.n_solids > 0).collect();
+        let solid: Vec<&ShownFrame> = self.frames.iter().filter(|frame| frame.n_solids > 0).collect();
         let with = |is: fn(&InsidePart) -> bool| {
             solid.iter().filter(|frame| frame.inside.as_ref().is_some_and(is)).count()
         };
         let all = with(|inside| inside.holds == Holds::All);
         let cut = with(|inside| matches!(inside.holds, Holds::Planes(_)));
-        let mut told = Vec::new();
+        let mut sentences = Vec::new();
         if cut > 0 {
-            told.push(format!(
+            sentences.push(format!(
                 "For {}, the page contains only the cells that some planes cross; cuts are made at those \
                  planes.",
                 self.so_many(cut)
             ));
         }
         if all + cut < solid.len() {
-            told.push(format!(
+            sentences.push(format!(
                 "For {}, the page contains only the surface (and bad tets); a cut shows a hollow body.",
                 self.so_many(solid.len() - all - cut)
             ));
         }
-        if self.with_arrays && all + cut > 0 && solid.iter().any(|frame| self.lacks_colours(frame)) {
-            told.push("Inside, cells have no colours of arrays other than quality and labels.".to_owned());
+        if self.with_arrays && all + cut > 0 && solid.iter().any(|frame| self.lacks_arrays(frame)) {
+            sentences
+                .push("Inside, cells have no colours of arrays other than quality and labels.".to_owned());
         }
-        told
+        sentences
     }
 
     fn so_many(&self, frames: usize) -> String {
@@ -141,7 +142,7 @@ impl Shown {
     }
 
     /// Whether arrays of the skin are missing inside.
-    fn lacks_colours(&self, frame: &Shipped) -> bool {
+    fn lacks_arrays(&self, frame: &ShownFrame) -> bool {
         let has_more = self.keys.iter().any(|key| !key.is_label && key.name != EAS);
         has_more
             && frame.inside.as_ref().is_some_and(|inside| inside.holds != Holds::Bad && !inside.with_arrays)

@@ -22,7 +22,7 @@ use serde_json::Value;
 struct Page {
     text: String,
     manifest: Value,
-    told: InputReport,
+    report: InputReport,
 }
 
 /// One frame as the page draws it: points, triangles of the skin, volume cells by the ids of their points,
@@ -49,7 +49,7 @@ impl Page {
         let report = write(&[input], &Options { budget, ..Options::new(&output) }).expect("a page");
         let text = fs::read_to_string(output).expect("it is there");
         let manifest = serde_json::from_str(between(&text, "id=\"manifest\">")).expect("JSON");
-        Self { text, manifest, told: report.inputs[0].clone() }
+        Self { text, manifest, report: report.inputs[0].clone() }
     }
 
     fn frames(&self) -> impl Iterator<Item = Drawn> + '_ {
@@ -290,7 +290,7 @@ proptest! {
     ) {
         let meshes: Vec<Mesh> = frames.into_iter().map(frame).collect();
         let whole = Page::of(&meshes, Options::BUDGET);
-        prop_assert_eq!(whole.told.whole, meshes.len());
+        prop_assert_eq!(whole.report.whole, meshes.len());
         for page in [&whole, &Page::of(&meshes, whole.text.len() / part)] {
             page.frames().for_each(|drawn| drawn.assert_is(&meshes[drawn.frame]));
         }
@@ -305,7 +305,7 @@ fn cells_change_in_the_middle_and_only_planes_fit() {
     let mut cut = 0;
     for part in 1..12 {
         let page = Page::of(&meshes, whole.text.len() / part);
-        cut += page.told.cut;
+        cut += page.report.cut;
         page.frames().for_each(|drawn| drawn.assert_is(&meshes[drawn.frame]));
     }
     assert!(cut > 0, "no budget forced planes");

@@ -126,15 +126,15 @@ fn what_does_not_fit_is_left_out_in_order_and_told() {
     for part in [2, 4, 8, 16] {
         let budget = all.payload_bytes / part;
         let (report, page, manifest) = folder.page(&input, budget);
-        let told = &report.inputs[0];
+        let input = &report.inputs[0];
         assert!(report.payload_bytes <= before, "{report:?}");
         before = report.payload_bytes;
-        assert!(told.shown >= 2 && !told.left_out.is_empty(), "{report:?}");
-        assert!(report.payload_bytes <= budget || told.shown == 2, "{report:?}");
-        assert!(told.left_out.iter().all(|sentence| page.contains(sentence)));
+        assert!(input.shown >= 2 && !input.left_out.is_empty(), "{report:?}");
+        assert!(report.payload_bytes <= budget || input.shown == 2, "{report:?}");
+        assert!(input.left_out.iter().all(|sentence| page.contains(sentence)));
         let frames = manifest["inputs"][0]["frames"].as_array().expect("frames");
         assert_eq!(
-            (&frames[0]["frame"], &frames[told.shown - 1]["frame"]),
+            (&frames[0]["frame"], &frames[input.shown - 1]["frame"]),
             (&Value::from(0), &Value::from(7))
         );
     }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use common::filled::faults;
+use common::filling::faults;
 use common::hard::random_case;
 use motet::base::Threads;
 use motet::delaunay::{EdgePoints, constrain};

@@ -25,7 +25,7 @@ use std::error::Error;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use common::kept::{First, corners};
+use common::invariants::{First, corners};
 use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads};
 use motet::geometry::tet::centroid;
@@ -153,7 +153,7 @@ fn centre(mesh: &TetMesh, tet: TetId) -> Point {
     centroid(corners(mesh, mesh.tets[tet.index()]))
 }
 
-fn those(mesh: &TetMesh, is_marked: impl Fn(TetId) -> bool) -> Vec<TetId> {
+fn tets_where(mesh: &TetMesh, is_marked: impl Fn(TetId) -> bool) -> Vec<TetId> {
     (0..mesh.tets.len()).map(TetId::new).filter(|t| is_marked(*t)).collect()
 }
 
@@ -172,7 +172,7 @@ struct Run {
     refinement: Refinement,
     /// Refinement by the same marks without preserving shapes.
     without: Option<Refinement>,
-    is_kept: bool,
+    holds: bool,
 }
 
 /// Makes one step of refinement by marks computed from the mesh; returns their number, a summary and the
@@ -208,7 +208,7 @@ impl Run {
              MB | without: tets | worst / first |"
         );
         println!("|{}", "---|".repeat(15));
-        Ok(Self { first, threads, refinement, without, is_kept: true })
+        Ok(Self { first, threads, refinement, without, holds: true })
     }
 
     fn step(&mut self, name: usize, step: &dyn Fn(&mut Refinement, &Threads) -> Any<usize>) -> Any<usize> {
@@ -235,7 +235,7 @@ impl Run {
         }
         println!();
         kept.broken.iter().for_each(|what| println!("BROKEN: {what}"));
-        self.is_kept &= kept.broken.is_empty();
+        self.holds &= kept.broken.is_empty();
         Ok(summary.n_tets)
     }
 
@@ -264,7 +264,7 @@ impl Run {
                 return self.divide(call, |refinement, generation| {
                     let roots: Vec<TetId> = refinement.roots().collect();
                     let part = 0.03 * 0.25f64.powi(generation);
-                    those(refinement.mesh(), |t| chances[roots[t.index()].index()] < part)
+                    tets_where(refinement.mesh(), |t| chances[roots[t.index()].index()] < part)
                 });
             }
         };
@@ -276,7 +276,7 @@ impl Run {
         let reach = all[call.start.clamp(1, all.len()) - 1];
         self.divide(call, |refinement, generation| {
             let mesh = refinement.mesh();
-            those(mesh, |t| shape.out(at, centre(mesh, t), generation) <= reach)
+            tets_where(mesh, |t| shape.out(at, centre(mesh, t), generation) <= reach)
         })
     }
 
@@ -315,12 +315,12 @@ impl Run {
     fn back(&mut self) -> Any<()> {
         let mut n = 0;
         while self.refinement.mesh() != &self.first.mesh && n < 20 {
-            let all = those(self.refinement.mesh(), |_| true);
+            let all = tets_where(self.refinement.mesh(), |_| true);
             self.refinement.coarsen(&all, &self.threads)?;
             n += 1;
         }
         let is_back = self.refinement.mesh() == &self.first.mesh;
-        self.is_kept &= is_back;
+        self.holds &= is_back;
         let what = if is_back { "the first mesh, bit for bit" } else { "BROKEN: not the first mesh" };
         println!("\nall taken back in {n} steps: {what}");
         Ok(())
@@ -340,11 +340,11 @@ fn behind_and_ahead(
         [places.into_iter().fold(f64::MAX, f64::min), places.into_iter().fold(f64::MIN, f64::max)]
     };
     let mesh = refinement.mesh();
-    let left = those(mesh, |t| reach(mesh, t)[1] < behind);
+    let left = tets_where(mesh, |t| reach(mesh, t)[1] < behind);
     refinement.coarsen(&left, threads)?;
     let generations: Vec<u8> = refinement.generations().collect();
     let mesh = refinement.mesh();
-    let met = those(mesh, |t| {
+    let met = tets_where(mesh, |t| {
         let [low, high] = reach(mesh, t);
         generations[t.index()] < deepest && low <= end && high >= begin
     });
@@ -360,8 +360,8 @@ fn run() -> Any<bool> {
         (None, Some(front)) => run.front(&call, front)?,
         (None, None) => return Err("--towards or --front is needed".into()),
     }
-    println!("\n{}", if run.is_kept { "all guarantees hold" } else { "BROKEN" });
-    Ok(run.is_kept)
+    println!("\n{}", if run.holds { "all guarantees hold" } else { "BROKEN" });
+    Ok(run.holds)
 }
 
 fn main() -> ExitCode {

@@ -12,7 +12,7 @@ mod common;
 
 use std::error::Error;
 
-use common::adapting::{adapt, error, everywhere, solve, with_as_many};
+use common::adaptation::{adapt, error, everywhere, solve, with_as_many};
 use motet::base::{Point, Threads};
 use motet::geometry::vector::distance;
 use motet::mesh::shapes::{TubeOptions, tube};

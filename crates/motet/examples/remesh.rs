@@ -24,7 +24,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
 }
 
 /// The time to join the tets and to measure each once, which any such program has to spend.
-fn ground(mesh: &TetMesh) -> [f64; 2] {
+fn minimal_cost(mesh: &TetMesh) -> [f64; 2] {
     let (join, complex) = timed(|| Complex::new(mesh));
     drop(complex);
     let quality = |t: &[motet::base::VertexId; 4]| eas(t.map(|v| mesh.points[v.index()]));
@@ -48,7 +48,7 @@ fn run(arguments: &[String]) -> motet::Result<()> {
     let mesh = TetPart::of(&motet::io::read(&arguments[0])?)?.mesh;
     let (mut seconds, mut joins, mut measures, mut last) = (vec![], vec![], vec![], None);
     for _ in 0..n_rounds {
-        let [join, measure] = ground(&mesh);
+        let [join, measure] = minimal_cost(&mesh);
         joins.push(join);
         measures.push(measure);
         let (time, outcome) = timed(|| remesh(&mesh, &options, &Threads::single()));

@@ -77,7 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = io::read(&call.mesh)?;
     match call.how.as_str() {
         "turn" => turn(&mesh, &call),
-        "anew" => anew(&mesh, &call),
+        "anew" => refill(&mesh, &call),
         _ => Err(USAGE.into()),
     }
 }
@@ -129,7 +129,7 @@ fn turn(mesh: &Mesh, &Call { turns, steps, rule, .. }: &Call) -> Result<(), Box<
         }
         conserved = conserved.max(conserved_by(&before, &moving, &step, &carried)?);
         changes += step.changes.len();
-        carried.go_to(&moving.mesh().points);
+        carried.move_to(&moving.mesh().points);
         contents_off = contents_off.max((contents(moving.mesh())? / first - 1.0).abs());
         if k % steps == 0 {
             let mut line = carried.measured(moving.mesh());
@@ -164,7 +164,7 @@ fn conserved_by(before: &Mesh, moving: &MovingMesh, step: &Step, now: &Carried) 
 const MESHES: usize = 7;
 
 /// Replaces the mesh by the next one `each` times per turn.
-fn anew(mesh: &Mesh, &Call { turns, each, size, rule, .. }: &Call) -> Result<(), Box<dyn Error>> {
+fn refill(mesh: &Mesh, &Call { turns, each, size, rule, .. }: &Call) -> Result<(), Box<dyn Error>> {
     let filled = |k: usize| filled(mesh, 0.5 + k as f64, size);
     let meshes = (0..MESHES).map(filled).collect::<motet::Result<Vec<_>>>()?;
     let way = |k: usize| {

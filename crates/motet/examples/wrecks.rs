@@ -13,7 +13,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use common::wreck::{End, Wreck};
+use common::wreck::{Ending, Wreck};
 use motet::remesh::SurfaceRule;
 
 fn main() -> ExitCode {
@@ -43,9 +43,9 @@ fn main() -> ExitCode {
             n_faults += 1;
         }
         let end = match end {
-            Ok(End::Valid) => "valid",
-            Ok(End::Told) => "told",
-            Ok(End::Refused) => "refused",
+            Ok(Ending::Valid) => "valid",
+            Ok(Ending::Reported) => "told",
+            Ok(Ending::Refused) => "refused",
             Err(_) => "FAULT",
         };
         *table.entry((format!("{:?}", wreck.damage), end.into())).or_default() += 1;

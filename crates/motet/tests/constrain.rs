@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::filled::{Triangle, faults, volumes};
+use common::filling::{Triangle, faults, volumes};
 use common::hard::{Case, random_case};
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};

@@ -4,7 +4,7 @@
 mod common;
 
 use common::Numbers;
-use common::solid_angle::holds;
+use common::solid_angle::encloses;
 use motet::base::{Point, Threads, VertexId};
 use motet::contact::{inside, is_closed};
 use motet::geometry::distance::{segment_triangle, triangle_triangle};
@@ -196,7 +196,7 @@ fn random_points_are_inside_where_solid_angles_say_so() {
     let found = lone(&mut points, &asked, &all);
     let mut n = [0; 2];
     for (q, found) in asked.iter().zip(found) {
-        let expected = holds(&points, &all, *q);
+        let expected = encloses(&points, &all, *q);
         assert_eq!(found, expected, "{q:?}");
         n[usize::from(found)] += 1;
     }
@@ -220,7 +220,7 @@ fn crossing_surfaces_say_the_same_with_and_without_their_parts() {
         assert!(of_parts.contains(&true) && of_parts[1800..].contains(&false));
         assert!(!of_parts[..1800].contains(&true), "vertices of b are on it");
         for v in (1800..points.len()).step_by(7) {
-            assert_eq!(of_parts[v], holds(&points, &b, points[v]));
+            assert_eq!(of_parts[v], encloses(&points, &b, points[v]));
         }
         let threads = Threads::new(3).unwrap();
         assert_eq!(crossings(&points, &a, &b, &threads), crossed);

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::chance::Chance;
+use common::random::Random;
 use motet::base::Point;
 use motet::geometry::vector::{add, cross, distance, dot, scale, sub};
 use motet::mesh::check::{DefectKind, check};
@@ -43,18 +43,18 @@ fn of_tet(nodes: &[Point], l: [f64; 4]) -> f64 {
 }
 
 /// A tet whose nodes are displaced by up to `most`.
-fn shaken_tet(chance: &mut Chance, most: f64) -> Vec<Point> {
+fn shaken_tet(random: &mut Random, most: f64) -> Vec<Point> {
     let middle = |&[a, b]: &[usize; 2]| scale(add(TET_CORNERS[a], TET_CORNERS[b]), 0.5);
     let nodes = TET_CORNERS.into_iter().chain(TET_EDGES.iter().map(middle));
-    nodes.map(|p| p.map(|x| x + most * (2.0 * chance.next() - 1.0))).collect()
+    nodes.map(|p| p.map(|x| x + most * (2.0 * random.next() - 1.0))).collect()
 }
 
 #[test]
 fn random_quadratic_tets_are_upright_where_no_sample_of_their_jacobian_is_negative() {
-    let mut chance = Chance(7);
+    let mut random = Random(7);
     let (mut n_upright, mut n_folded, mut n_folded_between_nodes) = (0, 0, 0);
     for i in 0..400 {
-        let nodes = shaken_tet(&mut chance, 0.1 + 0.15 * f64::from(i % 3));
+        let nodes = shaken_tet(&mut random, 0.1 + 0.15 * f64::from(i % 3));
         let samples: Vec<f64> = places_in_a_tet(20).into_iter().map(|l| of_tet(&nodes, l)).collect();
         let [low, high] = [f64::min, f64::max].map(|f| samples.iter().copied().reduce(f).unwrap());
         let jacobian = Jacobian::of(CellKind::QUADRATIC_TETRA, &nodes).unwrap();
@@ -113,11 +113,11 @@ fn is_inside(n_corners: usize, [x, y, z]: Point) -> bool {
 struct QuadraticMap([[f64; 10]; 3]);
 
 impl QuadraticMap {
-    fn random(chance: &mut Chance, bend: f64, has_squares_of_z: bool) -> Self {
+    fn random(random: &mut Random, bend: f64, has_squares_of_z: bool) -> Self {
         let mut map = [[0.0; 10]; 3];
         for (i, row) in map.iter_mut().enumerate() {
-            row[1..4].iter_mut().for_each(|x| *x = 0.4 * (chance.next() - 0.5));
-            row[4..].iter_mut().for_each(|x| *x = bend * (chance.next() - 0.5));
+            row[1..4].iter_mut().for_each(|x| *x = 0.4 * (random.next() - 0.5));
+            row[4..].iter_mut().for_each(|x| *x = bend * (random.next() - 0.5));
             row[1 + i] += 1.0;
             row[9] *= f64::from(u8::from(has_squares_of_z));
         }
@@ -145,14 +145,14 @@ impl QuadraticMap {
 /// quadratic map is the image under that map.
 #[test]
 fn cells_of_every_kind_under_a_quadratic_map_have_its_jacobian() {
-    let mut chance = Chance(11);
+    let mut random = Random(11);
     let mut n_folded = 0;
     for &kind in CellKind::NAMED.iter().filter(|kind| is_curved_kind(**kind)) {
         let straight = reference(kind);
         let n_corners = middles(kind)[0].node;
         for i in 0..30 {
             let has_squares_of_z = kind != CellKind::QUADRATIC_LINEAR_WEDGE;
-            let map = QuadraticMap::random(&mut chance, [0.4, 1.0, 2.5][i % 3], has_squares_of_z);
+            let map = QuadraticMap::random(&mut random, [0.4, 1.0, 2.5][i % 3], has_squares_of_z);
             let nodes: Vec<Point> = straight.iter().map(|&p| map.apply(p)).collect();
             let found = Jacobian::of(kind, &nodes).unwrap().least();
             let n = 12;
@@ -185,11 +185,11 @@ fn cells_of_every_kind_under_a_quadratic_map_have_its_jacobian() {
 
 #[test]
 fn the_scaled_jacobian_does_not_change_with_place_size_and_turn() {
-    let mut chance = Chance(3);
+    let mut random = Random(3);
     let (sin, cos) = 0.7f64.sin_cos();
     for &kind in CellKind::NAMED.iter().filter(|kind| is_curved_kind(**kind)) {
         let nodes: Vec<Point> =
-            reference(kind).into_iter().map(|p| p.map(|x| x + 0.08 * (chance.next() - 0.5))).collect();
+            reference(kind).into_iter().map(|p| p.map(|x| x + 0.08 * (random.next() - 0.5))).collect();
         let first = Jacobian::of(kind, &nodes).unwrap().least().scaled;
         for (size, shift) in [(1.0, 1e3), (1e-3, 0.0), (1e3, -1e3)] {
             let moved: Vec<Point> = (nodes.iter())

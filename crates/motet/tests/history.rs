@@ -5,7 +5,7 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use common::chance::Chance;
+use common::random::Random;
 use motet::base::{CellId, Id, Point, Threads, VertexId};
 use motet::delaunay::Triangulation;
 use motet::geometry::tet;
@@ -22,11 +22,11 @@ fn single() -> Threads {
 /// points in each and on each side; the wall between them has points of both. Triangles on the outside, one
 /// patch per side.
 fn two_regions(seed: u64, n: usize) -> Mesh {
-    let mut chance = Chance(seed);
+    let mut random = Random(seed);
     let corners = |x: f64| (0..4).map(move |i| [x, f64::from(i & 1), f64::from(i >> 1)]);
     let mut points: Vec<Point> = corners(0.5).collect();
     points.extend((0..n).map(|_| {
-        let [_, y, z] = chance.point();
+        let [_, y, z] = random.point();
         [0.5, y, z]
     }));
     let n_shared = points.len();
@@ -37,7 +37,7 @@ fn two_regions(seed: u64, n: usize) -> Mesh {
         ids.extend(points.len()..points.len() + 4 + 6 * n);
         points.extend(corners(end));
         for side in 0..6 * n {
-            let [x, y, z] = chance.point();
+            let [x, y, z] = random.point();
             let x = 0.5 + (end - 0.5) * x;
             points.push(match side % 6 {
                 0 => [x, 0.0, z],
@@ -162,11 +162,11 @@ fn integrals_over_regions_survive_a_hundred_transfers() {
             assert!(region.deviation < 1e-14, "{region:?}");
         }
     }
-    let mut chance = Chance(99);
+    let mut random = Random(99);
     let regions = old.regions().unwrap();
     // Values of either sign, very different in the two regions.
     let values: Vec<f64> =
-        regions.ids.iter().map(|&r| (chance.next() - 0.3) * if r == 1 { 1.0 } else { 1e6 }).collect();
+        regions.ids.iter().map(|&r| (random.next() - 0.3) * if r == 1 { 1.0 } else { 1e6 }).collect();
     let first = Field::scalars("heat", values);
     let before = integrals(&old, &first);
     let mut field = first.clone();
@@ -198,8 +198,8 @@ fn constants_stay_to_the_bit_and_values_between_the_old_ones() {
     }
     let single = Field::scalars("u", vec![0.1f32; old.cells.len()]);
     assert_eq!(history.transfer_cells(&single).unwrap().values, vec![0.1f32; new.cells.len()].into());
-    let mut chance = Chance(7);
-    let mixed = Field::scalars("u", (0..old.points.len()).map(|_| chance.next()).collect::<Vec<f64>>());
+    let mut random = Random(7);
+    let mixed = Field::scalars("u", (0..old.points.len()).map(|_| random.next()).collect::<Vec<f64>>());
     let (least, largest) = floats(&mixed).iter().fold((1.0f64, 0.0f64), |(l, h), &v| (l.min(v), h.max(v)));
     let carried = history.transfer_points(&mixed).unwrap();
     assert!(floats(&carried).iter().all(|v| (least..=largest).contains(v)));
@@ -215,10 +215,10 @@ fn ids_names_and_directions_are_taken_over_whole() {
     let names = Field::scalars("name", (0..old.cells.len()).map(|i| format!("cell {i}")).collect::<Vec<_>>());
     let Values::Text(carried) = history.transfer_cells(&names).unwrap().values else { panic!("its type") };
     assert!(carried.iter().all(|name| name.starts_with("cell ")));
-    let mut chance = Chance(1);
+    let mut random = Random(1);
     let fibres: Vec<Point> = (0..old.cells.len())
         .map(|_| {
-            let angle = 7.0 * chance.next();
+            let angle = 7.0 * random.next();
             [angle.cos(), angle.sin(), 0.0]
         })
         .collect();
@@ -263,8 +263,8 @@ fn box_corners() -> Vec<Point> {
 }
 
 fn cloud(seed: u64, n: usize) -> Vec<Point> {
-    let mut chance = Chance(seed);
-    box_corners().into_iter().chain((0..n).map(|_| chance.point())).collect()
+    let mut random = Random(seed);
+    box_corners().into_iter().chain((0..n).map(|_| random.point())).collect()
 }
 
 #[test]
@@ -273,13 +273,13 @@ fn what_was_kept_keeps_its_values_to_the_bit() {
     let mut more = points.clone();
     more.extend([[0.3, 0.4, 0.5], [0.31, 0.4, 0.5]]);
     let (old, new, history) = local(&points, &more, &single());
-    let mut chance = Chance(3);
+    let mut random = Random(3);
     let odd: Vec<f64> = (0..old.cells.len())
         .map(|i| match i % 50 {
             0 => f64::NAN,
             1 => -0.0,
             2 => f64::INFINITY,
-            _ => chance.next(),
+            _ => random.next(),
         })
         .collect();
     let carried = history.transfer_cells(&Field::scalars("odd", odd.clone())).unwrap();
@@ -362,8 +362,8 @@ fn two_histories_in_one_do_what_both_do() {
     let meshes = [two_regions(61, 6), two_regions(62, 7), two_regions(63, 5)];
     let (first, second) = (all_new(&meshes[0], &meshes[1]), all_new(&meshes[1], &meshes[2]));
     let both = first.then(&second);
-    let mut chance = Chance(5);
-    let mut random = |n: usize| Field::scalars("u", (0..n).map(|_| chance.next()).collect::<Vec<f64>>());
+    let mut random = Random(5);
+    let mut random = |n: usize| Field::scalars("u", (0..n).map(|_| random.next()).collect::<Vec<f64>>());
     let on_points = random(meshes[0].points.len());
     let stepwise = second.transfer_points(&first.transfer_points(&on_points).unwrap()).unwrap();
     let at_once = both.transfer_points(&on_points).unwrap();
@@ -565,8 +565,8 @@ proptest! {
         for (value, p) in floats(&carried).iter().zip(&new.points) {
             prop_assert!((value - linear(*p)).abs() < 1e-12);
         }
-        let mut chance = Chance(seed);
-        let heat = Field::scalars("heat", (0..old.cells.len()).map(|_| chance.next()).collect::<Vec<f64>>());
+        let mut random = Random(seed);
+        let heat = Field::scalars("heat", (0..old.cells.len()).map(|_| random.next()).collect::<Vec<f64>>());
         let volume = |mesh: &Mesh, field: &Field| -> f64 {
             let volumes = mesh.tet_field("v", |t| tet::volume(t).abs());
             floats(&volumes).iter().zip(floats(field)).map(|(v, u)| v * u).sum()

@@ -5,8 +5,8 @@ mod common;
 
 use std::collections::{BTreeMap, HashMap};
 
-use common::chance::Chance;
 use common::devices::{coil, key, moved, random_device, room, small_ball, stent, tets};
+use common::random::Random;
 use motet::base::{Point, Threads, VertexId};
 use motet::delaunay::{EdgePoints, constrain};
 use motet::geometry::overlap::Solid;
@@ -325,15 +325,15 @@ fn what_takes_all_the_room_or_holds_cells_of_other_kinds_is_refused() {
 fn random_placements_give_a_sound_mesh_or_a_named_refusal() {
     let n: usize = std::env::var("MOTET_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(60);
     let host = room(8);
-    let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
+    let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let (mut n_sound, mut n_through, mut n_left, mut reasons) = (0, 0, 0, BTreeMap::<String, usize>::new());
     for _ in 0..n {
-        let (name, mut device) = random_device(&mut chance);
-        if device.inside == Inside::Own && chance.next() < 0.8 {
+        let (name, mut device) = random_device(&mut random);
+        if device.inside == Inside::Own && random.next() < 0.8 {
             device.inside = Inside::Filled;
         }
-        let stray = (chance.next() < 0.5).then_some(1e-9);
-        let outside = if chance.next() < 0.3 { Outside::Keep } else { Outside::Cut };
+        let stray = (random.next() < 0.5).then_some(1e-9);
+        let outside = if random.next() < 0.3 { Outside::Keep } else { Outside::Cut };
         let options = Options { adapt: Adapt::No, stray, outside, ..Options::default() };
         match put(&host, std::slice::from_ref(&device), &options) {
             Ok(made) => {

@@ -12,12 +12,12 @@ use motet::io::{self, WriteOptions};
 use motet::mesh::firsts_at_place;
 use motet::mesh::{CellKind, Surface};
 use motet::preflight::{Fault, FaultKind, Preflight, Repairs, Role, culprits, preflight, renamed, repair};
-use preflight_oracle::{Told, crosses, faults};
+use preflight_oracle::{FaultKey, crosses, faults};
 use proptest::prelude::*;
 
 type Triangles = Vec<[VertexId; 3]>;
 
-fn told(report: &Preflight) -> Vec<Told> {
+fn told(report: &Preflight) -> Vec<FaultKey> {
     let of = |f: &Fault| (f.kind, f.is_fatal, f.surface, f.triangles.clone(), f.vertices.clone());
     report.faults.iter().map(of).collect()
 }

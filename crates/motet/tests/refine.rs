@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::kept::{corners, fits};
+use common::invariants::{corners, fits};
 use common::refined::{ball_in_box, median_eas, nearest, worst};
 use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};

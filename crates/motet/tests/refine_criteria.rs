@@ -5,7 +5,7 @@ mod common;
 
 use common::Numbers;
 use common::criteria::{
-    case, corners, from_triangles, longest, pressure, speed, target, target_triangles, those,
+    case, corners, from_triangles, longest, pressure, speed, target, target_triangles, tets_where,
 };
 use motet::ErrorKind;
 use motet::base::{Point, TetId, Threads, VertexId};
@@ -26,7 +26,7 @@ fn near_means_that_some_place_of_the_tet_is() {
     for within in [0.0, 0.05, 0.4, 1.7] {
         let criterion = Criterion::Near { target: target.clone(), within };
         let marks = criterion.marks(&mesh, &part, &threads).unwrap();
-        let expected = those(&part, |t| from_triangles(corners(&part.mesh, t), &triangles) <= within);
+        let expected = tets_where(&part, |t| from_triangles(corners(&part.mesh, t), &triangles) <= within);
         assert_eq!(marks, expected, "{within}");
         println!("within {within}: {} of {} tets", marks.len(), part.mesh.tets.len());
         assert!(!marks.is_empty() && marks.len() < part.mesh.tets.len());
@@ -38,7 +38,7 @@ fn criteria_of_place_mark_what_they_say() {
     let threads = Threads::single();
     let (mesh, part) = case();
     let marks = |criterion: Criterion| criterion.marks(&mesh, &part, &threads).unwrap();
-    let all = those(&part, |_| true);
+    let all = tets_where(&part, |_| true);
     assert_eq!(marks(Criterion::All), all);
     let (centre, radius) = ([1.0, 0.5, 0.0], 1.3);
     assert_eq!(
@@ -48,13 +48,13 @@ fn criteria_of_place_mark_what_they_say() {
     let corners_of_box = [[-1.0, -2.0, -5.0], [3.0, 2.0, 0.0]];
     assert_eq!(marks(Criterion::Box(corners_of_box)), mark::in_box(&part.mesh, corners_of_box, &threads));
     for (word, id) in [("right", 7), ("7", 7), ("3", 3)] {
-        let expected = those(&part, |t| part.mesh.regions[t] == id);
+        let expected = tets_where(&part, |t| part.mesh.regions[t] == id);
         assert!(!expected.is_empty() && expected.len() < all.len());
         assert_eq!(marks(Criterion::Region(word.into())), expected);
     }
     // The sphere has radius 1 and the box is far away.
     let is_on = |v: VertexId| norm(part.mesh.points[v.index()]) < 1.0 + 1e-9;
-    let expected = those(&part, |t| part.mesh.tets[t].into_iter().any(is_on));
+    let expected = tets_where(&part, |t| part.mesh.tets[t].into_iter().any(is_on));
     assert!(!expected.is_empty() && expected.len() < all.len());
     assert_eq!(marks(Criterion::Patch { patch: "sphere".into(), within: None }), expected);
     assert_eq!(marks(Criterion::Patch { patch: "1".into(), within: Some(0.0) }), expected);
@@ -63,7 +63,7 @@ fn criteria_of_place_mark_what_they_say() {
         .filter(|&t| surface.patches[t] == 1)
         .map(|t| surface.corners(t))
         .collect();
-    let expected = those(&part, |t| from_triangles(corners(&part.mesh, t), &sphere) <= 1.1);
+    let expected = tets_where(&part, |t| from_triangles(corners(&part.mesh, t), &sphere) <= 1.1);
     assert_eq!(marks(Criterion::Patch { patch: "sphere".into(), within: Some(1.1) }), expected);
 }
 
@@ -72,7 +72,7 @@ fn sizes_mark_edges_that_are_longer() {
     let threads = Threads::single();
     let (mesh, part) = case();
     let marks = |criterion: Criterion| criterion.marks(&mesh, &part, &threads).unwrap();
-    let expected = those(&part, |t| longest(corners(&part.mesh, t)) > 1.5);
+    let expected = tets_where(&part, |t| longest(corners(&part.mesh, t)) > 1.5);
     assert!(!expected.is_empty() && expected.len() < part.mesh.tets.len());
     assert_eq!(marks(Criterion::Size(Size::Uniform(1.5))), expected);
     let h = mesh.point_field("h").unwrap().values.to_f64().unwrap();
@@ -82,12 +82,13 @@ fn sizes_mark_edges_that_are_longer() {
             distance(mesh.points[a], mesh.points[b]) > 0.5 * (h[a] + h[b])
         })
     };
-    assert_eq!(marks(Criterion::Size(Size::Array("h".into()))), those(&part, is_long));
+    assert_eq!(marks(Criterion::Size(Size::Array("h".into()))), tets_where(&part, is_long));
     let mut positive = mesh.clone();
     let x = mesh.cell_field("x").unwrap().values.to_f64().unwrap();
     let on_cells: Vec<f64> = x.iter().map(|x| 1.0 + 0.1 * x.abs()).collect();
     positive.set_cell_field(Field::scalars("size", on_cells.clone()));
-    let expected = those(&part, |t| longest(corners(&part.mesh, t)) > on_cells[part.tet_to_cell[t].index()]);
+    let expected =
+        tets_where(&part, |t| longest(corners(&part.mesh, t)) > on_cells[part.tet_to_cell[t].index()]);
     let by_cell = Criterion::Size(Size::Array("size".into()));
     assert_eq!(by_cell.marks(&positive, &part, &threads).unwrap(), expected);
     let target = target(&threads);
@@ -104,7 +105,7 @@ fn conditions_hold_for_cells_by_value_and_for_points_at_any_corner() {
         Criterion::Where(condition).marks(&mesh, &part, &threads).unwrap()
     };
     let at_corner =
-        |holds: &dyn Fn(Point) -> bool| those(&part, |t| corners(&part.mesh, t).into_iter().any(holds));
+        |holds: &dyn Fn(Point) -> bool| tets_where(&part, |t| corners(&part.mesh, t).into_iter().any(holds));
     assert_eq!(marks("p>1"), at_corner(&|p| pressure(&p) > 1.0));
     assert_eq!(marks("|p| <= 0.01"), at_corner(&|p| pressure(&p).abs() <= 0.01));
     assert_eq!(marks("v>=6"), at_corner(&|p| norm(speed(&p)) >= 6.0));
@@ -113,9 +114,9 @@ fn conditions_hold_for_cells_by_value_and_for_points_at_any_corner() {
         assert_eq!(marks(text), at_corner(&|p| speed(&p)[1] < -0.5));
     }
     let x = mesh.cell_field("x").unwrap().values.to_f64().unwrap();
-    assert_eq!(marks("x>2.5"), those(&part, |t| x[part.tet_to_cell[t].index()] > 2.5));
-    assert_eq!(marks("region==7"), those(&part, |t| part.mesh.regions[t] == 7));
-    assert_eq!(marks("region!=7"), those(&part, |t| part.mesh.regions[t] == 3));
+    assert_eq!(marks("x>2.5"), tets_where(&part, |t| x[part.tet_to_cell[t].index()] > 2.5));
+    assert_eq!(marks("region==7"), tets_where(&part, |t| part.mesh.regions[t] == 7));
+    assert_eq!(marks("region!=7"), tets_where(&part, |t| part.mesh.regions[t] == 3));
     // If an array has exactly that name, no component is meant.
     let mut odd = mesh.clone();
     odd.set_point_field(Field::scalars("v:y", vec![1.0; mesh.points.len()]));
@@ -131,18 +132,18 @@ fn criteria_of_fields_mark_by_their_estimates() {
     let p: Vec<f64> = mesh.points.iter().map(pressure).collect();
     let v: Vec<Point> = mesh.points.iter().map(speed).collect();
     let gradients = estimate::gradients(&part.mesh, &p, &threads);
-    let expected = those(&part, |t| norm(gradients[t]) * longest(corners(&part.mesh, t)) > 2.0);
+    let expected = tets_where(&part, |t| norm(gradients[t]) * longest(corners(&part.mesh, t)) > 2.0);
     assert!(!expected.is_empty() && expected.len() < part.mesh.tets.len());
     assert_eq!(marks(Criterion::Gradient { array: "p".into(), above: 2.0 }), expected);
     let tensors = estimate::velocity_gradients(&part.mesh, &v, &threads);
     let size = |t: usize| tensors[t].iter().map(|row| dot(*row, *row)).sum::<f64>().sqrt();
-    let expected = those(&part, |t| size(t) * longest(corners(&part.mesh, t)) > 8.0);
+    let expected = tets_where(&part, |t| size(t) * longest(corners(&part.mesh, t)) > 8.0);
     assert_eq!(marks(Criterion::Gradient { array: "v".into(), above: 8.0 }), expected);
     let curl = estimate::vorticity(&part.mesh, &v, &threads);
-    let expected = those(&part, |t| norm(curl[t]) > 3.0);
+    let expected = tets_where(&part, |t| norm(curl[t]) > 3.0);
     assert_eq!(marks(Criterion::Vorticity { array: "v".into(), above: 3.0 }), expected);
     let q = estimate::q_criterion(&part.mesh, &v, &threads);
-    assert_eq!(marks(Criterion::Q { array: "v".into(), above: 0.5 }), those(&part, |t| q[t] > 0.5));
+    assert_eq!(marks(Criterion::Q { array: "v".into(), above: 0.5 }), tets_where(&part, |t| q[t] > 0.5));
     for (by, of) in [
         (Estimator::Jump, estimate::gradient_jump as fn(&TetMesh, &[f64], &Threads) -> Vec<f64>),
         (Estimator::Recovery, estimate::recovery),

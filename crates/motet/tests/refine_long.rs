@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::kept::{First, corners};
+use common::invariants::{First, corners};
 use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::tet::{EDGES, centroid, volume};
@@ -44,7 +44,7 @@ fn meshes() -> [(&'static str, TetMesh); 2] {
     [("box", box_of_two()), ("random", random_mesh(120, 5))]
 }
 
-fn those(mesh: &TetMesh, is_marked: impl Fn(TetId, [Point; 4]) -> bool) -> Vec<TetId> {
+fn tets_where(mesh: &TetMesh, is_marked: impl Fn(TetId, [Point; 4]) -> bool) -> Vec<TetId> {
     let all = (0..mesh.tets.len()).map(TetId::new);
     all.filter(|t| is_marked(*t, corners(mesh, mesh.tets[t.index()]))).collect()
 }
@@ -64,7 +64,7 @@ fn towards(axes: Point, factors: Point) {
         let mut all: Vec<f64> = first.mesh.tets.iter().map(|t| out(corners(&first.mesh, *t), 0)).collect();
         all.sort_by(f64::total_cmp);
         for generation in 0..8 {
-            let marked = those(refinement.mesh(), |_, c| out(c, generation) <= all[11]);
+            let marked = tets_where(refinement.mesh(), |_, c| out(c, generation) <= all[11]);
             assert!(!marked.is_empty());
             let summary = refinement.refine(&marked, &threads).unwrap();
             let kept = first.compare(&refinement, &threads);
@@ -111,10 +111,10 @@ fn pass(refinement: &mut Refinement, x: f64, stride: f64, threads: &Threads) {
         let [low, high] = [f64::min, f64::max].map(|of| c.map(|p| p[0]).into_iter().reduce(of).unwrap());
         [low - x, high - x]
     };
-    let left = those(refinement.mesh(), |_, c| reach(c)[1] < -2.0 * stride);
+    let left = tets_where(refinement.mesh(), |_, c| reach(c)[1] < -2.0 * stride);
     refinement.coarsen(&left, threads).unwrap();
     let generations: Vec<u8> = refinement.generations().collect();
-    let met = those(refinement.mesh(), |t, c| {
+    let met = tets_where(refinement.mesh(), |t, c| {
         generations[t.index()] < 2 && reach(c)[0] <= 2.0 * stride && reach(c)[1] >= 0.0
     });
     refinement.refine(&met, threads).unwrap();
@@ -122,7 +122,7 @@ fn pass(refinement: &mut Refinement, x: f64, stride: f64, threads: &Threads) {
 
 fn take_back(refinement: &mut Refinement, threads: &Threads) {
     for _ in 0..2 {
-        let all = those(refinement.mesh(), |_, _| true);
+        let all = tets_where(refinement.mesh(), |_, _| true);
         refinement.coarsen(&all, threads).unwrap();
     }
 }
@@ -179,7 +179,7 @@ fn n_shapes(tet: [Point; 4], generations: usize) -> Vec<usize> {
     let mut refinement = Refinement::new(&first, Options::default(), &threads).unwrap();
     let mut counts = Vec::new();
     for generation in 1..=generations {
-        let all = those(refinement.mesh(), |_, _| true);
+        let all = tets_where(refinement.mesh(), |_, _| true);
         refinement.refine(&all, &threads).unwrap();
         let mesh = refinement.mesh();
         assert_eq!(mesh.tets.len(), 1 << (3 * generation));

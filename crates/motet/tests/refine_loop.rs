@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::adapting::{adapt, error, everywhere, solve, with_as_many};
+use common::adaptation::{adapt, error, everywhere, solve, with_as_many};
 use motet::Mesh;
 use motet::base::{Point, Threads};
 use motet::mesh::TetPart;

@@ -4,7 +4,7 @@ mod common;
 
 use std::collections::{HashMap, HashSet};
 
-use common::kept::{corners, fits};
+use common::invariants::{corners, fits};
 use common::refined::{ball_in_box, facets, nearest, worst};
 use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::kept::fits;
+use common::invariants::fits;
 use motet::Mesh;
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::tet::{centroid, volume};

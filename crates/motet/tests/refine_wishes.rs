@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::criteria::{case, corners, longest, target, those, whole, with_fields};
+use common::criteria::{case, corners, longest, target, tets_where, whole, with_fields};
 use motet::base::{TetId, Threads};
 use motet::mesh::TetPart;
 use motet::mesh::shapes::box_grid;
@@ -128,15 +128,15 @@ fn limits_hold() {
     assert_eq!(limited(Limits::default(), &[]), wishes);
     let generations: Vec<u8> = (0..part.mesh.tets.len()).map(|t| (t % 4) as u8).collect();
     let by_generation = limited(Limits { generation: Some(2), ..Limits::default() }, &generations);
-    assert_eq!(marked(&by_generation), those(&part, |t| t % 4 < 2 && wishes[t].is_divided()));
+    assert_eq!(marked(&by_generation), tets_where(&part, |t| t % 4 < 2 && wishes[t].is_divided()));
     assert!(by_generation.iter().all(|wish| *wish <= Wish::Divided(2)));
     let by_size = limited(Limits { smallest: Some(0.6), ..Limits::default() }, &[]);
-    assert_eq!(marked(&by_size), those(&part, |t| longest(corners(&part.mesh, t)) >= 1.2));
+    assert_eq!(marked(&by_size), tets_where(&part, |t| longest(corners(&part.mesh, t)) >= 1.2));
     let n = part.mesh.tets.len();
     let by_count = limited(Limits { n_tets: Some(n + 77), ..Limits::default() }, &[]);
     assert_eq!(marked(&by_count).len(), 11);
     let least = marked(&by_count).iter().map(|t| longest(corners(&part.mesh, t.index()))).fold(9.0, f64::min);
-    let longer = those(&part, |t| longest(corners(&part.mesh, t)) > least);
+    let longer = tets_where(&part, |t| longest(corners(&part.mesh, t)) > least);
     assert!(longer.iter().all(|t| marked(&by_count).contains(t)));
     assert!(marked(&limited(Limits { n_tets: Some(3), ..Limits::default() }, &[])).is_empty());
 }

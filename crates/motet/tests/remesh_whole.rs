@@ -4,7 +4,7 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use common::chance::Chance;
+use common::random::Random;
 use motet::Mesh;
 use motet::base::{CellId, Csr, Id, Point, Threads, VertexId};
 use motet::geometry::quality::eas;
@@ -38,13 +38,13 @@ fn corners(mesh: &Mesh, tet: [VertexId; 4]) -> [Point; 4] {
 /// `shake` cells, and if `on_sides`, those within a side as well, in the side. It has arrays of all sorts.
 fn shaken_box(shake: f64, on_sides: bool) -> Mesh {
     let mut mesh = box_grid([N; 3], [[0.0; 3], [1.0; 3]]);
-    let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
+    let mut random = Random(0x9e37_79b9_7f4a_7c15);
     for point in &mut mesh.points {
         let is_free = point.map(|x| x > 0.0 && x < 1.0);
         let in_side = is_free.iter().filter(|free| **free).count() == 2;
         let moves = (is_free == [true; 3] || in_side && on_sides) && point[0] != 0.5;
         for (x, free) in point.iter_mut().zip(is_free) {
-            let by = shake / N as f64 * chance.between(-1.0, 1.0);
+            let by = shake / N as f64 * random.between(-1.0, 1.0);
             *x += if moves && free { by } else { 0.0 };
         }
     }
@@ -61,7 +61,7 @@ fn shaken_box(shake: f64, on_sides: bool) -> Mesh {
     mesh.set_cell_field(Field::scalars("constant", vec![0.1; n_cells]));
     mesh.set_cell_field(Field::scalars(
         "pressure",
-        (0..n_cells).map(|_| chance.between(-1.0, 1.0)).collect::<Vec<_>>(),
+        (0..n_cells).map(|_| random.between(-1.0, 1.0)).collect::<Vec<_>>(),
     ));
     mesh.set_cell_field(Field::scalars("number", (0..n_cells as u16).collect::<Vec<_>>()));
     mesh.set_cell_field(Field::scalars("GlobalElementID", (1..=n_cells as i32).collect::<Vec<_>>()));

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::wreck::{End, Wreck, sound_connectivity};
+use common::wreck::{Ending, Wreck, sound_connectivity};
 use common::{Numbers, random_mesh};
 use motet::base::{Threads, VertexId};
 use motet::geometry::predicates::orient3d;
@@ -17,7 +17,7 @@ fn wrecks_end_valid_told_or_refused() {
         let wreck = Wreck::new(seed);
         let surface = if seed % 4 == 0 { SurfaceRule::Adapt { distance: None } } else { SurfaceRule::Keep };
         match wreck.end(surface) {
-            Ok(end) => n_valid += usize::from(end == End::Valid),
+            Ok(end) => n_valid += usize::from(end == Ending::Valid),
             Err(why) => panic!("wreck {seed}, {:?}: {why}", wreck.damage),
         }
     }
@@ -39,7 +39,7 @@ fn a_positive_tet_with_a_wrong_vertex_leaves_no_facet_with_three_tets() {
 fn a_box_shaken_beyond_repair_is_told() {
     for part in [1.5, 3.0] {
         let end = Wreck::shaken_box(2, 6, part).end(SurfaceRule::Keep);
-        assert_eq!(end, Ok(End::Told));
+        assert_eq!(end, Ok(Ending::Reported));
     }
 }
 

@@ -335,11 +335,11 @@ def mesh(
         raise OptionsError(f"size={size!r} means nothing: a length is expected, or 'auto'")
     given = [(as_mesh(one), name, False) for name, one in named(surfaces, "surface").items()]
     given += [(as_mesh(one), name, True) for name, one in named(list(membranes), "membrane").items()]
-    asked = _Filling(
+    request = _Filling(
         size=None if size == "auto" else size, surface=surface, is_graded=size == "auto", growth=growth, size_array=size_array,
         seeds=[(point(place), name) for name, place in (seeds or {}).items()], holes=[point(place) for place in holes], min_eas=min_eas,
         layers=None if isinstance(layers, Mapping) else layers, layers_on=dict(layers) if isinstance(layers, Mapping) else {},
         keep_prisms=keep_prisms, repair=repair, cut=cut, voids=voids, merge=merge, hole_edges=hole_edges,
     )  # fmt: skip
-    parts, told, not_reached = _motet.mesh(given, asked, threads, progress)
+    parts, told, not_reached = _motet.mesh(given, request, threads, progress)
     return Changed(Mesh._of(parts), None, report(told), not_reached)

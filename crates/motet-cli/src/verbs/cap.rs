@@ -80,7 +80,7 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
     lost.iter().for_each(|what| console.warn(what));
     let whole = caps.close(&first)?;
     let added = whole.points.len() - first.points.len();
-    console.say(format_args!(
+    console.print(format_args!(
         "{}: {}, {} capped, {} points and {} triangles added",
         args.output.display(),
         counted(frames.len(), "frame"),
@@ -89,7 +89,7 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
         count(whole.cells.len() - motet::mesh::Surface::of(&first).triangles.len())
     ));
     for plane in planes.iter().filter(|plane| args.flatten || plane.deviation > FLAT * plane.radius) {
-        console.say(format_args!(
+        console.print(format_args!(
             "{}: its rim {} {} away from its plane, {} of its radius of {}",
             plane.patch,
             if args.flatten { "is now flat; it was" } else { "is" },

@@ -51,7 +51,7 @@ fn series(args: &ConvertArgs, console: &Console) -> motet::Result<Outcome> {
     drop(meter);
     lost.iter().for_each(|what| console.warn(what));
     let n = frames.len();
-    console.say(format_args!("{} -> {}: {n} meshes", args.input.display(), args.output.display()));
+    console.print(format_args!("{} -> {}: {n} meshes", args.input.display(), args.output.display()));
     console.report(
         &json!({ "input": shown(&args.input), "output": shown(&args.output), "meshes": n, "lost": lost }),
     );
@@ -72,7 +72,7 @@ pub(crate) fn run(args: &ConvertArgs, console: &Console) -> motet::Result<Outcom
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
 
     notes.iter().chain(&lost).for_each(|what| console.warn(what));
-    console.say(format_args!(
+    console.print(format_args!(
         "{} -> {}: {} points, {} cells, {} point and {} cell arrays",
         args.input.display(),
         args.output.display(),

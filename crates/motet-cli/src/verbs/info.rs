@@ -64,11 +64,11 @@ pub(crate) fn run(args: &InfoArgs, console: &Console) -> motet::Result<Outcome> 
     let report =
         Report { file: &args.mesh, summary: &summary, arrays: Arrays::of(&mesh), passed_over: &notes };
     console.report(&report);
-    report.tell(console);
+    report.print(console);
     if let Some(output) = &args.output {
         let lost = io::write(output, &measured(mesh), &WriteOptions::default())?;
         lost.iter().for_each(|what| console.warn(what));
-        console.say(format_args!("\nwrote {}", output.display()));
+        console.print(format_args!("\nwrote {}", output.display()));
     }
     Ok(Outcome::Done)
 }
@@ -116,33 +116,33 @@ impl<'a> Arrays<'a> {
 }
 
 impl Report<'_> {
-    fn tell(&self, console: &Console) {
+    fn print(&self, console: &Console) {
         let summary = self.summary;
-        console.say(format_args!("{}: {} points", self.file.display(), count(summary.points)));
+        console.print(format_args!("{}: {} points", self.file.display(), count(summary.points)));
         let kinds: Vec<String> =
             summary.cells.iter().map(|(kind, n)| format!("{} {kind}", count(*n))).collect();
-        console.say(format_args!(
+        console.print(format_args!(
             "  cells     {}",
             if kinds.is_empty() { "none".into() } else { kinds.join(", ") }
         ));
-        self.tell_size(console);
-        self.tell_triangles(console);
-        self.tell_arrays(console);
-        self.tell_labels(console);
-        self.tell_quality(console);
-        self.tell_curved(console);
-        self.tell_defects(console);
+        self.print_size(console);
+        self.print_triangles(console);
+        self.print_arrays(console);
+        self.print_labels(console);
+        self.print_quality(console);
+        self.print_curved(console);
+        self.print_defects(console);
     }
 
-    fn tell_size(&self, console: &Console) {
+    fn print_size(&self, console: &Console) {
         let summary = self.summary;
         if let Some([low, high]) = summary.bounds {
             let side = |i: usize| format!("{} to {}", short(low[i]), short(high[i]));
-            console.say(format_args!("  bounds    x {}, y {}, z {}", side(0), side(1), side(2)));
+            console.print(format_args!("  bounds    x {}, y {}, z {}", side(0), side(1), side(2)));
         }
         if let Some(boundary) = &summary.boundary {
-            console.say(format_args!("  volume    {}", short(summary.volume)));
-            console.say(format_args!(
+            console.print(format_args!("  volume    {}", short(summary.volume)));
+            console.print(format_args!(
                 "  boundary  {} facets, {} vertices; conforming: {}",
                 count(boundary.facets),
                 count(boundary.vertices),
@@ -150,7 +150,7 @@ impl Report<'_> {
             ));
         }
         if let Some(surface) = &summary.surface {
-            console.say(format_args!(
+            console.print(format_args!(
                 "  surface   {} triangles, area {}, closed: {}",
                 count(surface.triangles),
                 short(surface.area),
@@ -160,12 +160,12 @@ impl Report<'_> {
     }
 
     /// Prints the edge lengths and the shape of the triangles of a surface.
-    fn tell_triangles(&self, console: &Console) {
+    fn print_triangles(&self, console: &Console) {
         let Some(triangles) = &self.summary.triangles else { return };
         let [least, median, largest] = triangles.edges.map(short);
         let [x, y, z] = triangles.worst_at.map(short);
-        console.say(format_args!("  edges     {least} to {largest} long, median {median}"));
-        console.say(format_args!(
+        console.print(format_args!("  edges     {least} to {largest} long, median {median}"));
+        console.print(format_args!(
             "  triangles mean ratio at least {}, mean {}; smallest angle {} degrees; worst: cell {} at ({x}, {y}, {z})",
             short(triangles.mean_ratio.min),
             short(triangles.mean_ratio.mean),
@@ -174,14 +174,14 @@ impl Report<'_> {
         ));
     }
 
-    fn tell_arrays(&self, console: &Console) {
+    fn print_arrays(&self, console: &Console) {
         for (place, arrays) in [("on points", &self.arrays.point), ("on cells", &self.arrays.cell)] {
             let one = |(name, components): &(&str, usize)| match components {
                 1 => (*name).to_string(),
                 n => format!("{name} ({n})"),
             };
             if !arrays.is_empty() {
-                console.say(format_args!(
+                console.print(format_args!(
                     "  {place:<9} {}",
                     arrays.iter().map(one).collect::<Vec<_>>().join(", ")
                 ));
@@ -189,13 +189,13 @@ impl Report<'_> {
         }
     }
 
-    fn tell_labels(&self, console: &Console) {
+    fn print_labels(&self, console: &Console) {
         if !self.summary.regions.is_empty() {
             let mut table = Table::new(["region", "cells", "tets", "volume"]);
             for (name, region) in &self.summary.regions {
                 table.row([name.clone(), count(region.cells), count(region.tets), short(region.volume)]);
             }
-            console.say(format_args!("\n{table}"));
+            console.print(format_args!("\n{table}"));
         }
         if !self.summary.patches.is_empty() {
             let mut table = Table::new(["patch", "cells", "triangles", "area", "closed"]);
@@ -209,50 +209,50 @@ impl Report<'_> {
                     closed,
                 ]);
             }
-            console.say(format_args!("\n{table}"));
+            console.print(format_args!("\n{table}"));
         }
     }
 
-    fn tell_quality(&self, console: &Console) {
+    fn print_quality(&self, console: &Console) {
         let Some(quality) = &self.summary.quality else { return };
         let eas = &quality.eas;
         let [x, y, z] = eas.worst_at.map(short);
         let table = quality::table([("the mesh", Some(quality.distribution))]);
-        console.say(format_args!("\n{table}"));
+        console.print(format_args!("\n{table}"));
         let [least, median, largest] = quality.edges.map(short);
-        console.say(format_args!(
+        console.print(format_args!(
             "  worst mean ratio {}; dihedral angles {} to {} degrees; edges {least} to {largest} long, median {median}",
             short(quality.mean_ratio.min),
             short(quality.dihedral_deg.min),
             short(quality.dihedral_deg.max)
         ));
-        console.say(format_args!(
+        console.print(format_args!(
             "  {} bad (EAS < 0.2), {} inverted or flat; worst: cell {} at ({x}, {y}, {z})",
             count(eas.bad),
             count(self.summary.inverted),
             eas.worst_cell
         ));
         if eas.layers > 0 {
-            console.say(format_args!(
+            console.print(format_args!(
                 "  {} thin tets of boundary layers (EAS < 0.2), not counted as bad",
                 count(eas.layers)
             ));
         }
         if self.summary.turned > 0 {
-            console.say(format_args!(
+            console.print(format_args!(
                 "  {} tets are numbered with the opposite orientation; each is judged by the orientation of \
                  its neighbours",
                 count(self.summary.turned)
             ));
         }
-        console.say("");
-        console.say(histogram(&eas.histogram));
+        console.print("");
+        console.print(histogram(&eas.histogram));
     }
 
-    fn tell_curved(&self, console: &Console) {
+    fn print_curved(&self, console: &Console) {
         let Some(curved) = &self.summary.curved else { return };
         let [x, y, z] = curved.worst_at.map(short);
-        console.say(format_args!(
+        console.print(format_args!(
             "\n  {} quadratic cells; least scaled Jacobian {}, in cell {} at ({x}, {y}, {z})",
             count(curved.cells),
             short(curved.min_scaled_jacobian),
@@ -260,12 +260,12 @@ impl Report<'_> {
         ));
     }
 
-    fn tell_defects(&self, console: &Console) {
+    fn print_defects(&self, console: &Console) {
         match self.summary.defects.as_slice() {
-            [] => console.say("\n  no defects"),
+            [] => console.print("\n  no defects"),
             defects => {
-                console.say("\n  defects");
-                defects.iter().for_each(|defect| console.say(format_args!("  - {defect}")));
+                console.print("\n  defects");
+                defects.iter().for_each(|defect| console.print(format_args!("  - {defect}")));
             }
         }
     }
@@ -301,7 +301,7 @@ fn series(path: &Path, console: &Console) -> motet::Result<Outcome> {
     }
     let mut table = Table::new(["file", "time"]);
     frames.iter().for_each(|(time, file)| table.row([file.display().to_string(), time_of(*time)]));
-    console.say(format_args!("{}: a series of {} meshes\n{table}", path.display(), frames.len()));
+    console.print(format_args!("{}: a series of {} meshes\n{table}", path.display(), frames.len()));
     let frames: Vec<_> =
         frames.iter().map(|(time, file)| json!({ "time": time, "file": shown(file) })).collect();
     console.report(&json!({ "file": shown(path), "series": frames }));

@@ -51,8 +51,8 @@ pub(crate) fn run(args: &ReportArgs, console: &Console) -> motet::Result<Outcome
     let budget = (args.budget * 1e6) as usize;
     let options = Options { output: args.output.clone(), title: args.title.clone(), budget };
     let report = motet_report::write(&args.inputs, &options)?;
-    report.inputs.iter().for_each(|input| tell(input, console));
-    console.say(format_args!(
+    report.inputs.iter().for_each(|input| print(input, console));
+    console.print(format_args!(
         "wrote {}: {:.1} MB; meshes take {:.1} of {} MB allowed",
         report.output.display(),
         report.bytes as f64 / 1e6,
@@ -63,12 +63,12 @@ pub(crate) fn run(args: &ReportArgs, console: &Console) -> motet::Result<Outcome
     Ok(Outcome::Done)
 }
 
-fn tell(input: &InputReport, console: &Console) {
+fn print(input: &InputReport, console: &Console) {
     let file = input.file.display();
     match input.frames {
-        0 => console.say(format_args!("{file}: {} rows", input.rows)),
-        1 => console.say(format_args!("{file}: a mesh")),
-        n => console.say(format_args!("{file}: {n} frames, {} with a picture", input.shown)),
+        0 => console.print(format_args!("{file}: {} rows", input.rows)),
+        1 => console.print(format_args!("{file}: a mesh")),
+        n => console.print(format_args!("{file}: {n} frames, {} with a picture", input.shown)),
     }
     input.left_out.iter().for_each(|what| console.warn(format_args!("{file}: {what}")));
 }

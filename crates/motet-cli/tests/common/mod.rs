@@ -1,8 +1,8 @@
 //! A fresh folder for each test, and the program run in it.
 #![allow(dead_code, reason = "each test file uses its part of this")]
 
-#[path = "../../../motet/tests/common/chance.rs"]
-pub(crate) mod chance;
+#[path = "../../../motet/tests/common/random.rs"]
+pub(crate) mod random;
 
 use std::fs;
 use std::path::{Path, PathBuf};

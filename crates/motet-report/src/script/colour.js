@@ -47,7 +47,7 @@ const OKABE_ITO = [
   [0, 114, 178], [230, 159, 0], [0, 158, 115], [204, 121, 167],
   [86, 180, 233], [213, 94, 0], [240, 228, 66], [120, 120, 120],
 ];
-const MOST_LABELS = 64;
+const MAX_LABELS = 64;
 
 function labelColour(i) {
   if (i < OKABE_ITO.length) return OKABE_ITO[i];
@@ -56,7 +56,7 @@ function labelColour(i) {
 
 function labelColours() {
   const bytes = new Uint8Array(256 * 4);
-  for (let i = 0; i < MOST_LABELS; i++) bytes.set([...labelColour(i), 255], 4 * i);
+  for (let i = 0; i < MAX_LABELS; i++) bytes.set([...labelColour(i), 255], 4 * i);
   return bytes;
 }
 

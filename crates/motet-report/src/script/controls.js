@@ -50,7 +50,7 @@ function showLabels(scale, input, state) {
   const seen = state.seen.filter((id) => id >= low && id <= high);
   for (const id of seen.slice(0, 24)) {
     const item = document.createElement("li"), patch = document.createElement("i");
-    patch.style.background = css(colours, (id - low) % MOST_LABELS);
+    patch.style.background = css(colours, (id - low) % MAX_LABELS);
     item.append(patch, names[id] ?? String(id));
     list.append(item);
   }

@@ -47,7 +47,7 @@ impl Carried {
     }
 
     /// Moves the vertices: each value changes by the change of the exact function on the way.
-    pub(crate) fn go_to(&mut self, places: &[Point]) {
+    pub(crate) fn move_to(&mut self, places: &[Point]) {
         for (i, (&to, from)) in places.iter().zip(&mut self.places).enumerate() {
             self.linear[i] += linear(to) - linear(*from);
             self.smooth[i] += smooth(to) - smooth(*from);
@@ -61,7 +61,7 @@ impl Carried {
     /// # Errors
     /// When the history is that of another mesh.
     pub(crate) fn change(&mut self, before: &[Point], history: &History, rule: Rule) -> motet::Result<()> {
-        self.go_to(before);
+        self.move_to(before);
         let carry = |values: &[f64]| -> motet::Result<Vec<f64>> {
             let field = history.transfer_points_by(&Field::scalars("", values.to_vec()), rule)?;
             Ok(field.and_then(|field| field.values.to_f64()).unwrap_or_default())

@@ -19,7 +19,7 @@ pub(crate) fn longest(corners: [Point; 4]) -> f64 {
 }
 
 /// The tets for which `holds` is true.
-pub(crate) fn those(part: &TetPart, holds: impl Fn(usize) -> bool) -> Vec<TetId> {
+pub(crate) fn tets_where(part: &TetPart, holds: impl Fn(usize) -> bool) -> Vec<TetId> {
     (0..part.mesh.tets.len()).filter(|&t| holds(t)).map(TetId::new).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Hosts and devices for tests of implantation.
 
-use super::chance::Chance;
+use super::random::Random;
 use motet::base::{CellId, Point, VertexId};
 use motet::implant::{Device, Inside};
 use motet::mesh::Mesh;
@@ -52,14 +52,14 @@ pub(crate) fn stent() -> Mesh {
 }
 
 /// A device of one of five shapes at a random place; every fourth is on the lattice of the host.
-pub(crate) fn random_device(chance: &mut Chance) -> (String, Device) {
-    let kind = (chance.next() * 5.0) as usize;
-    let on_lattice = chance.next() < 0.25;
+pub(crate) fn random_device(random: &mut Random) -> (String, Device) {
+    let kind = (random.next() * 5.0) as usize;
+    let on_lattice = random.next() < 0.25;
     let at: Point = std::array::from_fn(|_| {
-        let x = chance.between(-1.3, 1.3);
+        let x = random.between(-1.3, 1.3);
         if on_lattice { (x / 0.375).round() * 0.375 } else { x }
     });
-    let size = if on_lattice { 0.375 } else { chance.between(0.1, 0.7) };
+    let size = if on_lattice { 0.375 } else { random.between(0.1, 0.7) };
     let place = |p: Point| [0, 1, 2].map(|i| at[i] + size * p[i]);
     let (name, mesh) = match kind {
         0 => ("ball", moved(ball(3, 2), place)),
@@ -77,7 +77,7 @@ pub(crate) fn random_device(chance: &mut Chance) -> (String, Device) {
         }
     };
     let mut device = Device::new(mesh, name);
-    device.inside = match (device.inside, (chance.next() * 3.0) as usize) {
+    device.inside = match (device.inside, (random.next() * 3.0) as usize) {
         (_, 0) => Inside::Hollow,
         (_, 1) => Inside::Filled,
         (inside, _) => inside,

@@ -2,15 +2,15 @@
 
 #![allow(dead_code, reason = "each test uses a part of it")]
 
-pub(crate) mod adapting;
-pub(crate) mod chance;
+pub(crate) mod adaptation;
 pub(crate) mod criteria;
 pub(crate) mod devices;
 pub(crate) mod editor;
-pub(crate) mod filled;
+pub(crate) mod filling;
 pub(crate) mod hard;
-pub(crate) mod kept;
+pub(crate) mod invariants;
 pub(crate) mod prism;
+pub(crate) mod random;
 pub(crate) mod refined;
 pub(crate) mod solid_angle;
 pub(crate) mod wreck;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::kept::corners;
+use super::invariants::corners;
 use motet::base::{Point, TetId, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::tet::{FACETS, centroid};

@@ -5,7 +5,7 @@ use motet::geometry::vector::{cross, dot, norm, sub};
 
 /// Whether a closed surface winds around `q` in either direction: by the solid angles of its triangles, which
 /// sum to 4 pi per turn (Van Oosterom and Strackee 1983, *The solid angle of a plane triangle*).
-pub(crate) fn holds(points: &[Point], triangles: &[[VertexId; 3]], q: Point) -> bool {
+pub(crate) fn encloses(points: &[Point], triangles: &[[VertexId; 3]], q: Point) -> bool {
     let angle = |t: &[VertexId; 3]| {
         let [a, b, c] = t.map(|v| sub(points[v.index()], q));
         let (x, y, z) = (norm(a), norm(b), norm(c));

@@ -40,11 +40,11 @@ pub(crate) struct Wreck {
 
 /// The outcome of repairing a wreck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum End {
+pub(crate) enum Ending {
     /// Every tet is positive, and the mesh is valid.
     Valid,
     /// Flat or inverted tets are left, and the report counts them.
-    Told,
+    Reported,
     /// An error that names a place.
     Refused,
 }
@@ -81,18 +81,18 @@ impl Wreck {
 
     /// Repairs the wreck by a rule for the surface and returns the outcome; a violation is described in the
     /// error.
-    pub(crate) fn end(&self, surface: SurfaceRule) -> Result<End, String> {
+    pub(crate) fn end(&self, surface: SurfaceRule) -> Result<Ending, String> {
         let options = Options { surface, ..Options::default() };
         let outcome = match remesh(&self.mesh, &options, &Threads::single()) {
             Ok(outcome) => outcome,
-            Err(error) if error.place().is_some() => return Ok(End::Refused),
+            Err(error) if error.place().is_some() => return Ok(Ending::Refused),
             Err(error) => return Err(format!("refused without a place: {error}")),
         };
         let (new, told) = (&outcome.extract.mesh, outcome.report.after.inverted);
         let n_wrong = sound_connectivity(new)?;
         if n_wrong > 0 || told > 0 {
             return if told > 0 {
-                Ok(End::Told)
+                Ok(Ending::Reported)
             } else {
                 Err(format!(
                     "{n_wrong} facets of flat or inverted tets, none told; {:?}",
@@ -104,7 +104,7 @@ impl Wreck {
         if keeps_walls {
             same_walls(&self.sound, new)?;
         }
-        Ok(End::Valid)
+        Ok(Ending::Valid)
     }
 }
 

@@ -17,13 +17,13 @@ pub struct Stretched {
 }
 
 /// The prescribed displacements: vertices of the sphere move, those of the box stay.
-fn told(mesh: &TetMesh, shift: Point) -> Vec<Option<Point>> {
-    let mut told = vec![None; mesh.points.len()];
+fn prescribed(mesh: &TetMesh, shift: Point) -> Vec<Option<Point>> {
+    let mut prescribed = vec![None; mesh.points.len()];
     for (triangle, &patch) in mesh.triangles.iter().zip(&mesh.patches) {
         let displacement = if patch == INNER { shift } else { [0.0; 3] };
-        triangle.iter().for_each(|v| told[v.index()] = Some(displacement));
+        triangle.iter().for_each(|v| prescribed[v.index()] = Some(displacement));
     }
-    told
+    prescribed
 }
 
 fn moved(mesh: &TetMesh, displacement: &[Point], by: f64) -> TetMesh {
@@ -33,7 +33,7 @@ fn moved(mesh: &TetMesh, displacement: &[Point], by: f64) -> TetMesh {
 
 /// The mesh at each of several shifts along x, all from the reference.
 pub fn stretched(mesh: &TetMesh, shifts: &[f64]) -> Vec<Stretched> {
-    let unit = harmonic(mesh, &told(mesh, [1.0, 0.0, 0.0]));
+    let unit = harmonic(mesh, &prescribed(mesh, [1.0, 0.0, 0.0]));
     let at = |&shift: &f64| {
         let mesh = moved(mesh, &unit, shift);
         Stretched { shift, quality: quality(&mesh), mesh }
@@ -60,7 +60,7 @@ pub fn repaired_as_it_moves(
 ) {
     let mut mesh = mesh.clone();
     for i in 1..=n {
-        let displacement = harmonic(&mesh, &told(&mesh, [step, 0.0, 0.0]));
+        let displacement = harmonic(&mesh, &prescribed(&mesh, [step, 0.0, 0.0]));
         let moved = moved(&mesh, &displacement, 1.0);
         let outcome = remesh(&moved, options, &Threads::single()).expect("it is a mesh");
         let step =

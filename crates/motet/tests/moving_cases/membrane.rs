@@ -90,18 +90,18 @@ pub fn state(mesh: &TetMesh) -> State {
 
 /// The mesh after the next step, before repair.
 pub fn moved(mesh: &TetMesh, bending: &Bending, step: usize) -> TetMesh {
-    let mut told = vec![None; mesh.points.len()];
+    let mut prescribed = vec![None; mesh.points.len()];
     for v in mesh.triangles.iter().flatten() {
-        told[v.index()] = Some([0.0; 3]);
+        prescribed[v.index()] = Some([0.0; 3]);
     }
     let is_on_box = |p: Point| p.iter().any(|&x| x == 0.0 || x == 1.0);
     for v in membrane_vertices(mesh) {
         let p = mesh.points[v.index()];
         if !is_on_box(p) {
-            told[v.index()] = Some([0.0, 0.0, bending.height(p, step + 1) - p[2]]);
+            prescribed[v.index()] = Some([0.0, 0.0, bending.height(p, step + 1) - p[2]]);
         }
     }
-    let displacement = harmonic(mesh, &told);
+    let displacement = harmonic(mesh, &prescribed);
     let points = mesh.points.iter().zip(displacement).map(|(&p, d)| add(p, d)).collect();
     TetMesh { points, ..mesh.clone() }
 }

@@ -11,7 +11,7 @@ type Exact = [BigRational; 3];
 type Triangle = [VertexId; 3];
 
 /// A fault as the library reports it, without its place.
-pub(crate) type Told = (FaultKind, bool, u32, Vec<u32>, Vec<VertexId>);
+pub(crate) type FaultKey = (FaultKind, bool, u32, Vec<u32>, Vec<VertexId>);
 
 pub(crate) fn exact(p: Point) -> Exact {
     p.map(|x| BigRational::from_float(x).expect("coordinates are finite"))
@@ -117,7 +117,7 @@ pub(crate) fn faults(
     triangles: &[Triangle],
     surface_of: &[u32],
     roles: &[Role],
-) -> Vec<Told> {
+) -> Vec<FaultKey> {
     let scene = Scene { points, triangles, surface_of, roles };
     let mut told = scene.single();
     told.extend(scene.meeting());
@@ -165,7 +165,7 @@ impl Scene<'_> {
         2 * n_like > self.ids().filter(same).count() && self.ids().filter(same).find(is_like) == Some(t)
     }
 
-    fn single(&self) -> Vec<Told> {
+    fn single(&self) -> Vec<FaultKey> {
         let mut told = Vec::new();
         for t in self.ids() {
             let mut tell = |kind, is_fatal, triangles: &[usize]| {
@@ -189,7 +189,7 @@ impl Scene<'_> {
         told
     }
 
-    fn meeting(&self) -> Vec<Told> {
+    fn meeting(&self) -> Vec<FaultKey> {
         let counts = |t: &usize| {
             self.has_three(*t) && !is_flat(self.points, &self.triangles[*t]) && self.first(*t, false) == *t
         };
@@ -221,7 +221,7 @@ impl Scene<'_> {
         around
     }
 
-    fn edges(&self, surface: u32) -> Vec<Told> {
+    fn edges(&self, surface: u32) -> Vec<FaultKey> {
         let is_boundary = self.roles[surface as usize] == Role::Boundary;
         let mut told = Vec::new();
         for (edge, same) in self.around(surface) {
@@ -254,7 +254,7 @@ impl Scene<'_> {
         sets.into_values().collect()
     }
 
-    fn pinched(&self, surface: u32) -> Vec<Told> {
+    fn pinched(&self, surface: u32) -> Vec<FaultKey> {
         let around = self.around(surface);
         let vertices: BTreeSet<VertexId> = around.keys().flatten().copied().collect();
         let mut told = Vec::new();
@@ -272,7 +272,7 @@ impl Scene<'_> {
         told
     }
 
-    fn inward(&self, surface: u32) -> Vec<Told> {
+    fn inward(&self, surface: u32) -> Vec<FaultKey> {
         let around = self.around(surface);
         let things = around.values().flatten().map(|x| x.0).collect();
         let manifold = around.values().filter(|same| same.len() == 2);

@@ -57,7 +57,7 @@ pub(crate) struct ContactArgs {
     pub(crate) patches: Vec<String>,
     /// Measure each surface against itself as well, neighbours left out
     #[arg(long = "self", help_heading = "Gaps")]
-    pub(crate) own: bool,
+    pub(crate) against_self: bool,
     /// Search no farther than this [default: no limit; for --self 4 D, or a tenth of the size]
     #[arg(long, value_name = "D", help_heading = "Gaps", value_parser = positive)]
     pub(crate) within: Option<f64>,
@@ -116,7 +116,7 @@ impl ContactArgs {
     pub(crate) fn options(&self) -> Options {
         Options {
             warn: self.warn,
-            own: self.own,
+            own: self.against_self,
             within: self.within.unwrap_or(f64::INFINITY),
             facing: self.facing,
             fold: self.fold,
@@ -129,7 +129,7 @@ impl ContactArgs {
             return Err(Error::options("--horizon requires --velocity")
                 .remedy("a series without velocities looks ahead to its next frame"));
         }
-        if self.own && (self.method == Method::Delaunay || self.gap_tets.is_some()) {
+        if self.against_self && (self.method == Method::Delaunay || self.gap_tets.is_some()) {
             return Err(Error::options("Delaunay tets span gaps between surfaces, not within one")
                 .remedy("omit --self, or --method delaunay and --gap-tets"));
         }

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 /// How accurate the gaps by Delaunay tets are, over all vertices that have a gap by both methods.
 #[derive(Debug, Serialize)]
-pub(crate) struct Beside {
+pub(crate) struct DelaunayAccuracy {
     pub(crate) gap_tets: usize,
     /// The least gap by Delaunay tets.
     pub(crate) least: Option<f64>,
@@ -41,8 +41,8 @@ pub(crate) fn replace(
     between: &Between,
     seconds: f64,
     warn: Option<f64>,
-) -> (Beside, Vec<f64>) {
-    let mut told = Beside {
+) -> (DelaunayAccuracy, Vec<f64>) {
+    let mut accuracy = DelaunayAccuracy {
         gap_tets: between.tets.len(),
         least: between.least.map(|least| least.distance),
         compared: 0,
@@ -58,10 +58,10 @@ pub(crate) fn replace(
             let error = found - exact;
             errors.push(error);
             if error.is_finite() {
-                told.compared += 1;
+                accuracy.compared += 1;
                 n_exact += usize::from(error.abs() <= 1e-12 * exact);
-                told.largest_over = told.largest_over.max(error);
-                told.largest_under = told.largest_under.max(-error);
+                accuracy.largest_over = accuracy.largest_over.max(error);
+                accuracy.largest_under = accuracy.largest_under.max(-error);
             }
             // No path through free space starts where a vertex must not be: there the exact depth stays.
             if found.is_finite() || body.gap[i] > 0.0 {
@@ -70,8 +70,8 @@ pub(crate) fn replace(
             body.warning[i] = warn.is_some_and(|warn| body.gap[i] < warn);
         }
     }
-    told.exact = n_exact as f64 / told.compared.max(1) as f64;
-    (told, errors)
+    accuracy.exact = n_exact as f64 / accuracy.compared.max(1) as f64;
+    (accuracy, errors)
 }
 
 /// The gap tets with four vertices as a mesh, and the number of the others, which are flat.

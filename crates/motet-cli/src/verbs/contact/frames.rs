@@ -103,7 +103,7 @@ impl<'a> Frames<'a> {
 
 impl Frame {
     /// Whether this frame has the same triangles as the other, so that only points have moved.
-    pub(crate) fn is_moved_of(&self, other: &Self) -> bool {
+    pub(crate) fn has_same_triangles(&self, other: &Self) -> bool {
         let same = |body: &Body, other: &Body| body.name == other.name && body.triangles == other.triangles;
         self.points.len() == other.points.len()
             && self.bodies.len() == other.bodies.len()

@@ -5,13 +5,13 @@ use std::fmt;
 use crate::table::{Table, count, short};
 
 /// Number of bins from the least to the largest gap.
-const BINS: usize = 10;
+const N_BINS: usize = 10;
 
 /// Length of the longest bar.
 const WIDTH: usize = 40;
 
 /// If the largest gap exceeds the least by this factor, bins are spaced geometrically.
-const WIDE: f64 = 30.0;
+const GEOMETRIC_RATIO: f64 = 30.0;
 
 /// Counts of gaps by size.
 pub(crate) struct Histogram {
@@ -29,15 +29,15 @@ impl Histogram {
         if !(low.is_finite() && high > low) {
             return None;
         }
-        let is_wide = low > 0.0 && high > WIDE * low;
+        let is_wide = low > 0.0 && high > GEOMETRIC_RATIO * low;
         let limit = |i: usize| {
-            let part = i as f64 / BINS as f64;
+            let part = i as f64 / N_BINS as f64;
             if is_wide { low * (high / low).powf(part) } else { low + (high - low) * part }
         };
-        let limits: Vec<f64> = (0..=BINS).map(limit).collect();
-        let mut counts = vec![0; BINS];
+        let limits: Vec<f64> = (0..=N_BINS).map(limit).collect();
+        let mut counts = vec![0; N_BINS];
         for gap in gaps {
-            counts[limits[1..BINS].partition_point(|limit| limit <= gap)] += 1;
+            counts[limits[1..N_BINS].partition_point(|limit| limit <= gap)] += 1;
         }
         Some(Self { limits, counts, warn })
     }
@@ -65,7 +65,7 @@ mod tests {
         let gaps = [0.1, 0.2, 0.2, 1.1];
         let histogram = Histogram::of(&gaps, Some(0.15)).expect("gaps differ");
         assert_eq!(histogram.counts.iter().sum::<usize>(), gaps.len());
-        assert_eq!((histogram.counts[0], histogram.counts[BINS - 1]), (1, 1));
+        assert_eq!((histogram.counts[0], histogram.counts[N_BINS - 1]), (1, 1));
         assert!(histogram.to_string().contains('!'));
         assert!(Histogram::of(&[], None).is_none());
         let wide = Histogram::of(&[0.001, 0.01, 1.0], None).expect("gaps differ");

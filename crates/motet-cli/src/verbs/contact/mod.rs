@@ -5,8 +5,8 @@ mod delaunay;
 mod frames;
 mod histogram;
 mod output;
+mod print;
 mod report;
-mod words;
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -19,7 +19,7 @@ use motet::{Error, Result};
 pub(crate) use args::ContactArgs;
 
 use self::args::Method;
-use self::delaunay::Beside;
+use self::delaunay::DelaunayAccuracy;
 use self::frames::{Frame, Frames};
 use self::report::{Report, Step};
 use crate::common::Common;
@@ -54,17 +54,17 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
             next = Some(frames.read(k + 1, console)?);
         }
         let measuring = Instant::now();
-        let mut contact = prepared(handle.take(), &mut frame, args, &threads)?;
+        let mut contact = prepare(handle.take(), &mut frame, args, &threads)?;
         let mut gaps = contact.measure(&threads);
         report.seconds.measure += measuring.elapsed().as_secs_f64();
-        let beside = by_delaunay(&contact, &mut gaps, args, &threads, console)?;
+        let accuracy = by_delaunay(&contact, &mut gaps, args, &threads, console)?;
         let looking = Instant::now();
         let dt = if k + 1 < n { frames.times[k + 1] - frames.times[k] } else { 0.0 };
         let ahead = look_ahead(&contact, &frame, next.as_ref(), dt, args, &threads)?;
         report.seconds.look_ahead += looking.elapsed().as_secs_f64();
         let is_last = k + 1 == n;
         let mut mesh = output::mesh(&frame, &gaps, ahead.as_ref());
-        let (beside, errors) = beside.unzip();
+        let (accuracy, errors) = accuracy.unzip();
         errors.into_iter().for_each(|errors| output::add_errors(&mut mesh, errors));
         let writing = Instant::now();
         let file = match &mut series {
@@ -78,7 +78,7 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
         let (file, lost) = file.unzip();
         lost.into_iter().flatten().for_each(|what| console.warn(what));
         let step = Step::new((frames.times[k], file), &contact, &frame, &gaps, ahead.as_ref());
-        report.add(&contact, &frame, step.beside(beside));
+        report.add(&contact, &frame, step.with_delaunay(accuracy));
         handle = Some((contact, frame));
         meter.step();
     }
@@ -86,30 +86,30 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     report.seconds.total = begin.elapsed().as_secs_f64();
     let fails = args.fail_on_warning && report.is_warned();
     let outcome = Outcome::of(fails.then(|| "some gaps are below --warn".to_owned()));
-    report.tell(&outcome, console);
+    report.print(&outcome, console);
     Ok(outcome)
 }
 
 /// The contact of the previous frame with its points moved, where only points differ; otherwise a new one.
-fn prepared(
+fn prepare(
     last: Option<(Contact, Frame)>,
     frame: &mut Frame,
     args: &ContactArgs,
     threads: &Threads,
 ) -> Result<Contact> {
     let file = (frame.sources.len() == 1).then(|| frame.sources[0].file.clone());
-    let told = |e: Error| match (e.file(), file) {
+    let with_file = |e: Error| match (e.file(), file) {
         (None, Some(file)) => e.in_file(&file),
         _ => e,
     };
     if let Some((mut contact, last)) = last {
-        if frame.is_moved_of(&last) {
-            contact.refit(&frame.points, threads).map_err(told)?;
+        if frame.has_same_triangles(&last) {
+            contact.refit(&frame.points, threads).map_err(with_file)?;
             return Ok(contact);
         }
         frame.keep_rooms(&contact);
     }
-    Contact::new(frame.points.clone(), frame.bodies.clone(), args.options(), threads).map_err(told)
+    Contact::new(frame.points.clone(), frame.bodies.clone(), args.options(), threads).map_err(with_file)
 }
 
 /// The gaps by Delaunay tets and the tets themselves, where requested.
@@ -119,7 +119,7 @@ fn by_delaunay(
     args: &ContactArgs,
     threads: &Threads,
     console: &Console,
-) -> Result<Option<(Beside, Vec<f64>)>> {
+) -> Result<Option<(DelaunayAccuracy, Vec<f64>)>> {
     if args.method == Method::Exact && args.gap_tets.is_none() {
         return Ok(None);
     }
@@ -151,7 +151,7 @@ fn look_ahead(
         let horizon = args.horizon.unwrap_or(f64::INFINITY);
         return contact.look_ahead(velocity, horizon, threads).map(Some);
     }
-    match next.filter(|next| dt > 0.0 && next.is_moved_of(frame)) {
+    match next.filter(|next| dt > 0.0 && next.has_same_triangles(frame)) {
         Some(next) => contact.look_ahead_to(&next.points, dt, threads).map(Some),
         None => Ok(None),
     }

@@ -8,7 +8,7 @@ use motet::geometry::distance::Feature;
 use serde::Serialize;
 
 use super::args::ContactArgs;
-use super::delaunay::Beside;
+use super::delaunay::DelaunayAccuracy;
 use super::frames::Frame;
 use crate::words;
 
@@ -76,7 +76,7 @@ pub(super) struct Step {
     pub(super) warned: Vec<Group>,
     pub(super) first_contact: Option<First>,
     /// How accurate the gaps by Delaunay tets are, where requested.
-    pub(super) delaunay: Option<Beside>,
+    pub(super) delaunay: Option<DelaunayAccuracy>,
     #[serde(skip)]
     pub(super) all: Vec<f64>,
     #[serde(skip)]
@@ -233,7 +233,7 @@ impl Step {
     }
 
     /// Adds the accuracy of the gaps by Delaunay tets.
-    pub(super) fn beside(mut self, delaunay: Option<Beside>) -> Self {
+    pub(super) fn with_delaunay(mut self, delaunay: Option<DelaunayAccuracy>) -> Self {
         self.delaunay = delaunay;
         self
     }

@@ -73,7 +73,7 @@ pub(crate) fn run(args: &DemoArgs, common: &Common, console: &Console) -> Result
     let mut not_reached = Vec::new();
     for (what, words) in CALLS {
         let call = call(&args.folder, words);
-        console.say(format_args!("\n# {what}\n$ motet {}\n", as_typed(&call[1..])));
+        console.print(format_args!("\n# {what}\n$ motet {}\n", as_typed(&call[1..])));
         let one = Instant::now();
         if let Outcome::NotReached(why) = make(&call, common, console, &mut cycles)? {
             not_reached.push(format!("{what}: {why}"));
@@ -81,7 +81,7 @@ pub(crate) fn run(args: &DemoArgs, common: &Common, console: &Console) -> Result
         took.push((what, one.elapsed().as_secs_f64()));
     }
     let outcome = Outcome::of((!not_reached.is_empty()).then(|| not_reached.join("; ")));
-    tell(args, &cycles, &took, begin.elapsed().as_secs_f64(), &outcome, console);
+    print(args, &cycles, &took, begin.elapsed().as_secs_f64(), &outcome, console);
     Ok(outcome)
 }
 
@@ -132,8 +132,8 @@ fn make(
         "implant" => implant::run(&parsed(call)?, common, &quiet),
         "report" => report::run(&parsed(call)?, &quiet),
         _ => {
-            let report = run::carry_out(&parsed(call)?, common, &quiet)?;
-            report.tell(&quiet);
+            let report = run::execute(&parsed(call)?, common, &quiet)?;
+            report.print(&quiet);
             let outcome = report.outcome();
             cycles.push(report);
             Ok(outcome)
@@ -142,7 +142,7 @@ fn make(
 }
 
 /// Prints a table of both cycles, and which files to open.
-fn tell(
+fn print(
     args: &DemoArgs,
     cycles: &[run::Report],
     took: &[(&str, f64)],
@@ -164,12 +164,12 @@ fn tell(
     row("worst EAS, first and of all steps", &|c| format!("{} and {}", eas(c.worst_at_first), eas(c.worst)));
     row("least gap", &|c| c.least_gap.map_or_else(|| "-".to_owned(), short));
     row("steps that warned", &|c| c.warned_steps.to_string());
-    console.say(format_args!("\n{table}\n"));
+    console.print(format_args!("\n{table}\n"));
     let mut times = Table::new(["what", "took"]);
     took.iter().for_each(|(what, s)| times.row([(*what).to_owned(), seconds(*s)]));
     times.row(["all".to_owned(), seconds(total)]);
     let folder = args.folder.display();
-    console.say(format_args!(
+    console.print(format_args!(
         "{times}\n\nSee it move:\n  {folder}/report.html in a browser: turn, cut, play\n  \
          paraview {folder}/aneurysm.pvd       (Apply, colour by eas, slice, play)\n  \
          paraview {folder}/dissection.pvd\nLook closer:\n  motet info {folder}/treated.vtu\n  motet help run"

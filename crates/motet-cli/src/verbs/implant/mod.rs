@@ -37,7 +37,7 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     let read = begin.elapsed().as_secs_f64();
     let made = implant(&host, &devices, &options, &rules, &threads);
     let Implanted { mut mesh, history, report } =
-        made.map_err(|e| in_its_file(e, &args.host, &args.devices, &devices))?;
+        made.map_err(|e| with_file(e, &args.host, &args.devices, &devices))?;
     let quality = [&host, &mesh].map(|mesh| Qualities::of_mesh(mesh, &threads));
     meter.stage("writing");
     let Written { lost, seconds: write } =
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
     let outcome = Outcome::of(report.not_reached());
-    Report::new(args, report, quality, [read, write, begin.elapsed().as_secs_f64()]).tell(&outcome, console);
+    Report::new(args, report, quality, [read, write, begin.elapsed().as_secs_f64()]).print(&outcome, console);
     Ok(outcome)
 }
 
@@ -92,7 +92,7 @@ impl Names {
 }
 
 /// Adds to an error the file that it concerns: that of the device it names, otherwise that of the host.
-pub(crate) fn in_its_file(error: Error, host: &Path, files: &[PathBuf], devices: &[Device]) -> Error {
+pub(crate) fn with_file(error: Error, host: &Path, files: &[PathBuf], devices: &[Device]) -> Error {
     let named = devices.iter().position(|device| error.what().contains(&format!("`{}`", device.name)));
     error.in_file(named.map_or(host, |k| &files[k]))
 }

@@ -50,7 +50,7 @@ struct Seconds {
 }
 
 /// How many of the remaining bad tets are listed without `--verbose`.
-const FIRST: usize = 10;
+const N_LISTED: usize = 10;
 
 impl Report {
     /// `quality`: of the host and of the new mesh; seconds: for reading, for writing, and in total.
@@ -75,28 +75,28 @@ impl Report {
         }
     }
 
-    pub(super) fn tell(&self, outcome: &Outcome, console: &Console) {
+    pub(super) fn print(&self, outcome: &Outcome, console: &Console) {
         console.conclude(self, outcome);
         let report = &self.report;
         if let Some(adapted) = report.adapted {
-            console.say(format_args!(
+            console.print(format_args!(
                 "refined {} times: {} tets of the host became {}",
                 adapted.generations,
                 count(adapted.tets_before),
                 count(adapted.tets_after)
             ));
         }
-        console.say(format_args!(
+        console.print(format_args!(
             "{} tets carved; kept to the bit: {} of {}, {} %",
             count(report.carved),
             count(report.kept),
             count(report.host_tets),
             (report.kept_share * 1e4).floor() / 1e2
         ));
-        console.say(self.device_table());
+        console.print(self.device_table());
         for device in &report.devices {
             let Some(fit) = device.fit else { continue };
-            console.say(format_args!(
+            console.print(format_args!(
                 "{}: new surface within {} of the old one, the old one within {} of it; {} was requested{}",
                 device.name,
                 short(fit.to_old),
@@ -105,9 +105,9 @@ impl Report {
                 if fit.is_reached() { "" } else { " and not reached" }
             ));
         }
-        report.devices.iter().filter_map(at_walls).for_each(|told| console.say(told));
+        report.devices.iter().filter_map(describe_at_walls).for_each(|text| console.print(text));
         let worst = report.improved.after.worst;
-        console.say(format_args!(
+        console.print(format_args!(
             "{} tets; {} bad ones near the devices were repaired, {} bad new tets are left; worst EAS there \
              {}",
             count(report.tets),
@@ -116,8 +116,8 @@ impl Report {
             worst.map_or("-".into(), |worst| short(worst.eas))
         ));
         let [host, mesh] = self.quality;
-        console.say(quality::table([("host", host), ("with devices", mesh)]));
-        console.say(format_args!(
+        console.print(quality::table([("host", host), ("with devices", mesh)]));
+        console.print(format_args!(
             "volume {}, expected {}; off by {:.0e} at most",
             short(report.volume),
             short(report.volume_expected),
@@ -126,15 +126,15 @@ impl Report {
         for defect in &report.defects {
             console.warn(format_args!("{}: {}", defect.kind.name(), count(defect.count)));
         }
-        self.tell_left(console);
-        console.say(format_args!("wrote {}", self.output.display()));
+        self.print_remaining(console);
+        console.print(format_args!("wrote {}", self.output.display()));
         if let Some(history) = &self.history {
-            console.say(format_args!("wrote {}", history.display()));
+            console.print(format_args!("wrote {}", history.display()));
         }
         let implant::Seconds { devices, adapt, carve, fill, improve, join, check } = report.seconds;
         let [devices, adapt, carve, fill, improve, join, check, total] =
             [devices, adapt, carve, fill, improve, join, check, self.seconds.total].map(seconds);
-        console.say(format_args!(
+        console.print(format_args!(
             "devices {devices}, refined {adapt}, carved {carve}, filled {fill}, repaired {improve}, joined {join}, checked {check}, all {total}"
         ));
     }
@@ -156,9 +156,9 @@ impl Report {
         table
     }
 
-    fn tell_left(&self, console: &Console) {
+    fn print_remaining(&self, console: &Console) {
         if !self.report.host_left.is_empty() {
-            console.say(format_args!(
+            console.print(format_args!(
                 "{} bad tets of the host near the devices are left unchanged",
                 count(self.report.host_left.len())
             ));
@@ -168,16 +168,16 @@ impl Report {
             return;
         }
         let n_forced = left.len() - self.unforced;
-        console.say(format_args!(
+        console.print(format_args!(
             "{} of the bad tets that are left are forced by surfaces, {} are not:",
             count(n_forced),
             count(self.unforced)
         ));
-        let mut told: Vec<&Left> = left.iter().collect();
-        told.sort_by_key(|left| left.reason.is_forced());
-        let n = if console.is_verbose() { told.len() } else { FIRST };
-        for left in told.iter().take(n) {
-            console.say(format_args!(
+        let mut listed: Vec<&Left> = left.iter().collect();
+        listed.sort_by_key(|left| left.reason.is_forced());
+        let n = if console.is_verbose() { listed.len() } else { N_LISTED };
+        for left in listed.iter().take(n) {
+            console.print(format_args!(
                 "  cell {} at {}, EAS {}: {}",
                 left.tet,
                 place(left.place),
@@ -185,30 +185,30 @@ impl Report {
                 left.reason
             ));
         }
-        if told.len() > n {
-            console.say(format_args!("  and {} more; -v or --json lists all", count(told.len() - n)));
+        if listed.len() > n {
+            console.print(format_args!("  and {} more; -v or --json lists all", count(listed.len() - n)));
         }
     }
 }
 
 /// Describes how a device meets walls of the host; `None` where it does not.
-fn at_walls(device: &implant::DeviceReport) -> Option<String> {
+fn describe_at_walls(device: &implant::DeviceReport) -> Option<String> {
     let (at, outside) = (device.triangles_at_walls, device.triangles_outside);
     if at + outside == 0 && device.contact_patch.is_none() {
         return None;
     }
-    let mut told = format!(
+    let mut text = format!(
         "{}: meets walls of the host: {} triangles are divided there or have changed",
         device.name,
         count(at)
     );
     if outside > 0 {
-        told += &format!(", {} lay outside and were cut off", count(outside));
+        text += &format!(", {} lay outside and were cut off", count(outside));
     }
     if let Some(patch) = device.contact_patch {
-        told += &format!("; the facets common to both are patch {patch}, {}-contact", device.name);
+        text += &format!("; the facets common to both are patch {patch}, {}-contact", device.name);
     }
-    Some(told)
+    Some(text)
 }
 
 fn listed(ids: &[i32]) -> String {

@@ -8,8 +8,8 @@ use motet::delaunay::EdgePoints;
 use motet::meshing::{Dividing, Options, Seed, Sizes, Surfaces};
 use motet::preflight::Repairs;
 
-use super::layer_words::{LayersWord, layers, stacks};
-use super::words::{self, Size};
+use super::layer_args::{LayersArg, layers, stacks};
+use super::parsers::{self, Size};
 use crate::words::positive;
 use crate::writing::WritingArgs;
 
@@ -60,7 +60,7 @@ pub(crate) struct MeshArgs {
     pub(crate) output: PathBuf,
     /// Put points inside so that edges have about this length, in units of the surface, and repair bad tets.
     /// auto: the length of the surface's edges, growing inwards
-    #[arg(long, value_name = "H|auto", value_parser = words::size)]
+    #[arg(long, value_name = "H|auto", value_parser = parsers::size)]
     pub(crate) size: Option<Size>,
     /// Whether to divide triangles of the surface to --size H within their planes, creases kept. auto: where
     /// most of them are far coarser, or narrow. divide: all of them. keep: none, so that every triangle is a
@@ -75,10 +75,10 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) size_array: Option<String>,
     /// Name the region that contains a place. Repeatable
-    #[arg(long, value_name = "X,Y,Z=NAME", value_parser = words::seed, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z=NAME", value_parser = parsers::seed, allow_hyphen_values = true)]
     pub(crate) seed: Vec<Seed>,
     /// Leave out the region around a place. Repeatable
-    #[arg(long, value_name = "X,Y,Z", value_parser = words::place, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parsers::place, allow_hyphen_values = true)]
     pub(crate) hole: Vec<Point>,
     /// Leave out what closed surfaces turned inward enclose, such as the cavity of a hollow body. With
     /// --repair such surfaces stay turned inward
@@ -94,7 +94,7 @@ pub(crate) struct MeshArgs {
     /// the one before. They go on one patch, or on all that are neither caps (flat, with a sharp crease all
     /// around) nor named. Where there is no space they are thinner, or absent. Repeatable
     #[arg(long, value_name = "[PATCH=]N,FIRST,GROWTH", value_parser = layers)]
-    pub(crate) layers: Vec<LayersWord>,
+    pub(crate) layers: Vec<LayersArg>,
     /// Put the --layers without a patch only on this one, and on others named so. Repeatable
     #[arg(long, value_name = "PATCH", requires = "layers")]
     pub(crate) layers_on: Vec<String>,

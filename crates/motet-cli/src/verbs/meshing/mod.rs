@@ -1,9 +1,9 @@
 //! `motet mesh`: closed surfaces in, volume mesh out.
 
 mod args;
-mod layer_words;
+mod layer_args;
+mod parsers;
 mod report;
-mod words;
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -83,7 +83,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
         [read, check, fill, write, begin.elapsed().as_secs_f64()],
         outcome == Outcome::Done,
     );
-    report.tell(&outcome, console);
+    report.print(&outcome, console);
     Ok(outcome)
 }
 
@@ -115,7 +115,7 @@ fn refused(
     preflight: &Preflight,
     console: &Console,
 ) -> motet::Error {
-    report.tell(&Outcome::Done, console);
+    report.print(&Outcome::Done, console);
     let error =
         preflight.first_error().unwrap_or_else(|| motet::Error::input("the surfaces cannot be meshed"));
     let fault = preflight.faults.iter().find(|fault| fault.is_fatal);

@@ -47,7 +47,7 @@ struct Seconds {
 }
 
 /// The maximum number of faults, and of regions, that are listed.
-const TOLD: usize = 20;
+const N_LISTED: usize = 20;
 
 impl<'a> Report<'a> {
     pub(super) fn new(args: &MeshArgs, preflight: &'a Preflight, repairs: &'a [Repair]) -> Self {
@@ -82,34 +82,34 @@ impl<'a> Report<'a> {
         self.seconds = Seconds { read, check, fill, write, total };
     }
 
-    pub(super) fn tell(&self, outcome: &Outcome, console: &Console) {
+    pub(super) fn print(&self, outcome: &Outcome, console: &Console) {
         console.conclude(self, outcome);
         if !self.repairs.is_empty() {
-            console.say(format_args!("{} repairs (--json lists them)", count(self.repairs.len())));
+            console.print(format_args!("{} repairs (--json lists them)", count(self.repairs.len())));
         }
-        self.tell_divided(console);
-        console.say(self.preflight);
-        for rim in self.preflight.rims.iter().take(TOLD) {
-            console.say(format_args!("  rim: {rim}"));
+        self.print_divided(console);
+        console.print(self.preflight);
+        for rim in self.preflight.rims.iter().take(N_LISTED) {
+            console.print(format_args!("  rim: {rim}"));
         }
         let in_rims = self.preflight.n_torn_edges == 0;
         let fatal = self.preflight.faults.iter().filter(|fault| fault.is_fatal);
         let fatal = fatal.filter(|fault| !in_rims || fault.kind != FaultKind::OpenEdge);
-        for fault in fatal.clone().take(TOLD) {
-            console.say(format_args!("  {}: {fault}", fault.kind.name()));
+        for fault in fatal.clone().take(N_LISTED) {
+            console.print(format_args!("  {}: {fault}", fault.kind.name()));
         }
-        let more = fatal.count().saturating_sub(TOLD);
+        let more = fatal.count().saturating_sub(N_LISTED);
         if more > 0 {
             console
-                .say(format_args!("  and {} more (--json lists them, --culprits shows them)", count(more)));
+                .print(format_args!("  and {} more (--json lists them, --culprits shows them)", count(more)));
         }
         if let Some(filled) = &self.filled {
-            self.tell_filled(filled, console);
+            self.print_filled(filled, console);
         }
     }
 
     /// Prints where triangles were divided, by kind: how many places, and the first of them.
-    fn tell_divided(&self, console: &Console) {
+    fn print_divided(&self, console: &Console) {
         for (kind, what) in [
             (RepairKind::TJunction, "vertices on edges (T-junctions): the edges are divided there"),
             (RepairKind::Imprinted, "pairs of triangles lie on each other: they are divided alike"),
@@ -125,26 +125,26 @@ impl<'a> Report<'a> {
             let first =
                 place.map_or_else(String::new, |at| format!("; the first at ({})", at.map(short).join(", ")));
             if of_kind().next().is_some() {
-                console.say(format_args!("  {} {what}{first}", count(of_kind().count())));
+                console.print(format_args!("  {} {what}{first}", count(of_kind().count())));
             }
         }
     }
 
-    fn tell_filled(&self, filled: &meshing::Report, console: &Console) {
-        console.say(format_args!(
+    fn print_filled(&self, filled: &meshing::Report, console: &Console) {
+        console.print(format_args!(
             "{} tets in {} regions; worst EAS {}",
             count(filled.tets),
             filled.bodies.len(),
             short(filled.worst_eas)
         ));
         if let Some(divided) = filled.divided {
-            console.say(format_args!(
+            console.print(format_args!(
                 "the surface was divided: {} triangles in place of {}",
                 count(divided.after),
                 count(divided.before)
             ));
         }
-        console.say(format_args!(
+        console.print(format_args!(
             "{} of {} triangles are facets unchanged; {} points were inserted inside, {} on edges",
             count(filled.triangles_kept),
             count(filled.triangles),
@@ -152,7 +152,7 @@ impl<'a> Report<'a> {
             count(filled.points_on_edges)
         ));
         if filled.voids > 0 {
-            console.say(format_args!(
+            console.print(format_args!(
                 "{} voids are left out: surfaces turned inward enclose them",
                 count(filled.voids)
             ));
@@ -170,10 +170,10 @@ impl<'a> Report<'a> {
             ));
         }
         if let Some(layers) = &self.layers {
-            tell_layers(layers, console);
+            print_layers(layers, console);
         }
         if let Some(improved) = &self.improved {
-            console.say(format_args!(
+            console.print(format_args!(
                 "improved: {} tets, worst EAS {}; {} bad tets were repaired, {} are left",
                 count(improved.after.tets),
                 improved.after.worst.map_or("-".into(), |worst| short(worst.eas)),
@@ -182,13 +182,13 @@ impl<'a> Report<'a> {
             ));
         }
         if self.quality.is_some() {
-            console.say(quality::table([("the mesh", self.quality)]));
+            console.print(quality::table([("the mesh", self.quality)]));
         }
-        for body in filled.bodies.iter().take(TOLD) {
+        for body in filled.bodies.iter().take(N_LISTED) {
             let name = body.name.as_ref().map_or_else(String::new, |name| format!(" {name}"));
             let void =
                 if body.is_void { "; surfaces turned inward enclose it: --voids leaves it out" } else { "" };
-            console.say(format_args!(
+            console.print(format_args!(
                 "region {}{name}: {} tets{}, volume {}{void}",
                 body.region,
                 count(body.tets),
@@ -196,11 +196,11 @@ impl<'a> Report<'a> {
                 short(body.volume)
             ));
         }
-        let more = filled.bodies.len().saturating_sub(TOLD);
+        let more = filled.bodies.len().saturating_sub(N_LISTED);
         if more > 0 {
-            console.say(format_args!("and {} more (--json lists them)", count(more)));
+            console.print(format_args!("and {} more (--json lists them)", count(more)));
         }
-        console.say(format_args!(
+        console.print(format_args!(
             "filled {}, all {}",
             seconds(self.seconds.fill),
             seconds(self.seconds.total)
@@ -208,14 +208,14 @@ impl<'a> Report<'a> {
     }
 }
 
-fn tell_layers(layers: &meshing::layers::Report, console: &Console) {
+fn print_layers(layers: &meshing::layers::Report, console: &Console) {
     let thickness = layers.thickness.map_or("none".into(), |t| t.map(short).join(", "));
-    console.say(format_args!(
+    console.print(format_args!(
         "layers: {} prisms of volume {}; thickness (least, median, largest) {thickness}",
         count(layers.prisms),
         short(layers.volume)
     ));
-    console.say(format_args!(
+    console.print(format_args!(
         "as thick as requested at {} of {} vertices of walls, thinner at {}, none at {}",
         count(layers.full),
         count(layers.vertices),
@@ -223,7 +223,7 @@ fn tell_layers(layers: &meshing::layers::Report, console: &Console) {
         count(layers.without)
     ));
     if let Some(place) = layers.least_at {
-        console.say(format_args!(
+        console.print(format_args!(
             "the least fraction of the requested thickness is {}, at {}",
             short(layers.least_share),
             place.map(short).join(", ")

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args, ValueEnum};
 use motet::motion::{Extent, SlideTolerance};
 
-use super::words::{self, PatchFile, Rotate, Translate};
+use super::parsers::{self, PatchFile, Rotate, Translate};
 use crate::words::positive;
 use crate::writing::WritingArgs;
 
@@ -58,16 +58,16 @@ pub(crate) struct MoveArgs {
     #[arg(long = "match", value_name = "HOW", default_value = "id", help_heading = "Motion")]
     pub(crate) matching: Match,
     /// Shift a patch. Patches that share vertices must move them alike. Repeatable
-    #[arg(long, value_name = "PATCH=dx,dy,dz", value_parser = words::translate, help_heading = "Motion",
+    #[arg(long, value_name = "PATCH=dx,dy,dz", value_parser = parsers::translate, help_heading = "Motion",
         conflicts_with = "affine")]
     pub(crate) translate: Vec<Translate>,
     /// Rotate a patch about an axis, by default through the centre of its bounding box. A patch that is also
     /// shifted is rotated first. Beyond some 60 degrees cells become flat. Repeatable
-    #[arg(long, value_name = "PATCH=ax,ay,az,deg[,cx,cy,cz]", value_parser = words::rotate, help_heading = "Motion",
+    #[arg(long, value_name = "PATCH=ax,ay,az,deg[,cx,cy,cz]", value_parser = parsers::rotate, help_heading = "Motion",
         conflicts_with = "affine")]
     pub(crate) rotate: Vec<Rotate>,
     /// Map the whole boundary by the 3x4 matrix [A|b], row by row: x' = A x + b
-    #[arg(long, value_name = "A11,A12,..,A34", value_parser = words::affine, allow_hyphen_values = true, help_heading = "Motion")]
+    #[arg(long, value_name = "A11,A12,..,A34", value_parser = parsers::affine, allow_hyphen_values = true, help_heading = "Motion")]
     pub(crate) affine: Option<[[f64; 4]; 3]>,
     /// Number of equal parts in which the motion is done and written [default: 10 for a .pvd, else 1; for a
     /// series of surfaces one part each]
@@ -80,14 +80,14 @@ pub(crate) struct MoveArgs {
 
     /// Also write the positions of the vertices of a patch at all steps, as a .dat file that svMultiPhysics
     /// reads (temporal and spatial values). Repeatable
-    #[arg(long, value_name = "PATCH=FILE", value_parser = words::patch_file, help_heading = "Motion")]
+    #[arg(long, value_name = "PATCH=FILE", value_parser = parsers::patch_file, help_heading = "Motion")]
     pub(crate) nodal: Vec<PatchFile>,
     /// Add the cell array `eas` (equi-angle quality of tets: 1 regular, 0 flat, bad below 0.2)
     #[arg(long, help_heading = "Motion")]
     pub(crate) quality: bool,
 
     /// Name the part of the boundary that a surface file holds. Repeatable
-    #[arg(long, value_name = "NAME=FILE", value_parser = words::patch_file, help_heading = "Boundary")]
+    #[arg(long, value_name = "NAME=FILE", value_parser = parsers::patch_file, help_heading = "Boundary")]
     pub(crate) patch: Vec<PatchFile>,
     /// Keep a patch in place, even where it meets one that moves. Repeatable
     #[arg(long, value_name = "PATCH", help_heading = "Boundary")]
@@ -131,7 +131,7 @@ pub(crate) struct MoveArgs {
     pub(crate) factor: Option<f64>,
     /// Move everything within this distance of the moving boundary rigidly with it, such as 0.2, or 3layers
     /// for layers of cells
-    #[arg(long, value_name = "DISTANCE|Nlayers", value_parser = words::layer, help_heading = "Volume")]
+    #[arg(long, value_name = "DISTANCE|Nlayers", value_parser = parsers::layer, help_heading = "Volume")]
     pub(crate) rigid_layer: Option<Extent>,
     /// Patches that have the rigid layer [default: the moving ones]. Repeatable
     #[arg(long, value_name = "PATCH", requires = "rigid_layer", help_heading = "Volume")]

@@ -1,11 +1,11 @@
 //! `motet move`: boundary displacement in, volume mesh or series out.
 
 mod args;
+pub(crate) mod parsers;
 mod patches;
 mod plan;
 mod report;
 mod sink;
-pub(crate) mod words;
 
 use std::path::Path;
 use std::time::Instant;
@@ -71,7 +71,7 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     sink.end()?;
     report.end(sink.moved(), begin.elapsed().as_secs_f64());
     let outcome = Outcome::of(report.not_reached());
-    report.tell(&outcome, console);
+    report.print(&outcome, console);
     Ok(outcome)
 }
 
@@ -114,7 +114,7 @@ fn choose(
     let frames = || {
         // Frames are read in order, so each method needs a plan of its own.
         let mut plan = Plan::new(mesh, boundary, patches, args, console)?;
-        Ok((plan.first..plan.times.len()).map(move |k| plan.displacements(k)))
+        Ok((plan.first_frame..plan.times.len()).map(move |k| plan.displacements(k)))
     };
     let choice =
         motion::choose(mesh, options, args.least, frames, threads).map_err(|e| e.in_file(&args.mesh))?;
@@ -194,11 +194,11 @@ fn frames(
     console: &Console,
 ) -> motet::Result<()> {
     let n = plan.times.len();
-    let meter = console.meter("moving", Some(n - plan.first));
+    let meter = console.meter("moving", Some(n - plan.first_frame));
     let threads = threads.watched(meter.watch());
     let mut points = mover.reference().to_vec();
     let mut before = (plan.times.first().copied().unwrap_or_default(), points.clone());
-    for k in plan.first..n {
+    for k in plan.first_frame..n {
         let displacements = plan.displacements(k)?;
         let certificate = mover.advance(&displacements, &mut points, &threads)?;
         let time = before.0 + (plan.times[k] - before.0) * certificate.fraction;

@@ -4,7 +4,7 @@ use motet::mesh::Labels;
 use motet::motion::{FacetSet, match_patch};
 use motet::{Error, Mesh, io};
 
-use super::words::PatchFile;
+use super::parsers::PatchFile;
 
 /// The patches of a mesh: those labelled in it, and those that surface files define.
 pub(crate) struct Patches<'a> {

@@ -34,7 +34,7 @@ pub(crate) struct Plan<'a> {
     /// The time of each frame.
     pub(crate) times: Vec<f64>,
     /// The first frame to be computed: a single output mesh does not need the initial one.
-    pub(crate) first: usize,
+    pub(crate) first_frame: usize,
     /// Whether the times are physical, so that there are velocities.
     pub(crate) timed: bool,
     fixed: Vec<VertexId>,
@@ -68,13 +68,13 @@ impl<'a> Plan<'a> {
         for word in &args.fixed {
             fixed.extend(patches.find(word)?.vertices);
         }
-        let asked = Asked { mesh, boundary, fixed, args, console };
-        let Some(word) = &args.displacement else { return asked.words(patches) };
+        let request = Request { mesh, boundary, fixed, args, console };
+        let Some(word) = &args.displacement else { return request.words(patches) };
         match Path::new(word) {
-            pvd if pvd.exists() && io::is_series(pvd) => asked.series(pvd),
-            nodal if nodal.exists() && is_nodal(nodal) => asked.nodal(nodal),
-            surface if surface.exists() => asked.surface(surface),
-            _ => asked.array(word),
+            pvd if pvd.exists() && io::is_series(pvd) => request.series(pvd),
+            nodal if nodal.exists() && is_nodal(nodal) => request.nodal(nodal),
+            surface if surface.exists() => request.surface(surface),
+            _ => request.array(word),
         }
     }
 
@@ -108,7 +108,7 @@ impl<'a> Plan<'a> {
 }
 
 /// The request from which a plan is made.
-struct Asked<'a, 'c> {
+struct Request<'a, 'c> {
     mesh: &'a Mesh,
     boundary: &'a Boundary,
     fixed: Vec<VertexId>,
@@ -116,13 +116,13 @@ struct Asked<'a, 'c> {
     console: &'c Console,
 }
 
-impl<'a> Asked<'a, '_> {
+impl<'a> Request<'a, '_> {
     /// The plan for `--displacement FILE.pvd`.
     fn series(self, pvd: &Path) -> motet::Result<Plan<'a>> {
         self.refuse_steps()?;
         let frames = io::read_series(pvd)?;
         let moved = self.read_surface(&frames[0].1)?;
-        let mut motion = self.still(moved.iter().map(|(v, _)| *v));
+        let mut motion = self.at_rest(moved.iter().map(|(v, _)| *v));
         motion.go(&moved);
         let (own_times, files): (Vec<f64>, Vec<PathBuf>) = frames.into_iter().unzip();
         let source = Source::Surfaces { motion: SurfaceMotion::new(self.mesh, self.matching()), files };
@@ -135,7 +135,7 @@ impl<'a> Asked<'a, '_> {
         let series = NodalSeries::read(file)?;
         let vertices = match_ids(self.mesh, &series.ids).map_err(|e| e.in_file(file))?;
         let first = series.vectors(0).map_err(|e| e.in_file(file))?;
-        let mut motion = self.still(vertices.iter().copied());
+        let mut motion = self.at_rest(vertices.iter().copied());
         motion.go(&vertices.iter().copied().zip(first).collect::<Vec<_>>());
         Ok(self.in_time(&motion, series.times.clone(), file, Source::Nodal { vertices, series }))
     }
@@ -166,16 +166,16 @@ impl<'a> Asked<'a, '_> {
         let driven = self.driven(&nodes, self.on_interfaces(&moving));
         let (interfaces, unused) = (Vec::new(), 0);
         let (mesh, fixed) = (self.mesh, self.fixed);
-        Plan { mesh, nodes, driven, interfaces, unused, moving, times, first: 0, timed, fixed, source }
+        Plan { mesh, nodes, driven, interfaces, unused, moving, times, first_frame: 0, timed, fixed, source }
     }
 
     /// The plan for `--displacement FILE`, a surface.
     fn surface(self, file: &Path) -> motet::Result<Plan<'a>> {
         let moved = self.read_surface(file)?;
-        let mut motion = self.still(moved.iter().map(|(v, _)| *v));
+        let mut motion = self.at_rest(moved.iter().map(|(v, _)| *v));
         motion.go(&moved);
         let on_interfaces = self.on_interfaces(&motion.told());
-        Ok(self.parts(motion, &on_interfaces))
+        Ok(self.in_equal_parts(motion, &on_interfaces))
     }
 
     fn read_surface(&self, file: &Path) -> motet::Result<Vec<(VertexId, Point)>> {
@@ -224,21 +224,21 @@ impl<'a> Asked<'a, '_> {
         let interfaces = Interface::moved(self.mesh, self.boundary, &rows)
             .map_err(|e| e.at(format!("array {word}")).in_file(&self.args.mesh))?;
         let inside: Vec<VertexId> = interfaces.iter().flat_map(|i| i.vertices.iter().copied()).collect();
-        let mut motion = self.still(inside.iter().copied());
+        let mut motion = self.at_rest(inside.iter().copied());
         let moved: Vec<_> = motion.vertices().iter().map(|&v| (v, rows[v.index()])).collect();
         motion.go(&moved);
         let is_unused =
             |v: VertexId| rows[v.index()] != [0.0; 3] && motion.vertices().binary_search(&v).is_err();
         let unused = (0..rows.len()).map(VertexId::new).filter(|&v| is_unused(v)).count();
-        Ok(Plan { interfaces, unused, ..self.parts(motion, &inside) })
+        Ok(Plan { interfaces, unused, ..self.in_equal_parts(motion, &inside) })
     }
 
     /// The plan for `--affine`, `--rotate` and `--translate`.
     fn words(self, patches: &Patches<'_>) -> motet::Result<Plan<'a>> {
         if let Some(rows) = self.args.affine {
-            let mut motion = self.still([]);
+            let mut motion = self.at_rest([]);
             motion.follow(&self.boundary.vertices, Prescribed::Affine(rows))?;
-            return Ok(self.parts(motion, &[]));
+            return Ok(self.in_equal_parts(motion, &[]));
         }
         let turned = self.args.rotate.iter().map(|turn| &turn.patch);
         let mut words: Vec<&str> = Vec::new();
@@ -249,11 +249,11 @@ impl<'a> Asked<'a, '_> {
         }
         let all = words.iter().map(|word| Ok((*word, patches.find(word)?.vertices)));
         let all = all.collect::<motet::Result<Vec<_>>>()?;
-        let mut motion = self.still(all.iter().flat_map(|(_, vertices)| vertices.iter().copied()));
+        let mut motion = self.at_rest(all.iter().flat_map(|(_, vertices)| vertices.iter().copied()));
         for (word, vertices) in &all {
-            let asked = self.motion_of(word, vertices);
-            motion.check_alike(&self.mesh.points, word, vertices, &asked)?;
-            let taken = motion.follow(vertices, asked)?;
+            let requested = self.motion_of(word, vertices);
+            motion.check_alike(&self.mesh.points, word, vertices, &requested)?;
+            let taken = motion.follow(vertices, requested)?;
             if taken.refused > 0 {
                 self.console.detail(format_args!(
                     "{word}: {} vertices follow the motion of another patch",
@@ -262,7 +262,7 @@ impl<'a> Asked<'a, '_> {
             }
         }
         let moved: Vec<VertexId> = all.into_iter().flat_map(|(_, vertices)| vertices).collect();
-        Ok(self.parts(motion, &moved))
+        Ok(self.in_equal_parts(motion, &moved))
     }
 
     /// The motion of a patch: its rotations, then its shifts.
@@ -277,7 +277,7 @@ impl<'a> Asked<'a, '_> {
     }
 
     /// A motion without displacements, of the boundary and of the `named` vertices inside.
-    fn still(&self, named: impl IntoIterator<Item = VertexId>) -> BoundaryMotion {
+    fn at_rest(&self, named: impl IntoIterator<Item = VertexId>) -> BoundaryMotion {
         let mut nodes = self.boundary.vertices.clone();
         nodes.extend(named);
         nodes.extend(&self.fixed);
@@ -298,21 +298,21 @@ impl<'a> Asked<'a, '_> {
         driven
     }
 
-    /// The vertices of `told` on interfaces that also have a vertex of `told` inside the mesh: they move with
+    /// The vertices of `given` on interfaces that also have a vertex of `given` inside the mesh: they move with
     /// it, up to the rims of the interfaces on sliding patches.
-    fn on_interfaces(&self, told: &[VertexId]) -> Vec<VertexId> {
-        let is_told = |v: &VertexId| told.binary_search(v).is_ok();
+    fn on_interfaces(&self, given: &[VertexId]) -> Vec<VertexId> {
+        let is_given = |v: &VertexId| given.binary_search(v).is_ok();
         let is_inside = |v: &VertexId| self.boundary.vertices.binary_search(v).is_err();
-        if self.args.slide.is_empty() || !told.iter().any(is_inside) {
+        if self.args.slide.is_empty() || !given.iter().any(is_inside) {
             return Vec::new();
         }
         let all = Interface::all(self.mesh, self.boundary);
-        let moved = all.into_iter().filter(|i| i.vertices.iter().any(|v| is_inside(v) && is_told(v)));
-        moved.flat_map(|interface| interface.vertices).filter(is_told).collect()
+        let moved = all.into_iter().filter(|i| i.vertices.iter().any(|v| is_inside(v) && is_given(v)));
+        moved.flat_map(|interface| interface.vertices).filter(is_given).collect()
     }
 
     /// A plan that makes `motion` in equal parts. The vertices in `moved` do not slide.
-    fn parts(self, motion: BoundaryMotion, moved: &[VertexId]) -> Plan<'a> {
+    fn in_equal_parts(self, motion: BoundaryMotion, moved: &[VertexId]) -> Plan<'a> {
         let is_series = io::can_write_series(&self.args.output);
         let default = if is_series { SERIES_STEPS } else { 1 };
         let in_time = is_series || !self.args.nodal.is_empty();
@@ -326,7 +326,7 @@ impl<'a> Asked<'a, '_> {
             unused: 0,
             moving: motion.moving(&self.mesh.points),
             times: (0..=n).map(|k| f64::from(k) * dt).collect(),
-            first: usize::from(!in_time),
+            first_frame: usize::from(!in_time),
             timed: self.args.dt.is_some(),
             fixed: self.fixed,
             source: Source::Parts(motion),

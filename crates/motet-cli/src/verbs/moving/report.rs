@@ -95,17 +95,17 @@ pub(crate) struct Chosen {
 }
 
 impl Chosen {
-    fn tell(&self, console: &Console) {
+    fn print(&self, console: &Console) {
         for tried in &self.tried {
             let came_to = match (&tried.refused, tried.worst) {
                 (Some(why), _) => why.clone(),
                 (None, Some(worst)) => format!("worst {} in {} steps", short(worst), tried.frames),
                 (None, None) => format!("{} steps", tried.frames),
             };
-            console.say(format_args!("tried {}: {came_to} ({})", tried.method, seconds(tried.seconds)));
+            console.print(format_args!("tried {}: {came_to} ({})", tried.method, seconds(tried.seconds)));
         }
         if self.tried.last().is_some_and(|last| last.kept) {
-            console.say(format_args!("{} keeps every cell at or above {}", self.method, short(self.least)));
+            console.print(format_args!("{} keeps every cell at or above {}", self.method, short(self.least)));
         } else {
             let least = short(self.least);
             console.warn(format_args!(
@@ -235,10 +235,10 @@ impl Report {
         self.seconds.total = total;
     }
 
-    pub(crate) fn tell(&self, outcome: &Outcome, console: &Console) {
+    pub(crate) fn print(&self, outcome: &Outcome, console: &Console) {
         console.conclude(self, outcome);
         if let Some(choice) = &self.choice {
-            choice.tell(console);
+            choice.print(console);
         }
         let follow = match self.setup.solved {
             0 => format!(
@@ -255,34 +255,34 @@ impl Report {
                 format!("{} solved for, in {} iterations", count(n), count(iterations))
             }
         };
-        console.say(format_args!(
+        console.print(format_args!(
             "{}: {} points, {} of them driven, {follow}",
             self.mesh.display(),
             count(self.points),
             count(self.setup.driven),
         ));
         if self.setup.layer > 0 || self.setup.sliding > 0 {
-            console.say(format_args!(
+            console.print(format_args!(
                 "{} in the rigid layer, {} sliding",
                 count(self.setup.layer),
                 count(self.setup.sliding)
             ));
         }
-        self.say_planes(console);
+        self.print_planes(console);
         for interface in &self.interfaces {
             let n = count(interface.vertices);
-            console.say(format_args!(
+            console.print(format_args!(
                 "{n} vertices of the interface {} are driven by the array",
                 interface.name
             ));
         }
-        console.say(step_table(&self.before, &self.steps));
+        console.print(step_table(&self.before, &self.steps));
         if self.before.quality.distribution.is_some() {
-            console.say(self.quality_table());
+            console.print(self.quality_table());
         }
-        self.warn_of_what_came(console);
-        self.tell_end(console);
-        console.say(format_args!(
+        self.warn_of_result(console);
+        self.print_end(console);
+        console.print(format_args!(
             "read {}, set-up {}, {} step{} {}, writing {}, all {}",
             seconds(self.seconds.read),
             seconds(self.seconds.setup),
@@ -310,9 +310,9 @@ impl Report {
     }
 
     /// Lists planes that are flat within the tolerance, but not exactly.
-    fn say_planes(&self, console: &Console) {
+    fn print_planes(&self, console: &Console) {
         for plane in self.sliding.iter().filter(|plane| plane.deviation > FLAT * plane.radius) {
-            console.say(format_args!(
+            console.print(format_args!(
                 "sliding patch {}: deviates from its plane by {}, {} of its radius of {}; its vertices keep \
                  their distances from it",
                 plane.patch,
@@ -324,7 +324,7 @@ impl Report {
     }
 
     /// Warns of results that the caller may not have intended.
-    fn warn_of_what_came(&self, console: &Console) {
+    fn warn_of_result(&self, console: &Console) {
         let leaving =
             self.steps.iter().filter_map(|step| Some((step, step.certificate.leaves_plane.as_ref()?)));
         let farthest = leaving.reduce(|a, b| if b.1.distance > a.1.distance { b } else { a });
@@ -358,8 +358,8 @@ impl Report {
         }
     }
 
-    fn tell_end(&self, console: &Console) {
-        console.say(format_args!("wrote {}", self.output.display()));
+    fn print_end(&self, console: &Console) {
+        console.print(format_args!("wrote {}", self.output.display()));
     }
 }
 

@@ -40,9 +40,9 @@ impl<'a> Sink<'a> {
         let (path, options) = (args.output.as_path(), args.writing.options());
         let mut series = io::can_write_series(path).then(|| SeriesWriter::new(path, options.clone()));
         series.as_mut().map_or(Ok(true), SeriesWriter::lock)?;
-        let nodal = args.nodal.iter().map(|asked| {
-            let vertices = patches.find(&asked.name)?.vertices;
-            Ok(Nodal { path: &asked.file, vertices, frames: Vec::new() })
+        let nodal = args.nodal.iter().map(|request| {
+            let vertices = patches.find(&request.name)?.vertices;
+            Ok(Nodal { path: &request.file, vertices, frames: Vec::new() })
         });
         Ok(Self {
             path,

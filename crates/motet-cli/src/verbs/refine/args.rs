@@ -6,7 +6,7 @@ use std::sync::Arc;
 use clap::{ArgGroup, Args};
 use motet::refine::{Condition, Criterion, HessianSizes, Limits, Target, Wanted};
 
-use super::words::{self, Near, NearSize};
+use super::parsers::{self, Near, NearSize};
 use crate::arrays::ArrayArgs;
 use crate::words::positive;
 use crate::writing::WritingArgs;
@@ -60,52 +60,52 @@ pub(crate) struct RefineArgs {
     #[arg(long, help_heading = "What to divide, by place")]
     pub(crate) all: bool,
     /// Divide tets within a distance of a surface (a surface file, or a mesh: its boundary). Repeatable
-    #[arg(long, value_name = "SURFACE=DISTANCE", value_parser = words::near, help_heading = "What to divide, by place")]
+    #[arg(long, value_name = "SURFACE=DISTANCE", value_parser = parsers::near, help_heading = "What to divide, by place")]
     pub(crate) near: Vec<Near>,
     /// Divide until no edge is longer than H at a surface, plus GROWTH [default: 0.5] per unit of distance
     /// from it. Repeatable
-    #[arg(long, value_name = "SURFACE=H[,GROWTH]", value_parser = words::near_size, help_heading = "What to divide, by place")]
+    #[arg(long, value_name = "SURFACE=H[,GROWTH]", value_parser = parsers::near_size, help_heading = "What to divide, by place")]
     pub(crate) near_size: Vec<NearSize>,
     /// Divide tets whose centre is in a box. Repeatable
-    #[arg(long = "box", value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = words::in_box, allow_hyphen_values = true, help_heading = "What to divide, by place")]
+    #[arg(long = "box", value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = parsers::in_box, allow_hyphen_values = true, help_heading = "What to divide, by place")]
     pub(crate) within_box: Vec<Criterion>,
     /// Divide tets that overlap a ball. Repeatable
-    #[arg(long, value_name = "X,Y,Z,R", value_parser = words::ball, allow_hyphen_values = true, help_heading = "What to divide, by place")]
+    #[arg(long, value_name = "X,Y,Z,R", value_parser = parsers::ball, allow_hyphen_values = true, help_heading = "What to divide, by place")]
     pub(crate) ball: Vec<Criterion>,
     /// Divide tets of a region, by name or number. Repeatable
-    #[arg(long, value_name = "REGION", value_parser = words::region, help_heading = "What to divide, by place")]
+    #[arg(long, value_name = "REGION", value_parser = parsers::region, help_heading = "What to divide, by place")]
     pub(crate) region: Vec<Criterion>,
     /// Divide tets that touch a patch, or lie within a distance of it. Repeatable
-    #[arg(long, value_name = "PATCH[=DISTANCE]", value_parser = words::patch, help_heading = "What to divide, by place")]
+    #[arg(long, value_name = "PATCH[=DISTANCE]", value_parser = parsers::patch, help_heading = "What to divide, by place")]
     pub(crate) patch: Vec<Criterion>,
 
     /// Divide until no edge is longer than this, or than the value of an array on points or cells. Repeatable
-    #[arg(long, value_name = "H|ARRAY", value_parser = words::size, help_heading = "What to divide, by arrays")]
+    #[arg(long, value_name = "H|ARRAY", value_parser = parsers::size, help_heading = "What to divide, by arrays")]
     pub(crate) size: Vec<Criterion>,
     /// Divide tets where an array satisfies a condition, on cells or at one of their points: > >= < <= == !=.
     /// Repeatable
-    #[arg(long = "where", value_name = "ARRAY>VALUE", value_parser = words::condition, help_heading = "What to divide, by arrays")]
+    #[arg(long = "where", value_name = "ARRAY>VALUE", value_parser = parsers::condition, help_heading = "What to divide, by arrays")]
     pub(crate) conditions: Vec<Condition>,
     /// Divide tets through which an array changes by more than this: gradient times longest edge. Repeatable
-    #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::gradient, help_heading = "What to divide, by arrays")]
+    #[arg(long, value_name = "ARRAY>VALUE", value_parser = parsers::gradient, help_heading = "What to divide, by arrays")]
     pub(crate) gradient: Vec<Criterion>,
     /// Divide the fewest tets that hold this share of the error, such as 0.5, estimated by jumps of the
     /// gradient (Kelly). Repeatable
-    #[arg(long, value_name = "ARRAY=SHARE|Ntets", value_parser = words::jump, help_heading = "What to divide, by arrays")]
+    #[arg(long, value_name = "ARRAY=SHARE|Ntets", value_parser = parsers::jump, help_heading = "What to divide, by arrays")]
     pub(crate) jump: Vec<Criterion>,
     /// Divide the fewest tets that hold this share of the error, estimated by a recovered gradient
     /// (Zienkiewicz and Zhu). Repeatable
-    #[arg(long, value_name = "ARRAY=SHARE|Ntets", value_parser = words::recovery, help_heading = "What to divide, by arrays")]
+    #[arg(long, value_name = "ARRAY=SHARE|Ntets", value_parser = parsers::recovery, help_heading = "What to divide, by arrays")]
     pub(crate) recovery: Vec<Criterion>,
     /// Divide until edges are short enough for the second derivatives of arrays, so that errors are at most
     /// ERROR, or P percent of the range of each array. Repeatable
-    #[arg(long, value_name = "ARRAY[,ARRAY]=ERROR|P%|Ntets", value_parser = words::hessian, help_heading = "What to divide, by arrays")]
+    #[arg(long, value_name = "ARRAY[,ARRAY]=ERROR|P%|Ntets", value_parser = parsers::hessian, help_heading = "What to divide, by arrays")]
     pub(crate) hessian: Vec<HessianSizes>,
     /// Divide tets where the vorticity of a velocity is above this. Repeatable
-    #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::vorticity, help_heading = "What to divide, by arrays")]
+    #[arg(long, value_name = "ARRAY>VALUE", value_parser = parsers::vorticity, help_heading = "What to divide, by arrays")]
     pub(crate) vorticity: Vec<Criterion>,
     /// Divide tets where Q of a velocity is above this: it rotates more than it shears. Repeatable
-    #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::q, help_heading = "What to divide, by arrays")]
+    #[arg(long, value_name = "ARRAY>VALUE", value_parser = parsers::q, help_heading = "What to divide, by arrays")]
     pub(crate) q: Vec<Criterion>,
 
     /// Divide at most this many times [default: once; for sizes as often as it takes]; where --coarsen stands
@@ -128,7 +128,7 @@ pub(crate) struct RefineArgs {
     coarsen: bool,
     /// Take back divisions where an array satisfies a condition on all eight parts, and no criterion marks.
     /// Repeatable
-    #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::condition, help_heading = "Back")]
+    #[arg(long, value_name = "ARRAY>VALUE", value_parser = parsers::condition, help_heading = "Back")]
     coarsen_where: Vec<Condition>,
     /// Start over: take the mesh as it is now for the first one, whatever the file remembers
     #[arg(long, conflicts_with_all = ["coarsen", "coarsen_where"], help_heading = "Back")]

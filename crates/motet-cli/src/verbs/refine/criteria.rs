@@ -8,7 +8,7 @@ use motet::refine::{Criterion, Target};
 use motet::{Result, io};
 
 use super::args::RefineArgs;
-use super::words::{Near, NearSize};
+use super::parsers::{Near, NearSize};
 
 /// All criteria of a call.
 ///

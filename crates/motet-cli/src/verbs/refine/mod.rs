@@ -2,8 +2,8 @@
 
 mod args;
 mod criteria;
+pub(crate) mod parsers;
 mod report;
-pub(crate) mod words;
 
 use std::time::Instant;
 
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     notes.iter().chain(&lost).for_each(|what| console.warn(what));
     let outcome = Outcome::of(done.not_reached());
     Report::new(args, &refinement, done, [read, write, begin.elapsed().as_secs_f64()], &threads)
-        .tell(&outcome, console);
+        .print(&outcome, console);
     Ok(outcome)
 }
 

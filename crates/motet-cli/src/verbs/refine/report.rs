@@ -104,20 +104,22 @@ impl Report {
         }
     }
 
-    pub(super) fn tell(&self, outcome: &Outcome, console: &Console) {
+    pub(super) fn print(&self, outcome: &Outcome, console: &Console) {
         console.conclude(self, outcome);
-        console.say(format_args!(
+        console.print(format_args!(
             "{}: initially {} tets, worst EAS {}",
             self.mesh.display(),
             count(self.first_tets),
             short(self.first_worst_eas)
         ));
-        console.say(self.table());
+        console.print(self.table());
         let at = |step: Option<&Step>| step.map(|step| step.quality);
-        console
-            .say(quality::table([("input", at(self.steps.first())), ("at the end", at(self.steps.last()))]));
+        console.print(quality::table([
+            ("input", at(self.steps.first())),
+            ("at the end", at(self.steps.last())),
+        ]));
         if self.left > 0 {
-            console.say(format_args!(
+            console.print(format_args!(
                 "{} tets in {} tets of the first mesh are below the quality bounds of these: no better \
                  division exists",
                 count(self.left),
@@ -125,7 +127,7 @@ impl Report {
             ));
         }
         if let Some(surface) = &self.on_surface {
-            console.say(format_args!(
+            console.print(format_args!(
                 "{} points were put on the surface, {} only part of the way; the farthest by {}",
                 count(surface.moved),
                 count(surface.short),
@@ -134,19 +136,19 @@ impl Report {
         }
         let held = self.steps.iter().map(|step| step.held).max().unwrap_or(0);
         if held > 0 {
-            console.say(format_args!(
+            console.print(format_args!(
                 "{} tets were left unchanged, since cells of other kinds (except lines) hold their edges, \
                  or a tet would be inverted",
                 count(held)
             ));
         }
-        console.say(format_args!("wrote {}", self.output.display()));
+        console.print(format_args!("wrote {}", self.output.display()));
         if let Some(history) = &self.history {
-            console.say(format_args!("wrote {}", history.display()));
+            console.print(format_args!("wrote {}", history.display()));
         }
         let Seconds { read, refine, write, total } = self.seconds;
         let [read, refine, write, total] = [read, refine, write, total].map(seconds);
-        console.say(format_args!(
+        console.print(format_args!(
             "read {read}, refined {refine}, wrote {write}, all {total}; the memory of divisions takes {:.0} \
              bytes per tet",
             self.memory_per_tet

@@ -73,7 +73,7 @@ pub(crate) struct RemeshArgs {
     distance: Option<f64>,
     /// Bring edges to this length, or to the value of a point array
     #[arg(long, value_name = "H|ARRAY", value_parser = sizes, help_heading = "Repair")]
-    sizes: Option<Asked>,
+    sizes: Option<SizesArg>,
     /// Keep the tets of this region, or the triangles of this patch, and their vertices as they are, to the
     /// bit; by name or number. Repeatable
     #[arg(long, value_name = "NAME", help_heading = "Repair")]
@@ -122,7 +122,7 @@ enum Layers {
 
 /// The requested sizes.
 #[derive(Clone, Debug, PartialEq)]
-enum Asked {
+enum SizesArg {
     Length(f64),
     /// Name of a point array.
     Array(String),
@@ -164,8 +164,8 @@ impl RemeshArgs {
     pub(crate) fn sizes(&self, mesh: &Mesh) -> motet::Result<Option<Sizes>> {
         let name = match &self.sizes {
             None => return Ok(None),
-            Some(Asked::Length(h)) => return Ok(Some(Sizes::Uniform(*h))),
-            Some(Asked::Array(name)) => name,
+            Some(SizesArg::Length(h)) => return Ok(Some(Sizes::Uniform(*h))),
+            Some(SizesArg::Array(name)) => name,
         };
         let Some(field) = mesh.point_field(name) else {
             let known: Vec<&str> = mesh.point_data.iter().map(|f| f.name.as_str()).collect();
@@ -200,11 +200,11 @@ fn degrees(text: &str) -> Result<f64, String> {
     }
 }
 
-fn sizes(text: &str) -> Result<Asked, String> {
+fn sizes(text: &str) -> Result<SizesArg, String> {
     match text.parse::<f64>() {
-        Ok(h) if 0.0 < h && h < f64::INFINITY => Ok(Asked::Length(h)),
+        Ok(h) if 0.0 < h && h < f64::INFINITY => Ok(SizesArg::Length(h)),
         Ok(_) => Err("a number above 0 is expected, or the name of a point array".into()),
-        Err(_) => Ok(Asked::Array(text.to_owned())),
+        Err(_) => Ok(SizesArg::Array(text.to_owned())),
     }
 }
 
@@ -216,8 +216,8 @@ mod tests {
     fn words_mean_what_the_help_says() {
         assert_eq!(eas("0.25"), Ok(0.25));
         assert_eq!(degrees("14.1"), Ok(14.1));
-        assert_eq!(sizes("0.3"), Ok(Asked::Length(0.3)));
-        assert_eq!(sizes("h"), Ok(Asked::Array("h".to_owned())));
+        assert_eq!(sizes("0.3"), Ok(SizesArg::Length(0.3)));
+        assert_eq!(sizes("h"), Ok(SizesArg::Array("h".to_owned())));
     }
 
     #[test]

@@ -58,6 +58,6 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let mut summary = Report::new(args, [&old, &mesh], &threads, &report, history.as_ref(), fields);
     summary.end([read, on_fields, write, begin.elapsed().as_secs_f64()], notes, lost);
     let outcome = Outcome::of(summary.not_reached(&report));
-    summary.tell(&outcome, console);
+    summary.print(&outcome, console);
     Ok(outcome)
 }

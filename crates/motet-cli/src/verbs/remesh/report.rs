@@ -19,7 +19,7 @@ use crate::table::{Table, count, seconds, short};
 use crate::words;
 
 /// How many of the remaining bad tets are listed without `--verbose`.
-const FIRST: usize = 10;
+const N_LISTED: usize = 10;
 
 /// All results of `motet remesh`.
 #[derive(Debug, Serialize)]
@@ -163,9 +163,9 @@ impl Report {
         (self.passed_over, self.lost) = (passed_over, lost);
     }
 
-    pub(crate) fn tell(&self, outcome: &Outcome, console: &Console) {
+    pub(crate) fn print(&self, outcome: &Outcome, console: &Console) {
         console.conclude(self, outcome);
-        console.say(format_args!(
+        console.print(format_args!(
             "{}: {} points, {} tets; tets below EAS {} are bad",
             self.mesh.display(),
             count(self.before.points),
@@ -173,45 +173,45 @@ impl Report {
             (self.min_eas * 1e4).round() / 1e4
         ));
         if self.before.bad > 0 {
-            console.say(self.type_table());
+            console.print(self.type_table());
         }
         if self.before.bad > 0 || self.sizes.is_some() {
-            console.say(self.operation_words());
+            console.print(self.operation_words());
         }
-        console.say(self.state_table());
+        console.print(self.state_table());
         let states = [("before", self.before.quality), ("after", self.after.quality)];
-        console.say(quality::table(states));
+        console.print(quality::table(states));
         if let Some(sizes) = &self.sizes {
-            console.say(Self::size_table(sizes));
+            console.print(Self::size_table(sizes));
         }
-        console.say(format_args!(
+        console.print(format_args!(
             "kept to the bit: {} of {} tets, {} %",
             count(self.kept),
             count(self.before.tets),
             percent(self.untouched)
         ));
         if self.layers > 0 {
-            console.say(format_args!(
+            console.print(format_args!(
                 "kept as boundary layers: {} thin tets, not counted as bad",
                 count(self.layers)
             ));
         }
         if self.held > 0 {
-            console.say(format_args!("held: {} bad tets, not counted as bad", count(self.held)));
+            console.print(format_args!("held: {} bad tets, not counted as bad", count(self.held)));
         }
         if !self.fields.is_empty() {
-            console.say(self.field_table());
+            console.print(self.field_table());
         }
-        self.tell_left(console);
-        console.say(format_args!("wrote {}", self.output.display()));
+        self.print_remaining(console);
+        console.print(format_args!("wrote {}", self.output.display()));
         if let Some(history) = &self.history {
-            console.say(format_args!("wrote {}", history.display()));
+            console.print(format_args!("wrote {}", history.display()));
         }
         let Stages { read, join, repair, extract, history, fields, write, total } = self.seconds;
         let [read, join, repair, extract, history, fields, write, total] =
             [read, join, repair, extract, history, fields, write, total].map(seconds);
-        console.say(format_args!(
-            "read {read}, joined {join}, repaired {repair}, extracted {extract}, arrays carried {history}, told {fields}, \
+        console.print(format_args!(
+            "read {read}, joined {join}, repaired {repair}, extracted {extract}, arrays carried {history}, reported {fields}, \
              wrote {write}, all {total}"
         ));
     }
@@ -319,16 +319,16 @@ impl Report {
         table
     }
 
-    fn tell_left(&self, console: &Console) {
+    fn print_remaining(&self, console: &Console) {
         if self.complete {
             return;
         }
-        let n = if console.is_verbose() { self.left.len() } else { FIRST };
+        let n = if console.is_verbose() { self.left.len() } else { N_LISTED };
         if !self.left.is_empty() {
-            console.say("left:");
+            console.print("left:");
         }
         for left in self.left.iter().take(n) {
-            console.say(format_args!(
+            console.print(format_args!(
                 "  cell {} at {}, EAS {}, type {}: {}",
                 left.cell,
                 place(left.place),
@@ -338,7 +338,7 @@ impl Report {
             ));
         }
         if self.left.len() > n {
-            console.say(format_args!("  and {} more; -v or --json lists all", count(self.left.len() - n)));
+            console.print(format_args!("  and {} more; -v or --json lists all", count(self.left.len() - n)));
         }
     }
 

@@ -22,16 +22,17 @@ pub(super) fn script(
     console: &Console,
 ) -> Result<Script> {
     let mut script = Script::still(&motion.driven(mesh), &mesh.points);
-    script.hold(&vertices(mesh, &job.motion.fixed).map_err(|e| job.told(e))?);
+    script.hold(&vertices(mesh, &job.motion.fixed).map_err(|e| job.with_job_file(e))?);
     if let Some(series) = &job.motion.surfaces {
         frames(job, &job.path(series), mesh, &mut script, threads)?;
     }
-    for asked in &job.motion.moves {
-        obey(asked, mesh, &mut script).map_err(|e| job.told(e))?;
-        warn_of_contradiction(asked, mesh, &script, console);
+    for spec in &job.motion.moves {
+        add_move(spec, mesh, &mut script).map_err(|e| job.with_job_file(e))?;
+        warn_of_contradiction(spec, mesh, &script, console);
     }
     if job.motion.surfaces.is_none() && job.motion.moves.is_empty() {
-        return Err(job.told(Error::input("nothing moves").remedy("add [[motion.move]], or motion.surfaces")));
+        return Err(job
+            .with_job_file(Error::input("nothing moves").remedy("add [[motion.move]], or motion.surfaces")));
     }
     Ok(script)
 }
@@ -82,7 +83,7 @@ fn nearest(
     let words: Vec<String> = job.motion.patch.iter().cloned().collect();
     let followers = match words.is_empty() {
         true => motet::mesh::Boundary::of(&mesh.cells).vertices,
-        false => vertices(mesh, &words).map_err(|e| job.told(e))?,
+        false => vertices(mesh, &words).map_err(|e| job.with_job_file(e))?,
     };
     let places: Vec<Point> = followers.iter().map(|v| mesh.points[v.index()]).collect();
     let first = io::read(&files[0])?;
@@ -108,30 +109,30 @@ fn nearest(
 }
 
 /// Adds the motion of one `[[motion.move]]`.
-fn obey(asked: &Move, mesh: &Mesh, script: &mut Script) -> Result<()> {
-    let facets = FacetSet::find(mesh, &asked.patch)?;
-    let in_time = in_time(&asked.in_time)?;
-    let motions = motions(asked, mesh, &facets);
-    let n = match (asked.swell, motions.is_empty()) {
+fn add_move(spec: &Move, mesh: &Mesh, script: &mut Script) -> Result<()> {
+    let facets = FacetSet::find(mesh, &spec.patch)?;
+    let in_time = in_time(&spec.in_time)?;
+    let motions = motions(spec, mesh, &facets);
+    let n = match (spec.swell, motions.is_empty()) {
         (Some(by), true) => {
             let outward = outward(mesh, &facets);
             script.go(&facets.vertices, outward.iter().map(|n| n.map(|x| by * x)).collect(), in_time)?
         }
         (None, false) => script.follow(&facets.vertices, Prescribed::sequence(motions), in_time)?,
         (None, true) => {
-            return Err(Error::input(format!("motion.move of patch {} specifies no motion", asked.patch))
+            return Err(Error::input(format!("motion.move of patch {} specifies no motion", spec.patch))
                 .remedy("add shift, turn, affine, bend or swell"));
         }
         (Some(_), false) => {
             return Err(Error::input(format!(
                 "motion.move of patch {} has both swell and another motion",
-                asked.patch
+                spec.patch
             ))
             .remedy("give two entries for two patches; a vertex follows the first entry that contains it"));
         }
     };
     match n {
-        0 => Err(Error::input(format!("no vertex of patch {} is left to move by this entry", asked.patch))
+        0 => Err(Error::input(format!("no vertex of patch {} is left to move by this entry", spec.patch))
             .remedy("earlier entries move all of them, or the patch is inside: name it in motion.inside")),
         _ => Ok(()),
     }
@@ -139,34 +140,34 @@ fn obey(asked: &Move, mesh: &Mesh, script: &mut Script) -> Result<()> {
 
 /// Warns of entries that share vertices and move them to different places: the earlier one is obeyed, and the
 /// edge between them is bent.
-fn warn_of_contradiction(asked: &Move, mesh: &Mesh, script: &Script, console: &Console) {
+fn warn_of_contradiction(spec: &Move, mesh: &Mesh, script: &Script, console: &Console) {
     let contradicted = script.contradicted();
     if let Some(&first) = contradicted.first() {
         let [x, y, z] = mesh.points[first.index()];
         console.warn(format_args!(
             "motion.move of patch {}: {} of its vertices follow an earlier entry that moves them elsewhere; \
              the first: {first} at ({x:.6}, {y:.6}, {z:.6})",
-            asked.patch,
+            spec.patch,
             contradicted.len()
         ));
     }
 }
 
-fn motions(asked: &Move, mesh: &Mesh, facets: &FacetSet) -> Vec<Prescribed> {
-    let turn = asked.turn.as_ref().map(|turn| Prescribed::Turn {
+fn motions(spec: &Move, mesh: &Mesh, facets: &FacetSet) -> Vec<Prescribed> {
+    let turn = spec.turn.as_ref().map(|turn| Prescribed::Turn {
         axis: turn.axis,
         angle: turn.degrees.to_radians(),
         centre: turn.centre.unwrap_or_else(|| Prescribed::middle(&mesh.points, &facets.vertices)),
     });
-    let bend = asked.bend.as_ref().map(|bend| Prescribed::Bend {
+    let bend = spec.bend.as_ref().map(|bend| Prescribed::Bend {
         hinge: bend.hinge,
         along: bend.along,
         towards: bend.towards,
         length: bend.length,
         angle: bend.degrees.to_radians(),
     });
-    let affine = asked.affine.map(Prescribed::Affine);
-    [bend, turn, affine, asked.shift.map(Prescribed::Shift)].into_iter().flatten().collect()
+    let affine = spec.affine.map(Prescribed::Affine);
+    [bend, turn, affine, spec.shift.map(Prescribed::Shift)].into_iter().flatten().collect()
 }
 
 fn in_time(course: &Course) -> Result<InTime> {

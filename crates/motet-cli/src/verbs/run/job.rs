@@ -8,7 +8,7 @@ use motet::mesh::history::Carry;
 use motet::{Error, Result, io};
 use serde::{Deserialize, Serialize};
 
-use crate::verbs::refine::words;
+use crate::verbs::refine::parsers;
 
 /// The content of a job file.
 #[derive(Debug, Deserialize, Serialize)]
@@ -19,7 +19,7 @@ pub(super) struct Job {
     pub(super) file: PathBuf,
     pub(super) mesh: PathBuf,
     pub(super) output: PathBuf,
-    #[serde(default = "one")]
+    #[serde(default = "default_every")]
     pub(super) every: usize,
     #[serde(default)]
     pub(super) contents: Vec<String>,
@@ -39,7 +39,7 @@ pub(super) struct Job {
 }
 
 /// The default of `every`: each step is written.
-fn one() -> usize {
+fn default_every() -> usize {
     1
 }
 
@@ -236,7 +236,7 @@ impl Job {
     /// When it cannot be read or is not a valid job; with the line.
     pub(super) fn read(file: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, e))?;
-        let job = toml::from_str(&text).map_err(|e| off(&text, &e).in_file(file))?;
+        let job = toml::from_str(&text).map_err(|e| toml_error(&text, &e).in_file(file))?;
         let mut job = Self { file: file.to_owned(), ..job };
         if let (None, Some(series)) = (job.time.steps, &job.motion.surfaces) {
             job.time.steps = Some(io::read_series(job.path(series))?.len());
@@ -259,9 +259,10 @@ impl Job {
         files
             .extend(self.motion.surfaces.iter().map(|series| ("motion.surfaces".to_owned(), series.clone())));
         for (i, refine) in self.refine.iter().enumerate() {
-            let near = refine.near.iter().filter_map(|text| words::near(text).ok().map(|near| near.surface));
+            let near =
+                refine.near.iter().filter_map(|text| parsers::near(text).ok().map(|near| near.surface));
             let sized = refine.near_size.iter();
-            let sized = sized.filter_map(|text| words::near_size(text).ok().map(|near| near.surface));
+            let sized = sized.filter_map(|text| parsers::near_size(text).ok().map(|near| near.surface));
             let named = near.chain(sized).enumerate();
             files.extend(named.map(|(k, file)| (format!("refine.{i}, surface {k}"), file)));
         }
@@ -269,21 +270,21 @@ impl Job {
     }
 
     /// The error as one of kind input, in the job file where it names no other file.
-    pub(super) fn told(&self, error: Error) -> Error {
+    pub(super) fn with_job_file(&self, error: Error) -> Error {
         let file = error.file().unwrap_or(&self.file).to_owned();
-        let mut told = Error::input(error.what());
+        let mut located = Error::input(error.what());
         if let Some(place) = error.place() {
-            told = told.at(place);
+            located = located.at(place);
         }
         if let Some(remedy) = error.remedy_text() {
-            told = told.remedy(remedy);
+            located = located.remedy(remedy);
         }
-        told.in_file(file)
+        located.in_file(file)
     }
 
     /// Number of steps in a period.
     pub(super) fn steps_in_period(&self) -> usize {
-        self.time.steps.unwrap_or(STEPS)
+        self.time.steps.unwrap_or(DEFAULT_STEPS)
     }
 
     /// Total number of steps.
@@ -297,18 +298,18 @@ impl Job {
     }
 
     fn check(&self) -> Result<()> {
-        let off = |what: &str, remedy: &str| Err(Error::input(what).remedy(remedy));
+        let invalid = |what: &str, remedy: &str| Err(Error::input(what).remedy(remedy));
         if !(self.time.period > 0.0 && self.time.period.is_finite()) {
-            return off("time.period must be positive", "give a number above 0");
+            return invalid("time.period must be positive", "give a number above 0");
         }
         if self.every == 0 || self.time.steps == Some(0) || self.time.periods == 0 {
-            return off("every, time.steps or time.periods is 0", "give numbers of at least 1");
+            return invalid("every, time.steps or time.periods is 0", "give numbers of at least 1");
         }
-        if self.steps_in_period().checked_mul(self.time.periods).is_none_or(|n| n > MOST_STEPS) {
-            return off("too many steps", "a run has at most a hundred million steps");
+        if self.steps_in_period().checked_mul(self.time.periods).is_none_or(|n| n > MAX_STEPS) {
+            return invalid("too many steps", "a run has at most a hundred million steps");
         }
         if !motet::io::can_write_series(&self.output) {
-            return off("output is not a series", "name a file that ends in .pvd");
+            return invalid("output is not a series", "name a file that ends in .pvd");
         }
         let share = |x: f64| (0.0..1.0).contains(&x);
         let repair = &self.repair;
@@ -317,7 +318,7 @@ impl Job {
             && share(repair.floor)
             && share(repair.improve_below))
         {
-            return off(
+            return invalid(
                 "a number of [repair] is not between 0 and 1",
                 "min_eas, margin, floor and improve_below are shares",
             );
@@ -326,34 +327,34 @@ impl Job {
         let distances = contact.map(|contact| [("warn", contact.warn), ("hold", contact.hold)]);
         for (key, value) in distances.into_iter().flatten() {
             if let Some(value) = value.filter(|value| *value <= 0.0 || value.is_nan()) {
-                return off(&format!("contact.{key} is {value}"), "give a distance above 0");
+                return invalid(&format!("contact.{key} is {value}"), "give a distance above 0");
             }
         }
         if self.contact.is_none() && self.refine.iter().any(|refine| refine.gaps) {
-            return off(
+            return invalid(
                 "refine.gaps follows the gaps between watched patches, and none is watched",
                 "add [contact]",
             );
         }
         if self.device.iter().any(|device| device.hollow && device.fill) {
-            return off("a device has both hollow and fill", "give one of them");
+            return invalid("a device has both hollow and fill", "give one of them");
         }
         Ok(())
     }
 }
 
 /// Number of steps in a period, by default.
-const STEPS: usize = 20;
-const MOST_STEPS: usize = 100_000_000;
+const DEFAULT_STEPS: usize = 20;
+const MAX_STEPS: usize = 100_000_000;
 
 /// The error of the TOML parser, with the line.
-fn off(text: &str, error: &toml::de::Error) -> Error {
-    let told = Error::input(error.message().trim().replace('\n', "; "));
-    let told = told.remedy("`motet help run` shows a job with all keys");
+fn toml_error(text: &str, error: &toml::de::Error) -> Error {
+    let located = Error::input(error.message().trim().replace('\n', "; "));
+    let located = located.remedy("`motet help run` shows a job with all keys");
     match error.span() {
         Some(span) => {
-            told.at(format!("line {}", 1 + text[..span.start.min(text.len())].matches('\n').count()))
+            located.at(format!("line {}", 1 + text[..span.start.min(text.len())].matches('\n').count()))
         }
-        None => told,
+        None => located,
     }
 }

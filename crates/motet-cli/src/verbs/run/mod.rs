@@ -1,12 +1,12 @@
 //! `motet run`: keeps a mesh good through cycles of its walls, as described by a job file.
 
 mod args;
-mod begin;
 mod course;
 mod job;
 mod output;
 mod record;
 mod report;
+mod setup;
 
 use std::time::Instant;
 
@@ -18,21 +18,21 @@ use motet::{Error, Result};
 pub(crate) use args::RunArgs;
 pub(crate) use report::Report;
 
-use self::begin::Begin;
 use self::job::Job;
 use self::output::Output;
+use self::setup::Setup;
 use crate::common::Common;
 use crate::console::Console;
 use crate::outcome::Outcome;
 
 pub(crate) fn run(args: &RunArgs, common: &Common, console: &Console) -> Result<Outcome> {
-    let report = carry_out(args, common, console)?;
-    report.tell(console);
+    let report = execute(args, common, console)?;
+    report.print(console);
     Ok(report.outcome())
 }
 
 /// Makes the steps of a job and reports the result.
-pub(crate) fn carry_out(args: &RunArgs, common: &Common, console: &Console) -> Result<Report> {
+pub(crate) fn execute(args: &RunArgs, common: &Common, console: &Console) -> Result<Report> {
     let begin = Instant::now();
     let threads = common.threads()?;
     let job = Job::read(&args.job)?;
@@ -80,7 +80,7 @@ impl Run {
         if state.is_some() {
             output.check_record(job, &record)?;
         }
-        let Begin { mesh, script, options, refining } = Begin::of(job, threads, console)?;
+        let Setup { mesh, script, options, refining } = Setup::of(job, threads, console)?;
         if let Some(state) = state {
             let moving = MovingMesh::load(&state, options, threads)?;
             if moving.driven_places() != script.places() {
@@ -88,9 +88,9 @@ impl Run {
                     .in_file(state)
                     .remedy("omit --resume to start anew"));
             }
-            output.go_on(moving.step())?;
-            report.go_on(moving.step());
-            console.say(format_args!("resumes after step {}", moving.step()));
+            output.resume_after(moving.step())?;
+            report.resume_after(moving.step());
+            console.print(format_args!("resumes after step {}", moving.step()));
             return Ok(Self { moving, script, refining });
         }
         let moving = MovingMesh::new(&mesh, options, threads)?;

@@ -82,7 +82,7 @@ impl Output {
     ///
     /// # Errors
     /// When one of its frames or lines is missing.
-    pub(super) fn go_on(&mut self, step: usize) -> Result<()> {
+    pub(super) fn resume_after(&mut self, step: usize) -> Result<()> {
         let n_frames = 1 + step / self.every;
         self.series.go_on_after(n_frames)?;
         let remedy = "restore it, or omit --resume to start anew";
@@ -167,10 +167,10 @@ fn is_own(name: &str, of: &str) -> bool {
 }
 
 fn append(file: &Path, line: &Value) -> Result<()> {
-    let told = |e: std::io::Error| Error::output(file, e);
-    let mut out = OpenOptions::new().append(true).create(true).open(file).map_err(told)?;
+    let failed = |e: std::io::Error| Error::output(file, e);
+    let mut out = OpenOptions::new().append(true).create(true).open(file).map_err(failed)?;
     // One write per line: a killed run leaves whole lines, or an incomplete last one that resuming cuts off.
-    out.write_all(format!("{line}\n").as_bytes()).map_err(told)
+    out.write_all(format!("{line}\n").as_bytes()).map_err(failed)
 }
 
 /// The mesh with the results of the step as arrays.

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::job::Job;
 
 /// How many differences are named.
-const MOST: usize = 4;
+const MAX_LISTED: usize = 4;
 
 /// Keys with their values as text. The value of a file is a summary of its content.
 pub(super) type Record = BTreeMap<String, String>;
@@ -30,7 +30,7 @@ pub(super) fn of(job: &Job) -> Result<Record> {
     }
     record.insert("time.steps".into(), job.steps_in_period().to_string());
     for (key, named) in job.files() {
-        record.insert(key, content(&job.path(&named))?);
+        record.insert(key, fingerprint(&job.path(&named))?);
     }
     Ok(record)
 }
@@ -40,14 +40,14 @@ pub(super) fn differences(was: &Record, is: &Record) -> Vec<String> {
     let keys = was.keys().chain(is.keys().filter(|key| !was.contains_key(*key)));
     let differ = keys.filter(|key| was.get(*key) != is.get(*key));
     let value = |of: &Record, key: &str| of.get(key).map_or("nothing", String::as_str).to_owned();
-    let mut told: Vec<String> =
+    let mut listed: Vec<String> =
         differ.map(|key| format!("{key} was {} and is {}", value(was, key), value(is, key))).collect();
-    let n = told.len();
-    if n > MOST {
-        told.truncate(MOST);
-        told.push(format!("{} more", n - MOST));
+    let n = listed.len();
+    if n > MAX_LISTED {
+        listed.truncate(MAX_LISTED);
+        listed.push(format!("{} more", n - MAX_LISTED));
     }
-    told
+    listed
 }
 
 /// Reads a record that [`write`] wrote.
@@ -55,11 +55,11 @@ pub(super) fn differences(was: &Record, is: &Record) -> Vec<String> {
 /// # Errors
 /// When it does not exist, or is not a record.
 pub(super) fn read(file: &Path) -> Result<Record> {
-    let off = |what: &str| Err(Error::input(what).in_file(file).remedy("omit --resume to start anew"));
+    let invalid = |what: &str| Err(Error::input(what).in_file(file).remedy("omit --resume to start anew"));
     match std::fs::read(file) {
-        Err(_) => off("does not exist; it records the job that made the state"),
+        Err(_) => invalid("does not exist; it records the job that made the state"),
         Ok(bytes) => serde_json::from_slice(&bytes)
-            .or_else(|_| off("is damaged; it records the job that made the state")),
+            .or_else(|_| invalid("is damaged; it records the job that made the state")),
     }
 }
 
@@ -89,8 +89,8 @@ fn flatten(key: &str, value: &Value, record: &mut Record) {
 
 /// A summary of the content of a file, or of all files of a folder or series: the number of bytes, and a
 /// checksum.
-fn content(path: &Path) -> Result<String> {
-    let mut sum = Sum::default();
+fn fingerprint(path: &Path) -> Result<String> {
+    let mut sum = Checksum::default();
     let series = if io::can_write_series(path) { io::read_series(path)? } else { Vec::new() };
     for file in series.into_iter().map(|(_, file)| file).chain([path.to_owned()]) {
         // One step of a file with several stands for the whole file.
@@ -112,18 +112,18 @@ fn files_of(path: &Path, of: &mut impl FnMut(&Path) -> Result<()>) -> Result<()>
 }
 
 /// FNV-1a (Fowler, Noll and Vo 1991) in 64 bits: detects changed files, but not files forged to look alike.
-struct Sum {
+struct Checksum {
     n_bytes: u64,
     state: u64,
 }
 
-impl Default for Sum {
+impl Default for Checksum {
     fn default() -> Self {
         Self { n_bytes: 0, state: 0xcbf2_9ce4_8422_2325 }
     }
 }
 
-impl Sum {
+impl Checksum {
     fn add(&mut self, bytes: &[u8]) {
         self.n_bytes += bytes.len() as u64;
         for byte in bytes {

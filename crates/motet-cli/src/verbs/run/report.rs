@@ -109,7 +109,7 @@ pub(super) fn line(step: &Step, console: &Console) {
     if !step.complete {
         text += &format!("  completed {} of the step", percent(step.fraction));
     }
-    console.say(text);
+    console.print(text);
 }
 
 impl Report {
@@ -127,7 +127,7 @@ impl Report {
     }
 
     /// Notes that the run resumes after a step.
-    pub(super) fn go_on(&mut self, step: usize) {
+    pub(super) fn resume_after(&mut self, step: usize) {
         (self.resumed_after, self.steps) = (step, step);
     }
 
@@ -216,10 +216,10 @@ impl Report {
         ]))
     }
 
-    pub(crate) fn tell(&self, console: &Console) {
+    pub(crate) fn print(&self, console: &Console) {
         console.conclude(self, &self.outcome());
         let n = self.steps - self.resumed_after;
-        console.say(format_args!(
+        console.print(format_args!(
             "\n{n} steps{}: {} changes in {} of them, {} tets at the end",
             if self.complete { "" } else { ", the last one incomplete" },
             self.changes,
@@ -227,15 +227,15 @@ impl Report {
             count(self.tets[1])
         ));
         if let Some(worst) = self.worst {
-            console.say(format_args!(
+            console.print(format_args!(
                 "worst EAS of all steps {:.4}, in step {}; at most {} bad tets in a step, {} of them not forced by walls; {} inverted",
                 worst.eas, self.worst_at_step, self.most_bad, self.most_bad_not_forced, self.most_inverted
             ));
         }
         if n > 0 {
             let [first, last] = self.quality.map(Some);
-            console.say(quality::table([("at first", first), ("at last", last)]));
-            console.say(format_args!(
+            console.print(quality::table([("at first", first), ("at last", last)]));
+            console.print(format_args!(
                 "initially {} tets; mean EAS of a step at least {:.3}; on average {:.2} % of the cells \
                  changed per step",
                 count(self.tets[0]),
@@ -244,7 +244,7 @@ impl Report {
             ));
         }
         if self.most_inverted_at_start > 0 {
-            console.say(format_args!(
+            console.print(format_args!(
                 "up to {} tets of a changed mesh are inverted at the vertex positions from the start of the \
                  step (inverted_at_start in the log): \
                  schemes that use earlier time levels have no valid volume there (`valid_at_start` of the \
@@ -266,7 +266,7 @@ impl Report {
                 let [x, y, z] = held.place.map(short);
                 format!(", {} by up to {}, at ({x}, {y}, {z})", held.patch, short(held.short))
             });
-            console.say(format_args!("least gap {} at time {at}; {warned}{held}{farthest}", short(gap)));
+            console.print(format_args!("least gap {} at time {at}; {warned}{held}{farthest}", short(gap)));
         }
         let mut table = Table::new(["stage", "seconds", "per step"]);
         let all = &self.seconds;
@@ -281,6 +281,6 @@ impl Report {
         ] {
             table.row([name.to_owned(), format!("{s:.2}"), seconds(s / n.max(1) as f64)]);
         }
-        console.say(format_args!("{table}\nwrote {}, {}", self.output.display(), self.log.display()));
+        console.print(format_args!("{table}\nwrote {}, {}", self.output.display(), self.log.display()));
     }
 }

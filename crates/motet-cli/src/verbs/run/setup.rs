@@ -17,12 +17,12 @@ use motet::{Error, Mesh, Result, io};
 use super::course;
 use super::job::{self, Job, Layer, Refine};
 use crate::console::Console;
-use crate::verbs::implant::{Names, in_its_file, inside};
+use crate::verbs::implant::{Names, inside, with_file};
 use crate::verbs::moving;
-use crate::verbs::refine::{target, words};
+use crate::verbs::refine::{parsers, target};
 
 /// Everything that a run starts with.
-pub(super) struct Begin {
+pub(super) struct Setup {
     /// The mesh in its first position.
     pub(super) mesh: Mesh,
     pub(super) script: Script,
@@ -31,26 +31,26 @@ pub(super) struct Begin {
     pub(super) refining: Vec<(usize, Wanted)>,
 }
 
-impl Begin {
+impl Setup {
     pub(super) fn of(job: &Job, threads: &Threads, console: &Console) -> Result<Self> {
         let mesh = with_devices(job, threads, console)?;
-        let mut motion = motion(job, &mesh).map_err(|e| job.told(e))?;
+        let mut motion = motion(job, &mesh).map_err(|e| job.with_job_file(e))?;
         let script = course::script(job, &mesh, &motion, threads, console)?;
-        let goes_on = goes_on(job, &mesh, &motion, &script);
-        motion.strain = strain(job, &motion.method, goes_on).map_err(|e| job.told(e))?;
-        let returns = job.motion.returns.unwrap_or(!goes_on);
-        let options = options(job, &mesh, motion, returns).map_err(|e| job.told(e))?;
-        let refining = job.refine.iter().map(|asked| wanted(job, asked, threads));
-        let refining = refining.collect::<Result<_>>().map_err(|e| job.told(e))?;
+        let moves_on = moves_on(job, &mesh, &motion, &script);
+        motion.strain = strain(job, &motion.method, moves_on).map_err(|e| job.with_job_file(e))?;
+        let returns = job.motion.returns.unwrap_or(!moves_on);
+        let options = options(job, &mesh, motion, returns).map_err(|e| job.with_job_file(e))?;
+        let refining = job.refine.iter().map(|spec| wanted(job, spec, threads));
+        let refining = refining.collect::<Result<_>>().map_err(|e| job.with_job_file(e))?;
         Ok(Self { mesh, script, options, refining })
     }
 }
 
 /// A body that moves farther than this many edges changes the tets around it, whether it comes back or not.
-const FAR: f64 = 3.0;
+const FAR_EDGES: f64 = 3.0;
 
 /// Whether a wall moves on without coming back, or a rigid body moves far.
-fn goes_on(job: &Job, mesh: &Mesh, motion: &Motion, script: &Script) -> bool {
+fn moves_on(job: &Job, mesh: &Mesh, motion: &Motion, script: &Script) -> bool {
     if job.motion.moves.iter().any(|part| part.in_time.is_ramp()) {
         return true;
     }
@@ -62,7 +62,7 @@ fn goes_on(job: &Job, mesh: &Mesh, motion: &Motion, script: &Script) -> bool {
     let steps = job.steps_in_period();
     (1..steps).any(|k| {
         let displacement = script.at(k as f64 / steps as f64);
-        driven.iter().zip(displacement).any(|(v, d)| norm(d) > FAR * edges[v.index()])
+        driven.iter().zip(displacement).any(|(v, d)| norm(d) > FAR_EDGES * edges[v.index()])
     })
 }
 
@@ -78,14 +78,14 @@ fn with_devices(job: &Job, threads: &Threads, console: &Console) -> Result<Mesh>
             None => implant::Interface::Match,
         };
         let mut names = Names::of(&mesh.label_names);
-        let device = |asked: &&job::Device| {
-            names.device(&job.path(&asked.file), inside(asked.hollow, asked.fill), console)
+        let device = |spec: &&job::Device| {
+            names.device(&job.path(&spec.file), inside(spec.hollow, spec.fill), console)
         };
         let devices = group.iter().map(device).collect::<Result<Vec<_>>>()?;
-        let files: Vec<PathBuf> = group.iter().map(|asked| job.path(&asked.file)).collect();
+        let files: Vec<PathBuf> = group.iter().map(|spec| job.path(&spec.file)).collect();
         let options = implant::Options { interface, ..implant::Options::default() };
         let made = implant(&mesh, &devices, &options, &Rules::default(), threads);
-        mesh = made.map_err(|e| in_its_file(e, &job.path(&job.mesh), &files, &devices))?.mesh;
+        mesh = made.map_err(|e| with_file(e, &job.path(&job.mesh), &files, &devices))?.mesh;
     }
     Ok(mesh)
 }
@@ -107,7 +107,7 @@ fn options(job: &Job, mesh: &Mesh, motion: Motion, returns: bool) -> Result<Opti
             .remedy(format!("the mesh has: {}", known.join(", "))));
     }
     let repair = &job.repair;
-    let asked = remesh::Options {
+    let repair_options = remesh::Options {
         min_eas: repair.min_eas,
         surface: SurfaceRule::of_name(&repair.surface, repair.distance)?,
         held: Held::of_names(mesh, &repair.hold)?,
@@ -115,7 +115,7 @@ fn options(job: &Job, mesh: &Mesh, motion: Motion, returns: bool) -> Result<Opti
     };
     Ok(Options {
         motion,
-        repair: (!repair.off).then_some(asked),
+        repair: (!repair.off).then_some(repair_options),
         margin: repair.margin,
         floor: repair.floor,
         improve_below: repair.improve_below,
@@ -130,34 +130,34 @@ fn options(job: &Job, mesh: &Mesh, motion: Motion, returns: bool) -> Result<Opti
 }
 
 fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
-    let asked = &job.motion;
-    let method = match &asked.method {
+    let spec = &job.motion;
+    let method = match &spec.method {
         None => Method::default(),
         Some(name) => Method::of_name(name, MethodWords::default())?,
     };
-    if !asked.bodies.is_empty() && !matches!(method, Method::Bodies(_)) {
+    if !spec.bodies.is_empty() && !matches!(method, Method::Bodies(_)) {
         return Err(Error::input("motion.bodies names rigid bodies, but the method does not use them")
             .remedy("add method = \"bodies\""));
     }
-    let rigid_layer = match &asked.rigid_layer {
+    let rigid_layer = match &spec.rigid_layer {
         None => None,
-        Some(layer) => Some((extent(layer)?, mesh.find_patches(&asked.rigid_layer_at)?)),
+        Some(layer) => Some((extent(layer)?, mesh.find_patches(&spec.rigid_layer_at)?)),
     };
     Ok(Motion {
         method,
-        bodies: mesh.find_patches(&asked.bodies)?,
-        within_walls: asked.within_walls,
-        smoothing: asked.smooth,
-        inside: mesh.find_patches(&asked.inside)?,
-        sliding: mesh.find_patches(&asked.slide)?,
-        slide_tolerance: asked.slide_tolerance.map_or_else(SlideTolerance::default, SlideTolerance),
+        bodies: mesh.find_patches(&spec.bodies)?,
+        within_walls: spec.within_walls,
+        smoothing: spec.smooth,
+        inside: mesh.find_patches(&spec.inside)?,
+        sliding: mesh.find_patches(&spec.slide)?,
+        slide_tolerance: spec.slide_tolerance.map_or_else(SlideTolerance::default, SlideTolerance),
         rigid_layer,
         ..Motion::default()
     })
 }
 
 /// Where bodies put the strain: as the job says; by default in a band where a body moves on.
-fn strain(job: &Job, method: &Method, goes_on: bool) -> Result<Strain> {
+fn strain(job: &Job, method: &Method, moves_on: bool) -> Result<Strain> {
     let is_of_bodies = matches!(method, Method::Bodies(_));
     match &job.motion.strain {
         Some(_) if !is_of_bodies => Err(Error::input(
@@ -165,7 +165,7 @@ fn strain(job: &Job, method: &Method, goes_on: bool) -> Result<Strain> {
         )
         .remedy("add method = \"bodies\"")),
         Some(name) => Strain::of_name(name),
-        None if is_of_bodies && goes_on => Ok(Strain::Band),
+        None if is_of_bodies && moves_on => Ok(Strain::Band),
         None => Ok(Strain::Even),
     }
 }
@@ -176,77 +176,77 @@ fn extent(layer: &Layer) -> Result<Extent> {
         Layer::Distance(distance) => distance.to_string(),
         Layer::Word(word) => word.clone(),
     };
-    moving::words::layer(&word).map_err(|e| Error::input(format!("motion.rigid_layer = {word}: {e}")))
+    moving::parsers::layer(&word).map_err(|e| Error::input(format!("motion.rigid_layer = {word}: {e}")))
 }
 
 fn watching(job: &Job, mesh: &Mesh) -> Result<Option<Watching>> {
-    let Some(asked) = &job.contact else { return Ok(None) };
-    mesh.find_patches(&asked.patches)?;
+    let Some(spec) = &job.contact else { return Ok(None) };
+    mesh.find_patches(&spec.patches)?;
     let options = contact::Options {
-        warn: asked.warn,
-        own: asked.own,
-        within: asked.within.unwrap_or(f64::INFINITY),
+        warn: spec.warn,
+        own: spec.own,
+        within: spec.within.unwrap_or(f64::INFINITY),
         ..contact::Options::default()
     };
-    let (horizon, hold) = (asked.horizon, asked.hold);
-    Ok(Some(Watching { patches: asked.patches.clone(), options, horizon, hold }))
+    let (horizon, hold) = (spec.horizon, spec.hold);
+    Ok(Some(Watching { patches: spec.patches.clone(), options, horizon, hold }))
 }
 
 /// The refinement that an entry of `refine` requests, and after every how many steps: by default once, before
 /// the first.
-fn wanted(job: &Job, asked: &Refine, threads: &Threads) -> Result<(usize, Wanted)> {
+fn wanted(job: &Job, spec: &Refine, threads: &Threads) -> Result<(usize, Wanted)> {
     let mut criteria = Vec::new();
-    let off = |what: &str| Error::input(format!("refine: {what}"));
-    for text in &asked.near {
-        let near = words::near(text).map_err(|e| off(&e))?;
+    let invalid = |what: &str| Error::input(format!("refine: {what}"));
+    for text in &spec.near {
+        let near = parsers::near(text).map_err(|e| invalid(&e))?;
         criteria.push(Criterion::Near {
             target: target(&job.path(&near.surface), threads)?,
             within: near.within,
         });
     }
-    for text in &asked.near_size {
-        let near = words::near_size(text).map_err(|e| off(&e))?;
+    for text in &spec.near_size {
+        let near = parsers::near_size(text).map_err(|e| invalid(&e))?;
         let target = target(&job.path(&near.surface), threads)?;
         criteria.push(Criterion::NearSize { target, size: near.size, growth: near.growth });
     }
     type Parse = fn(&str) -> std::result::Result<Criterion, String>;
     let lists: [(&[String], Parse); 6] = [
-        (&asked.ball, words::ball),
-        (&asked.in_box, words::in_box),
-        (&asked.patch, words::patch),
-        (&asked.region, words::region),
-        (&asked.gradient, words::gradient),
-        (&asked.vorticity, words::vorticity),
+        (&spec.ball, parsers::ball),
+        (&spec.in_box, parsers::in_box),
+        (&spec.patch, parsers::patch),
+        (&spec.region, parsers::region),
+        (&spec.gradient, parsers::gradient),
+        (&spec.vorticity, parsers::vorticity),
     ];
     for (texts, parse) in lists {
         for text in texts {
-            criteria.push(parse(text).map_err(|e| off(&e))?);
+            criteria.push(parse(text).map_err(|e| invalid(&e))?);
         }
     }
-    for text in &asked.conditions {
-        criteria.push(Criterion::Where(words::condition(text).map_err(|e| off(&e))?));
+    for text in &spec.conditions {
+        criteria.push(Criterion::Where(parsers::condition(text).map_err(|e| invalid(&e))?));
     }
-    if asked.gaps {
+    if spec.gaps {
         criteria.push(Criterion::Size(Size::Array(GAP.into())));
-        if asked.smallest.is_none() {
-            return Err(off("gaps can become arbitrarily narrow")
+        if spec.smallest.is_none() {
+            return Err(invalid("gaps can become arbitrarily narrow")
                 .remedy("add smallest, the edge length at which division stops"));
         }
     }
-    if criteria.is_empty() && !asked.coarsen {
-        return Err(off("the entry has no criterion")
+    if criteria.is_empty() && !spec.coarsen {
+        return Err(invalid("the entry has no criterion")
             .remedy("say where: near, near_size, where, ball, box, patch, ..."));
     }
-    let limits = Limits { generation: asked.limit_generation, smallest: asked.smallest, ..Limits::default() };
+    let limits = Limits { generation: spec.limit_generation, smallest: spec.smallest, ..Limits::default() };
     let wanted = Wanted {
         criteria,
-        coarsen: asked.coarsen,
-        generations: asked.generations,
+        coarsen: spec.coarsen,
+        generations: spec.generations,
         limits,
         ..Wanted::default()
     };
-    match asked.every {
-        Some(0) => Err(off("every is 0")
+    match spec.every {
+        Some(0) => Err(invalid("every is 0")
             .remedy("give a number of steps, or omit it to refine once, before the first step")),
         every => Ok((every.unwrap_or(usize::MAX), wanted)),
     }

@@ -1,6 +1,6 @@
 //! Output of `motet contact` for people: tables, a histogram, places with warnings.
 
-use super::delaunay::Beside;
+use super::delaunay::DelaunayAccuracy;
 use super::histogram::Histogram;
 use super::report::{InRoom, Pair, Report, Stages, Step};
 use crate::console::Console;
@@ -8,10 +8,10 @@ use crate::outcome::Outcome;
 use crate::table::{Table, count, seconds, short, time as time_of};
 
 /// How many groups of vertices with warnings are listed without `--verbose`.
-const FIRST: usize = 10;
+const N_LISTED: usize = 10;
 
 impl Report {
-    pub(super) fn tell(&self, outcome: &Outcome, console: &Console) {
+    pub(super) fn print(&self, outcome: &Outcome, console: &Console) {
         console.conclude(self, outcome);
         let mut bodies = Table::new(["surface", "vertices", "triangles", "closed"]);
         for body in &self.bodies {
@@ -22,20 +22,20 @@ impl Report {
             };
             bodies.row([body.name.clone(), count(body.vertices), count(body.triangles), closed.into()]);
         }
-        console.say(bodies);
-        self.tell_rooms(console);
+        console.print(bodies);
+        self.print_rooms(console);
         match self.steps.as_slice() {
-            [step] => step.tell(self.warn, console),
-            steps => self.tell_series(steps, console),
+            [step] => step.print(self.warn, console),
+            steps => self.print_series(steps, console),
         }
-        console.say(format_args!("wrote {}", self.output.display()));
+        console.print(format_args!("wrote {}", self.output.display()));
         let Stages { measure, look_ahead, write, total } = self.seconds;
         let [measure, look_ahead, write, total] = [measure, look_ahead, write, total].map(seconds);
         console
-            .say(format_args!("measured {measure}, looked ahead {look_ahead}, wrote {write}, all {total}"));
+            .print(format_args!("measured {measure}, looked ahead {look_ahead}, wrote {write}, all {total}"));
     }
 
-    fn tell_series(&self, steps: &[Step], console: &Console) {
+    fn print_series(&self, steps: &[Step], console: &Console) {
         let mut table =
             Table::new(["time", "least gap", "between", "warned vertices", "crossings", "contact after"]);
         for step in steps {
@@ -51,17 +51,17 @@ impl Report {
                 step.contact_after(),
             ]);
         }
-        console.say(table);
+        console.print(table);
         if let Some(time) = self.first_warning {
-            console.say(format_args!("the first warning is at time {}", time_of(time)));
+            console.print(format_args!("the first warning is at time {}", time_of(time)));
         }
         if let Some(time) = self.first_touch {
-            console.say(format_args!("the first contact is at time {}", time_of(time)));
+            console.print(format_args!("the first contact is at time {}", time_of(time)));
         }
     }
 
     /// Prints which surfaces were taken for rooms, and why.
-    fn tell_rooms(&self, console: &Console) {
+    fn print_rooms(&self, console: &Console) {
         for body in self.bodies.iter().filter(|body| body.room && !body.closed) {
             console.warn(format_args!(
                 "{} is open, so it has no inside: --room {} has no effect; `motet cap` closes rims",
@@ -70,7 +70,7 @@ impl Report {
         }
         for InRoom { room, surface, share } in &self.rooms {
             if let Some(share) = share {
-                console.say(format_args!(
+                console.print(format_args!(
                     "{room} is treated as the room of {surface}, {} % of whose area lies inside (use \
                      --no-room if {room} is solid)",
                     percent(*share)
@@ -101,7 +101,7 @@ impl Step {
         }
     }
 
-    fn tell(&self, warn: Option<f64>, console: &Console) {
+    fn print(&self, warn: Option<f64>, console: &Console) {
         let mut table = Table::new(["between", "least gap", "at", "crossings", "deepest"]);
         for pair in &self.pairs {
             table.row([
@@ -112,20 +112,27 @@ impl Step {
                 short(pair.depth),
             ]);
         }
-        console.say(table);
+        console.print(table);
         let mut table = Table::new(["gaps of vertices", "least", "median", "largest", "warned"]);
         for gap in &self.gaps {
             let [min, median, max] = [gap.min, gap.median, gap.max].map(|x| x.map_or("-".into(), short));
             table.row([gap.body.clone(), min, median, max, count(gap.warned)]);
         }
-        console.say(table);
+        console.print(table);
         if let Some(histogram) = Histogram::of(&self.all, warn) {
-            console.say(histogram);
+            console.print(histogram);
         }
-        if let Some(Beside { gap_tets, least, compared, exact, largest_over, largest_under, seconds: s }) =
-            &self.delaunay
+        if let Some(DelaunayAccuracy {
+            gap_tets,
+            least,
+            compared,
+            exact,
+            largest_over,
+            largest_under,
+            seconds: s,
+        }) = &self.delaunay
         {
-            console.say(format_args!(
+            console.print(format_args!(
                 "by {} Delaunay tets in {}: least gap {}, too large by up to {}, too small by up to {}, exact at {:.1} % of {} vertices",
                 count(*gap_tets),
                 seconds(*s),
@@ -136,10 +143,10 @@ impl Step {
                 count(*compared)
             ));
         }
-        let n = if console.is_verbose() { self.warned.len() } else { FIRST };
+        let n = if console.is_verbose() { self.warned.len() } else { N_LISTED };
         for group in self.warned.iter().take(n) {
             let near = group.near.as_ref().map_or(String::new(), |near| format!(" of {near}"));
-            console.say(format_args!(
+            console.print(format_args!(
                 "warned: {} vertices of {} within {}{near}, nearest point {} at {}",
                 count(group.vertices),
                 group.body,
@@ -149,19 +156,19 @@ impl Step {
             ));
         }
         if self.warned.len() > n {
-            console.say(format_args!(
+            console.print(format_args!(
                 "and {} more groups; -v or --json lists all",
                 count(self.warned.len() - n)
             ));
         }
         match &self.first_contact {
-            Some(first) => console.say(format_args!(
+            Some(first) => console.print(format_args!(
                 "no contact before {}, then {} near {}",
                 short(first.after),
                 first.bodies.join(" and "),
                 first.place.map(short).join(", ")
             )),
-            None if self.looked_ahead => console.say("no contact ahead"),
+            None if self.looked_ahead => console.print("no contact ahead"),
             None => {}
         }
     }

@@ -8,12 +8,12 @@ use crate::words::number;
 
 /// A parsed `[PATCH=]N,FIRST,GROWTH`.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct LayersWord {
+pub(crate) struct LayersArg {
     pub(crate) patch: Option<String>,
     pub(crate) stack: Stack,
 }
 
-pub(crate) fn layers(text: &str) -> Result<LayersWord, String> {
+pub(crate) fn layers(text: &str) -> Result<LayersArg, String> {
     // Split at the last equals sign, since numbers contain none and names might.
     let (patch, numbers) = match text.rsplit_once('=') {
         Some((patch, numbers)) if !patch.is_empty() => (Some(patch.to_string()), numbers),
@@ -22,12 +22,12 @@ pub(crate) fn layers(text: &str) -> Result<LayersWord, String> {
     };
     let words: Vec<&str> = numbers.split(',').map(str::trim).collect();
     let [n, first, growth] = words[..] else {
-        return Err(format!("N,FIRST,GROWTH has 3 numbers, this {}", words.len()));
+        return Err(format!("N,FIRST,GROWTH has 3 numbers; got {}", words.len()));
     };
     let count = n.parse().map_err(|_| format!("`{n}` is not a valid number of layers"))?;
     let stack = Stack { count, first: number(first)?, growth: number(growth)? };
     stack.check().map_err(|error| error.to_string())?;
-    Ok(LayersWord { patch, stack })
+    Ok(LayersArg { patch, stack })
 }
 
 /// The layers that the arguments request; `None` where there are none.
@@ -35,7 +35,7 @@ pub(crate) fn layers(text: &str) -> Result<LayersWord, String> {
 /// # Errors
 /// When a patch does not exist, or is given layers twice.
 pub(super) fn stacks(
-    words: &[LayersWord],
+    words: &[LayersArg],
     on: &[String],
     keep_prisms: bool,
     surfaces: &Surfaces,
@@ -73,8 +73,8 @@ mod tests {
     #[test]
     fn layers_are_read_with_and_without_a_patch() {
         let stack = Stack { count: 5, first: 0.02, growth: 1.2 };
-        assert_eq!(layers("5,0.02,1.2"), Ok(LayersWord { patch: None, stack }));
-        assert_eq!(layers("a=b=5, 2e-2, 1.2"), Ok(LayersWord { patch: Some("a=b".into()), stack }));
+        assert_eq!(layers("5,0.02,1.2"), Ok(LayersArg { patch: None, stack }));
+        assert_eq!(layers("a=b=5, 2e-2, 1.2"), Ok(LayersArg { patch: Some("a=b".into()), stack }));
     }
 
     #[test]
@@ -97,7 +97,7 @@ mod tests {
             ("200,1e300,10", "too thick or thin to represent"),
             ("200,1,1e-9", "too thick or thin to represent"),
         ] {
-            assert!(layers(text).is_err_and(|told| told.contains(part)), "{text}: {:?}", layers(text));
+            assert!(layers(text).is_err_and(|why| why.contains(part)), "{text}: {:?}", layers(text));
         }
     }
 }

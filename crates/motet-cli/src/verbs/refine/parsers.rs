@@ -50,14 +50,14 @@ pub(crate) fn near_size(text: &str) -> Result<NearSize, String> {
 pub(crate) fn ball(text: &str) -> Result<Criterion, String> {
     match numbers(text)?[..] {
         [x, y, z, radius] => checked(Criterion::Ball { centre: [x, y, z], radius }),
-        ref other => Err(format!("X,Y,Z,R has 4 numbers, this {}", other.len())),
+        ref other => Err(format!("X,Y,Z,R has 4 numbers; got {}", other.len())),
     }
 }
 
 pub(crate) fn in_box(text: &str) -> Result<Criterion, String> {
     match numbers(text)?.as_chunks::<3>() {
         ([low, high], []) => checked(Criterion::Box([*low, *high])),
-        (all, rest) => Err(format!("X0,Y0,Z0,X1,Y1,Z1 has 6 numbers, this {}", 3 * all.len() + rest.len())),
+        (all, rest) => Err(format!("X0,Y0,Z0,X1,Y1,Z1 has 6 numbers; got {}", 3 * all.len() + rest.len())),
     }
 }
 
@@ -196,24 +196,24 @@ mod tests {
 
     #[test]
     fn what_is_off_is_told() {
-        let told = |criterion: Result<Criterion, String>| criterion.unwrap_err();
+        let refusal = |criterion: Result<Criterion, String>| criterion.unwrap_err();
         assert!(near("stent.stl").unwrap_err().contains("SURFACE=DISTANCE"));
         assert!(near("stent.stl=-1").unwrap_err().contains("0 or more"));
         assert!(near_size("a=1,2,3").unwrap_err().contains("GROWTH"));
         assert!(near_size("a=0").is_err() && near_size("a=1,-1").is_err());
-        assert!(told(ball("1,2,3")).contains("4 numbers, this 3"));
-        assert!(told(ball("1,2,3,-1")).contains("radius"));
-        assert!(told(in_box("0,0,0,1,1")).contains("6 numbers, this 5"));
-        assert!(told(in_box("0,0,0,1,1,-1")).contains("lowest corner first"));
+        assert!(refusal(ball("1,2,3")).contains("4 numbers; got 3"));
+        assert!(refusal(ball("1,2,3,-1")).contains("radius"));
+        assert!(refusal(in_box("0,0,0,1,1")).contains("6 numbers; got 5"));
+        assert!(refusal(in_box("0,0,0,1,1,-1")).contains("lowest corner first"));
         assert!(region("").is_err() && patch("").is_err());
-        assert!(told(patch("wall=-1")).contains("0 or more"));
+        assert!(refusal(patch("wall=-1")).contains("0 or more"));
         for text in ["0", "-1", "nan", "inf", ""] {
-            assert!(told(size(text)).contains("above 0"), "{text}");
+            assert!(refusal(size(text)).contains("above 0"), "{text}");
         }
-        assert!(told(jump("p=1.5")).contains("at most 1"));
-        assert!(told(jump("p=0tets")).contains("number of tets"));
-        assert!(told(vorticity("v<3")).contains("ARRAY>VALUE"));
-        assert!(told(gradient("v")).contains("ARRAY>VALUE"));
+        assert!(refusal(jump("p=1.5")).contains("at most 1"));
+        assert!(refusal(jump("p=0tets")).contains("number of tets"));
+        assert!(refusal(vorticity("v<3")).contains("ARRAY>VALUE"));
+        assert!(refusal(gradient("v")).contains("ARRAY>VALUE"));
         for text in ["p", "p=", "p=0", "p=0%", "p=200%", ",p=1", "p=xtets"] {
             assert!(hessian(text).is_err(), "{text}");
         }

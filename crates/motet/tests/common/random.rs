@@ -3,9 +3,9 @@
 use motet::base::Point;
 
 /// An endless stream of numbers in [0, 1), by Marsaglia's xorshift; the seed is any number but 0.
-pub(crate) struct Chance(pub(crate) u64);
+pub(crate) struct Random(pub(crate) u64);
 
-impl Chance {
+impl Random {
     pub(crate) fn next(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;

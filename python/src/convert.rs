@@ -16,9 +16,9 @@ use crate::arrays::{Ids, Read, Vectors, from_field, ids, rows, to_field, vectors
 use crate::error::{OrRaise, input};
 
 /// A mesh from Python, checked.
-pub(crate) struct Given(pub(crate) Mesh);
+pub(crate) struct MeshArg(pub(crate) Mesh);
 
-impl<'py> FromPyObject<'_, 'py> for Given {
+impl<'py> FromPyObject<'_, 'py> for MeshArg {
     type Error = PyErr;
 
     fn extract(mesh: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {

@@ -34,7 +34,7 @@ pub(crate) fn translate(text: &str) -> Result<Translate, String> {
     let (patch, numbers) = patch_and_numbers(text)?;
     match numbers[..] {
         [x, y, z] => Ok(Translate { patch, by: [x, y, z] }),
-        _ => Err(format!("PATCH=dx,dy,dz has 3 numbers, this {}", numbers.len())),
+        _ => Err(format!("PATCH=dx,dy,dz has 3 numbers; got {}", numbers.len())),
     }
 }
 
@@ -43,7 +43,7 @@ pub(crate) fn rotate(text: &str) -> Result<Rotate, String> {
     let (axis, degrees, centre) = match numbers[..] {
         [x, y, z, degrees] => ([x, y, z], degrees, None),
         [x, y, z, degrees, a, b, c] => ([x, y, z], degrees, Some([a, b, c])),
-        _ => return Err(format!("PATCH=ax,ay,az,deg[,cx,cy,cz] has 4 or 7 numbers, this {}", numbers.len())),
+        _ => return Err(format!("PATCH=ax,ay,az,deg[,cx,cy,cz] has 4 or 7 numbers; got {}", numbers.len())),
     };
     if axis == [0.0; 3] {
         return Err("the axis 0,0,0 points nowhere".into());

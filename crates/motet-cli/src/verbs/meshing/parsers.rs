@@ -44,8 +44,8 @@ mod tests {
         assert_eq!(size("auto"), Ok(Size::Auto));
         assert_eq!(size("0.3"), Ok(Size::Length(0.3)));
         assert_eq!(place("-1,2.5,3e-1"), Ok([-1.0, 2.5, 0.3]));
-        let told = seed("0,0,1=the=lumen").unwrap();
-        assert_eq!((told.place, told.name.as_str()), ([0.0, 0.0, 1.0], "the=lumen"));
+        let parsed = seed("0,0,1=the=lumen").unwrap();
+        assert_eq!((parsed.place, parsed.name.as_str()), ([0.0, 0.0, 1.0], "the=lumen"));
     }
 
     #[test]
