@@ -133,7 +133,8 @@ impl Step {
         }) = &self.delaunay
         {
             console.print(format_args!(
-                "by {} Delaunay tets in {}: least gap {}, too large by up to {}, too small by up to {}, exact at {:.1} % of {} vertices",
+                "by {} Delaunay tets in {}: least gap {}, too large by up to {}, too small by up to {}, \
+                 exact at {:.1} % of {} vertices",
                 count(*gap_tets),
                 seconds(*s),
                 least.map_or("-".into(), short),

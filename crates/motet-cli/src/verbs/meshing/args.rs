@@ -151,7 +151,7 @@ impl MeshArgs {
 
     pub(super) fn repairs(&self) -> Option<Repairs> {
         let all = || Repairs::all(self.merge.unwrap_or(0.0), self.hole_edges);
-        let asked = if self.repair { all() } else { Repairs::default() };
-        (self.repair || self.cut).then_some(Repairs { cut: self.cut, keep_inward: self.voids, ..asked })
+        let repairs = if self.repair { all() } else { Repairs::default() };
+        (self.repair || self.cut).then_some(Repairs { cut: self.cut, keep_inward: self.voids, ..repairs })
     }
 }

@@ -298,8 +298,8 @@ impl<'a> Request<'a, '_> {
         driven
     }
 
-    /// The vertices of `given` on interfaces that also have a vertex of `given` inside the mesh: they move with
-    /// it, up to the rims of the interfaces on sliding patches.
+    /// The vertices of `given` on interfaces that also have a vertex of `given` inside the mesh: they move
+    /// with it, up to the rims of the interfaces on sliding patches.
     fn on_interfaces(&self, given: &[VertexId]) -> Vec<VertexId> {
         let is_given = |v: &VertexId| given.binary_search(v).is_ok();
         let is_inside = |v: &VertexId| self.boundary.vertices.binary_search(v).is_err();

@@ -211,7 +211,8 @@ impl Report {
         let [read, join, repair, extract, history, fields, write, total] =
             [read, join, repair, extract, history, fields, write, total].map(seconds);
         console.print(format_args!(
-            "read {read}, joined {join}, repaired {repair}, extracted {extract}, arrays carried {history}, reported {fields}, \
+            "read {read}, joined {join}, repaired {repair}, extracted {extract}, arrays carried {history}, \
+             reported {fields}, \
              wrote {write}, all {total}"
         ));
     }

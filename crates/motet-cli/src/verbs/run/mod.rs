@@ -111,16 +111,16 @@ impl Run {
             return Ok(step);
         }
         let begin = Instant::now();
-        let mut came = self.refine(step.step, threads)?;
-        if came.is_empty() {
+        let mut changes = self.refine(step.step, threads)?;
+        if changes.is_empty() {
             return Ok(step);
         }
-        came.extend(self.moving.repair(threads)?);
+        changes.extend(self.moving.repair(threads)?);
         let repair = begin.elapsed().as_secs_f64();
         let after = self.moving.certify(threads)?;
         step.seconds += after.seconds;
         step.seconds += Seconds { repair, total: repair, ..Seconds::default() };
-        step.changes.extend(came);
+        step.changes.extend(changes);
         Ok(Step { legs: step.legs, changes: step.changes, seconds: step.seconds, ..after })
     }
 
