@@ -2,8 +2,9 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::FACETS;
-use crate::kernel::complex::{Complex, Hold};
-use crate::kernel::spare::{Side, sorted};
+use crate::kernel::complex::Complex;
+use crate::kernel::exempt::{Side, sorted};
+use crate::kernel::hold::Hold;
 
 /// A tet to be inserted.
 #[derive(Clone, Copy, Debug, PartialEq)]

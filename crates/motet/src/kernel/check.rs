@@ -6,7 +6,8 @@ use crate::base::{TetId, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::FACETS;
 use crate::kernel::change::{Change, NewWall, VertexChange};
-use crate::kernel::complex::{Complex, Hold};
+use crate::kernel::complex::Complex;
+use crate::kernel::hold::Hold;
 use crate::kernel::link::{Behind, HalfFacet, WallId};
 
 /// Why a change is refused.

@@ -6,23 +6,10 @@ use std::ops::Range;
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas};
+use crate::kernel::hold::Hold;
 use crate::kernel::journal::Journal;
-use crate::kernel::lines::{Lines, rising};
+use crate::kernel::lines::Lines;
 use crate::kernel::link::{Behind, HalfFacet, Link, Wall, WallId};
-
-/// The constraint on a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[repr(u8)]
-pub enum Hold {
-    /// None: the vertex lies inside, and may be moved or removed.
-    Free,
-    /// The vertex lies on a smooth part of a wall.
-    Surface,
-    /// The vertex lies on a feature edge: between two patches, or where a wall has a crease.
-    Edge,
-    /// The vertex stays.
-    Fixed,
-}
 
 /// Tets with neighbours, walls and labels, and a record of which of them are unchanged.
 ///
@@ -290,15 +277,6 @@ impl Complex {
         self.is_fixed_wall.get(wall.index()).is_some_and(|&fixed| fixed)
     }
 
-    /// Forbids changes to remove these edges; their vertices stay where they are.
-    pub fn fix_edges(&mut self, edges: impl IntoIterator<Item = [VertexId; 2]>) {
-        for edge in edges {
-            self.fixed_edges.push(rising(edge));
-            edge.iter().for_each(|v| self.holds[v.index()] = Hold::Fixed);
-        }
-        self.fixed_edges.sort_unstable();
-    }
-
     /// Allows changes to modify walls and lines, and to move and remove vertices on them that are not fixed.
     pub fn adapt_surface(&mut self) {
         self.keeps_surface = false;
@@ -307,12 +285,6 @@ impl Complex {
     /// Forbids changes to modify walls from now on.
     pub fn keep_surface(&mut self) {
         self.keeps_surface = true;
-    }
-
-    /// Whether an edge must stay although it is not on a wall.
-    #[inline]
-    pub fn is_fixed_edge(&self, a: VertexId, b: VertexId) -> bool {
-        !self.fixed_edges.is_empty() && self.fixed_edges.binary_search(&[a.min(b), a.max(b)]).is_ok()
     }
 
     /// The local number of a vertex in a tet that has it.

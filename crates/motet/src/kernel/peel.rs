@@ -3,7 +3,8 @@
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::change::NewWall;
-use crate::kernel::complex::{Complex, FREE, Hold, NO_TET};
+use crate::kernel::complex::{Complex, FREE, NO_TET};
+use crate::kernel::hold::Hold;
 use crate::kernel::link::{Behind, HalfFacet, NO_TRIANGLE, Wall};
 
 impl Complex {
