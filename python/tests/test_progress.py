@@ -50,7 +50,7 @@ def test_what_it_is_at_is_told_and_may_end_it(verb):
 def test_what_comes_out_does_not_depend_on_who_looks():
     told = []
     watched = motet.remesh(BOX, sizes=0.06, progress=lambda *words: told.append(words))
-    assert {stage for stage, *_ in told} <= {"splitting long edges", "collapsing short edges", "repairing tets", "taking vertices out", "improving tets"} and told
+    assert {stage for stage, *_ in told} <= {"splitting long edges", "collapsing short edges", "repairing tets", "removing superfluous vertices", "improving tets"} and told
     np.testing.assert_array_equal(watched.mesh.points, motet.remesh(BOX, sizes=0.06).mesh.points)
 
 

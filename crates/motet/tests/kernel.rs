@@ -91,7 +91,7 @@ proptest! {
             prop_assert_eq!(extract.mesh.regions[new], mesh.regions[old as usize]);
         }
         let n_kept = extract.tet_to_old.iter().filter(|&&old| old != u32::MAX).count();
-        prop_assert_eq!(extract.gone_tets.len() + n_kept, mesh.tets.len());
+        prop_assert_eq!(extract.removed_tets.len() + n_kept, mesh.tets.len());
     }
 }
 

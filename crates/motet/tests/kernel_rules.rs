@@ -199,12 +199,12 @@ fn tets_that_walls_force_count_as_good_until_all_are_judged_again() {
     let only = TetId(0);
     let sides =
         |walls: &'static [usize]| move |i: usize| if walls.contains(&i) { Side::Wall } else { Side::Inside };
-    assert_eq!((complex.quality(only), complex.n_spared()), (quality, 0));
+    assert_eq!((complex.quality(only), complex.n_exempt()), (quality, 0));
     assert_eq!(complex.judge(corners, sides(&[2, 3])), quality, "nothing is spared yet");
 
-    complex.spare(&[only], 0.2);
+    complex.exempt(&[only], 0.2);
     assert_eq!(
-        (complex.quality(only), complex.n_spared(), complex.below(0.2)),
+        (complex.quality(only), complex.n_exempt(), complex.below(0.2)),
         (f64::INFINITY, 1, Vec::new())
     );
     complex.verify().unwrap();
@@ -221,8 +221,8 @@ fn tets_that_walls_force_count_as_good_until_all_are_judged_again() {
     let good = wedge(20.0);
     assert_eq!(complex.judge(good, sides(&[2, 3])), eas(good), "not below the limit");
 
-    complex.spare_none();
-    assert_eq!((complex.quality(only), complex.n_spared()), (quality, 0));
+    complex.end_exemptions();
+    assert_eq!((complex.quality(only), complex.n_exempt()), (quality, 0));
     assert_eq!(complex.judge(corners, sides(&[2, 3])), quality);
     complex.verify().unwrap();
 }
@@ -242,7 +242,7 @@ fn a_narrow_wall_forces_its_tet_only_where_it_is_firm() {
     assert_eq!(is_reached(quality, best_at(narrow)), (quality - 5.0 / 60.0).abs() < 1e-6);
     let tets = vec![[0, 1, 2, 3].map(VertexId)];
     let mut complex = Complex::new(&TetMesh::new(corners.to_vec(), tets)).unwrap();
-    complex.spare(&[TetId(0)], 0.2);
+    complex.exempt(&[TetId(0)], 0.2);
     let judged =
         |side: Side, at: usize| complex.judge(corners, |i| if i == at { side } else { Side::Inside });
     assert!(is_reached(quality, best_at(narrow)), "{quality}");
@@ -253,7 +253,7 @@ fn a_narrow_wall_forces_its_tet_only_where_it_is_firm() {
     assert_eq!((0..4).map(|i| complex.side(TetId(0), i)).collect::<Vec<_>>(), [Side::Firm; 4]);
     complex.adapt_surface();
     assert_eq!((0..4).map(|i| complex.side(TetId(0), i)).collect::<Vec<_>>(), [Side::Firm; 4]);
-    complex.spare_none();
+    complex.end_exemptions();
     assert_eq!((0..4).map(|i| complex.side(TetId(0), i)).collect::<Vec<_>>(), [Side::Wall; 4]);
 }
 
@@ -267,7 +267,7 @@ fn the_best_that_an_angle_allows_is_reached_within_a_millionth() {
     assert!(eas(flat) < FLATTEST);
     let tets = vec![[0, 1, 2, 3].map(VertexId)];
     let mut complex = Complex::new(&TetMesh::new(flat.to_vec(), tets)).unwrap();
-    complex.spare(&[TetId(0)], 0.2);
+    complex.exempt(&[TetId(0)], 0.2);
     assert_eq!(complex.judge(flat, |_| Side::Wall), eas(flat));
 }
 

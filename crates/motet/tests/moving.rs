@@ -281,7 +281,10 @@ fn what_is_no_state_is_told() {
     motet::io::write(&file, &mesh, &motet::io::WriteOptions::default()).unwrap();
     let told = MovingMesh::load(&file, Options::default(), &threads()).unwrap_err();
     assert_eq!(told.kind(), ErrorKind::Input);
-    assert!(told.to_string().contains("state.vtu") && told.to_string().contains("no state"), "{told}");
+    assert!(
+        told.to_string().contains("state.vtu") && told.to_string().contains("not a saved state"),
+        "{told}"
+    );
     MovingMesh::new(&mesh, Options::default(), &threads()).unwrap().save(&file).unwrap();
     let saved = motet::io::read(&file).unwrap();
     let damaged = |change: &dyn Fn(&mut Mesh)| {

@@ -46,12 +46,12 @@ fn watched_patches() {
     };
     assert!(with(watching()).is_ok());
     for wrong in WRONG {
-        refused(with(Watching { hold: Some(wrong), ..watching() }), "held");
+        refused(with(Watching { hold: Some(wrong), ..watching() }), "kept apart");
         refused(with(Watching { horizon: Some(wrong), ..watching() }), "horizon");
         let options = contact::Options { warn: Some(wrong), ..Default::default() };
         refused(with(Watching { options, ..watching() }), "warning");
     }
-    refused(with(Watching { hold: Some(1e120), ..watching() }), "held");
+    refused(with(Watching { hold: Some(1e120), ..watching() }), "kept apart");
 }
 
 #[test]

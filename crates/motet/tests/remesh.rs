@@ -143,7 +143,7 @@ fn where_only_some_are_asked_for_others_stay_bad() {
     assert!(left.len() > 10 && right.len() > 10, "{} and {}", left.len(), right.len());
     let only = Some(left.iter().map(|&t| CellId::new(t)).collect());
     let outcome = remesh(&mesh, &Options { only, ..Options::default() }, &Threads::single()).unwrap();
-    let is_gone = |t: &usize| outcome.extract.gone_tets.binary_search(&TetId::new(*t)).is_ok();
+    let is_gone = |t: &usize| outcome.extract.removed_tets.binary_search(&TetId::new(*t)).is_ok();
     let is_far = |t: &usize| corners(&mesh, *t).iter().all(|p| p[0] > 0.7);
     assert!(left.iter().all(is_gone), "what was asked for is repaired");
     assert!(

@@ -7,7 +7,7 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::{ROUGH_EAS_ERROR, rough_eas};
 use crate::geometry::tet::FACETS;
 use crate::kernel::complex::{Complex, NO_TET, UNMEASURED};
-use crate::kernel::exempt::NONE_SPARED;
+use crate::kernel::exempt::NONE_EXEMPT;
 use crate::kernel::hold::Hold;
 use crate::kernel::journal::Journal;
 use crate::kernel::lines::Lines;
@@ -22,28 +22,28 @@ impl Complex {
     ///
     /// # Errors
     /// If an array does not fit ([`TetMesh::validate`]), if there are too many tets, if more than two tets
-    /// share a facet, and if the mesh is one-sided; the error names the first such tet.
+    /// share a facet, and if the mesh is not orientable; the error names the first such tet.
     pub fn new(mesh: &TetMesh) -> Result<Self> {
         mesh.validate()?;
         if mesh.tets.len() >= MAX_TETS as usize {
-            return Err(Error::input(format!("{} tets are more than {MAX_TETS}", mesh.tets.len()))
+            return Err(Error::input(format!("{} tets exceed the limit of {MAX_TETS}", mesh.tets.len()))
                 .remedy("split the mesh"));
         }
         let TetMesh { points, regions, triangles, patches, .. } = mesh;
         let mut tets = mesh.tets.clone();
         let mut joined = Joined::of(&tets, regions, triangles, patches)?;
         let mut rough = rough_eas(points, &tets);
-        let (mut n_turned, mut folded) = (0, Vec::new());
-        if joined.is_one_sided || rough.iter().any(|&q| q <= 0.0) {
+        let (mut n_reversed, mut folded) = (0, Vec::new());
+        if joined.has_same_side || rough.iter().any(|&q| q <= 0.0) {
             let across = joined.across();
-            let is_turned =
-                orient(&mut tets, behind(&across), points).map_err(|tet| one_sided(tet.index()))?;
-            n_turned = is_turned.iter().filter(|turned| **turned).count();
-            if n_turned > 0 {
+            let is_reversed =
+                orient(&mut tets, behind(&across), points).map_err(|tet| not_orientable(tet.index()))?;
+            n_reversed = is_reversed.iter().filter(|reversed| **reversed).count();
+            if n_reversed > 0 {
                 joined = Joined::of(&tets, regions, triangles, patches)?;
                 rough = rough_eas(points, &tets);
                 let across = joined.across();
-                folded = orientation::folded(&tets, points, &is_turned, behind(&across));
+                folded = orientation::folded(&tets, points, &is_reversed, behind(&across));
             }
         }
         let n_tets = tets.len();
@@ -59,8 +59,8 @@ impl Complex {
         let (lines, loose) = Lines::of(mesh);
         let mut complex = Self {
             holds: vec![Hold::Free; points.len()],
-            vertex_is_new: vec![false; points.len()],
-            vertex_came: vec![false; points.len()],
+            vertex_is_changed: vec![false; points.len()],
+            vertex_is_inserted: vec![false; points.len()],
             points: points.clone(),
             vertex_to_tet,
             vertex_to_n_tets,
@@ -79,22 +79,22 @@ impl Complex {
             fixed_edges,
             lines,
             is_fixed_wall: Vec::new(),
-            spared: NONE_SPARED,
+            exempt_range: NONE_EXEMPT,
             folded,
             keeps_surface: true,
-            mostly_turned: 2 * n_turned > n_tets,
-            gone_triangles: Vec::new(),
+            mostly_reversed: 2 * n_reversed > n_tets,
+            removed_triangles: Vec::new(),
             journal: Journal::default(),
         };
-        complex.hold_walls(&mesh.fixed_vertices);
-        complex.hold_lines(&loose);
-        complex.is_tangled = complex.has_flat_or_inverted() || complex.has_parted_star();
+        complex.constrain_walls(&mesh.fixed_vertices);
+        complex.constrain_lines(&loose);
+        complex.is_tangled = complex.has_flat_or_inverted() || complex.has_disconnected_star();
         Ok(complex)
     }
 
     /// Constrains vertices of walls to the surface, and fixes vertices that are marked as fixed or have no
     /// tet.
-    fn hold_walls(&mut self, fixed_vertices: &[VertexId]) {
+    fn constrain_walls(&mut self, fixed_vertices: &[VertexId]) {
         for i in 0..self.walls.len() {
             let side = self.walls[i].sides[0];
             for v in self.facet(side) {
@@ -119,7 +119,7 @@ impl Complex {
     /// Whether the tets of a vertex at a wall are connected only by the vertex, or by an edge. This is so
     /// where parts of a mesh touch, and where a tet has a wrong vertex: it may then be positive and overlap
     /// others.
-    fn has_parted_star(&self) -> bool {
+    fn has_disconnected_star(&self) -> bool {
         let mut star = Star::default();
         let mut vertices = (0..self.points.len()).map(VertexId::new);
         vertices.any(|v| {
@@ -139,7 +139,7 @@ struct Joined {
     walls: Vec<Wall>,
     /// Whether two tets see their common facet from the same side: one is numbered the other way round, or
     /// lies on the other.
-    is_one_sided: bool,
+    has_same_side: bool,
 }
 
 impl Joined {
@@ -150,14 +150,14 @@ impl Joined {
         patches: &[i32],
     ) -> Result<Self> {
         let links = vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()];
-        let mut joined = Self { links, walls: Vec::new(), is_one_sided: false };
+        let mut joined = Self { links, walls: Vec::new(), has_same_side: false };
         let mut fault = None;
         // Most meshes have only one, which saves two random memory reads per facet.
         let one_region = regions.windows(2).all(|pair| pair[0] == pair[1]);
         for_each_tet_facet(tets, triangles, |Sharing { tets: uses, triangles }| {
             if let [(t, i), (u, j)] = *uses {
                 let [x, y] = [(t, i), (u, j)].map(|(t, i)| orientation::facet(&tets[t.index()], i));
-                joined.is_one_sided |= !see_from_opposite_sides(x, y);
+                joined.has_same_side |= !see_from_opposite_sides(x, y);
             }
             let half = |i: usize| HalfFacet::new(uses[i].0, uses[i].1);
             let same_region = |x: TetId, y: TetId| one_region || regions[x.index()] == regions[y.index()];
@@ -183,7 +183,7 @@ impl Joined {
         match fault {
             None => Ok(joined),
             Some(((tet, i), n)) => Err(Error::input(format!(
-                "{n} tets share the facet of the points {:?}, where two can be",
+                "{n} tets share the facet of the points {:?}; at most two can",
                 FACETS[i].map(|place| tets[tet.index()][place].0)
             ))
             .at(format!("tet {tet}"))
@@ -216,10 +216,10 @@ fn behind(across: &[[HalfFacet; 4]]) -> impl Fn(usize, usize) -> Option<(usize, 
     }
 }
 
-fn one_sided(tet: usize) -> Error {
-    Error::input("the tets around it cannot all be turned the same way")
+fn not_orientable(tet: usize) -> Error {
+    Error::input("the tets around it cannot all be oriented consistently")
         .at(format!("tet {tet}"))
-        .remedy("the mesh is one-sided: mesh it again")
+        .remedy("the mesh is not orientable: mesh it again")
 }
 
 impl Complex {

@@ -88,7 +88,8 @@ impl Change {
         self.fill.push(Fill { vertices, region, quality });
     }
 
-    /// The quality of a tet with these vertices at these `corners` after the change, given the cavity and the new walls; see [`Complex::judge`].
+    /// The quality of a tet with these vertices at these `corners` after the change, given the cavity and the
+    /// new walls; see [`Complex::judge`].
     #[inline]
     pub fn judge(&self, complex: &Complex, vertices: [VertexId; 4], corners: [Point; 4]) -> f64 {
         complex.judge(corners, |i| {

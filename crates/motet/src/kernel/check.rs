@@ -52,7 +52,7 @@ impl fmt::Display for Reject {
             Self::NotPositive(tet) => write!(f, "the tet {tet:?} would not be positive"),
             Self::Open(facet) => write!(f, "the facet {facet:?} would have nothing behind it"),
             Self::Crowded(facet) => write!(f, "too many tets would share the facet {facet:?}"),
-            Self::Exists(edge) => write!(f, "the edge {edge:?}, or a facet with it, is there already"),
+            Self::Exists(edge) => write!(f, "the edge {edge:?}, or a facet with it, exists already"),
             Self::Wall(facet) => write!(f, "the wall {facet:?} would be lost"),
             Self::Region(facet) => write!(f, "tets would change their region at {facet:?}"),
             Self::Vertex(v) => write!(f, "vertex {v} would be lost"),
@@ -87,7 +87,7 @@ pub(super) enum Joint {
     /// A new wall, with one or two tets of the fill.
     NewWall(FillFacet, Option<FillFacet>, NewWall),
     /// A new wall on a tet outside, with a tet of the fill on its other side or nothing.
-    Bared(HalfFacet, Option<FillFacet>, NewWall),
+    Exposed(HalfFacet, Option<FillFacet>, NewWall),
 }
 
 /// A tet of the fill, by index, and one of its facets.
@@ -155,7 +155,7 @@ impl Complex {
         self.check_vertices(change)?;
         let lost_lines = self.check_edges(change)?;
         if self.is_tangled {
-            self.check_news(change)?;
+            self.check_existing(change)?;
         }
         Ok(Checked { lost_lines, ..self.join(change)? })
     }
@@ -189,13 +189,13 @@ impl Complex {
     }
 
     fn check_vertices(&self, change: &Change) -> Result<(), Reject> {
-        let gone = match change.vertex {
+        let removed = match change.vertex {
             VertexChange::Remove(v) => Some(v),
             _ => None,
         };
         for v in change.cavity.iter().flat_map(|&t| self.vertices(t)) {
             let is_in_fill = change.fill.iter().any(|tet| tet.vertices.contains(&v));
-            if is_in_fill == (gone == Some(v)) {
+            if is_in_fill == (removed == Some(v)) {
                 return Err(Reject::Vertex(v));
             }
         }
@@ -282,7 +282,7 @@ impl Complex {
                 Joint::NewWall(part(x), Some(part(y)), change.walls[*wall as usize])
             }
             [Use { role: Outer(_, outside), .. }, Use { role: NewWall(wall), .. }] => {
-                Joint::Bared(*outside, None, change.walls[*wall as usize])
+                Joint::Exposed(*outside, None, change.walls[*wall as usize])
             }
             [
                 x @ Use { role: Outer(_, outside), .. },
@@ -290,7 +290,7 @@ impl Complex {
                 y @ Use { role: Fill(..), .. },
             ] => {
                 same_side(x, y)?;
-                Joint::Bared(*outside, Some(part(y)), change.walls[*wall as usize])
+                Joint::Exposed(*outside, Some(part(y)), change.walls[*wall as usize])
             }
             _ => return Err(self.refusal(uses)),
         };

@@ -12,18 +12,18 @@ use crate::kernel::lines::{Line, rising};
 use crate::kernel::link::{HalfFacet, Link, NO_TRIANGLE, Wall, WallId};
 
 impl Complex {
-    /// Makes a checked change. `came` gets the ids of the tets of the fill, in their order.
-    pub fn commit(&mut self, checked: Checked, came: &mut Vec<TetId>) {
+    /// Makes a checked change. `inserted` gets the ids of the tets of the fill, in their order.
+    pub fn commit(&mut self, checked: Checked, inserted: &mut Vec<TetId>) {
         let Checked { change, joints, lost_walls, lost_lines } = checked;
         self.commit_vertex(change.vertex);
-        came.clear();
+        inserted.clear();
         for (i, fill) in change.fill.iter().enumerate() {
             let slot = match change.cavity.get(i) {
                 Some(&tet) => tet,
                 None => self.take_tet_slot(),
             };
             self.write_tet(slot, fill);
-            came.push(slot);
+            inserted.push(slot);
         }
         for &tet in change.cavity.iter().skip(change.fill.len()) {
             self.free_tet(tet);
@@ -34,9 +34,9 @@ impl Complex {
         lost_lines.into_iter().for_each(|edge| self.remove_line(edge));
         change.lines.iter().for_each(|new| self.add_line(new));
         for joint in joints {
-            self.commit_joint(joint, came);
+            self.commit_joint(joint, inserted);
         }
-        for (fill, &tet) in change.fill.iter().zip(came.iter()) {
+        for (fill, &tet) in change.fill.iter().zip(inserted.iter()) {
             fill.vertices.into_iter().for_each(|v| self.set_tet_of(v, tet));
         }
         if let VertexChange::Remove(v) = change.vertex {
@@ -54,13 +54,13 @@ impl Complex {
                 self.note_vertex(vertex);
                 self.points[vertex.index()] = point;
                 self.holds[vertex.index()] = hold;
-                self.vertex_is_new[vertex.index()] = true;
-                self.vertex_came[vertex.index()] = true;
+                self.vertex_is_changed[vertex.index()] = true;
+                self.vertex_is_inserted[vertex.index()] = true;
             }
             VertexChange::Move(vertex, point) => {
                 self.note_vertex(vertex);
                 self.points[vertex.index()] = point;
-                self.vertex_is_new[vertex.index()] = true;
+                self.vertex_is_changed[vertex.index()] = true;
             }
         }
     }
@@ -73,8 +73,8 @@ impl Complex {
                 VertexRecord {
                     point: c.points[i],
                     hold: c.holds[i],
-                    is_new: c.vertex_is_new[i],
-                    came: c.vertex_came[i],
+                    is_new: c.vertex_is_changed[i],
+                    is_inserted: c.vertex_is_inserted[i],
                 },
             )
         });
@@ -123,8 +123,8 @@ impl Complex {
         });
     }
 
-    fn commit_joint(&mut self, joint: Joint, came: &[TetId]) {
-        let half = |part: FillFacet| HalfFacet::new(came[part.tet as usize], usize::from(part.facet));
+    fn commit_joint(&mut self, joint: Joint, inserted: &[TetId]) {
+        let half = |part: FillFacet| HalfFacet::new(inserted[part.tet as usize], usize::from(part.facet));
         match joint {
             Joint::Inner([x, y]) => {
                 self.set_link(half(x), Link::tet(half(y)));
@@ -150,7 +150,7 @@ impl Complex {
                 self.set_wall(wall, Wall { sides: sides.map(half), ..self.walls[wall.index()] });
             }
             Joint::NewWall(x, y, new) => self.add_wall([half(x), y.map_or(HalfFacet::NONE, half)], new),
-            Joint::Bared(outside, x, new) => self.add_wall([outside, x.map_or(HalfFacet::NONE, half)], new),
+            Joint::Exposed(outside, x, new) => self.add_wall([outside, x.map_or(HalfFacet::NONE, half)], new),
         }
     }
 
@@ -175,8 +175,8 @@ impl Complex {
         self.note(|c| Entry::Wall(id, c.walls[id.index()]));
         let wall = std::mem::replace(&mut self.walls[id.index()], Wall::FREE);
         if !wall.is_new && wall.triangle != NO_TRIANGLE {
-            self.gone_triangles.push(wall.triangle);
-            self.note(|_| Entry::GoneTriangle);
+            self.removed_triangles.push(wall.triangle);
+            self.note(|_| Entry::RemovedTriangle);
         }
         self.free_walls.push(id);
         self.note(|_| Entry::FreedWall);
@@ -232,8 +232,8 @@ impl Complex {
         self.note(|c| Entry::VertexSlots(c.points.len()));
         self.points.push([0.0; 3]);
         self.holds.push(Hold::Free);
-        self.vertex_is_new.push(true);
-        self.vertex_came.push(true);
+        self.vertex_is_changed.push(true);
+        self.vertex_is_inserted.push(true);
         self.vertex_to_tet.push(NO_TET);
         self.vertex_to_n_tets.push(0);
         VertexId::new(self.points.len() - 1)

@@ -32,9 +32,9 @@ pub struct Complex {
     /// Whether a tet is not one of the first mesh, or has a vertex that moved.
     pub(super) is_new: Vec<bool>,
     /// Whether a vertex is not one of the first mesh, or has moved.
-    pub(super) vertex_is_new: Vec<bool>,
+    pub(super) vertex_is_changed: Vec<bool>,
     /// Whether a vertex is not one of the first mesh.
-    pub(super) vertex_came: Vec<bool>,
+    pub(super) vertex_is_inserted: Vec<bool>,
     pub(super) walls: Vec<Wall>,
     pub(super) free_vertices: Vec<VertexId>,
     pub(super) free_tets: Vec<TetId>,
@@ -47,8 +47,8 @@ pub struct Complex {
     pub(super) lines: Lines,
     /// Marks walls that no change may remove; empty if there are none.
     pub(super) is_fixed_wall: Vec<bool>,
-    /// New tets of these qualities are exempt if walls force them; see [`Complex::spare`].
-    pub(super) spared: Range<f64>,
+    /// New tets of these qualities are exempt if walls force them; see [`Complex::exempt`].
+    pub(super) exempt_range: Range<f64>,
     /// Tets of the first mesh that are folded over others, in rising order.
     pub(super) folded: Vec<TetId>,
     /// Whether walls stay as they are, and the vertices on them.
@@ -57,9 +57,9 @@ pub struct Complex {
     /// through facets: then tets may overlap.
     pub(super) is_tangled: bool,
     /// Whether most tets of the first mesh are numbered with the opposite orientation.
-    pub(super) mostly_turned: bool,
+    pub(super) mostly_reversed: bool,
     /// Triangles of the first mesh that are no longer walls.
-    pub(super) gone_triangles: Vec<u32>,
+    pub(super) removed_triangles: Vec<u32>,
     pub(super) journal: Journal,
 }
 
@@ -117,8 +117,8 @@ impl Complex {
 
     /// Whether a vertex is not one of the first mesh.
     #[inline]
-    pub fn has_come(&self, vertex: VertexId) -> bool {
-        self.vertex_came[vertex.index()]
+    pub fn is_inserted(&self, vertex: VertexId) -> bool {
+        self.vertex_is_inserted[vertex.index()]
     }
 
     /// The vertices of a tet, in positive orientation unless the tet was given inverted.
@@ -152,7 +152,7 @@ impl Complex {
         self.regions[tet.index()]
     }
 
-    /// The quality of a tet: see [`Self::measure`], and [`Self::spare`] for exempt tets.
+    /// The quality of a tet: see [`Self::measure`], and [`Self::exempt`] for exempt tets.
     #[inline]
     pub fn quality(&self, tet: TetId) -> f64 {
         let known = &self.qualities[tet.index()];

@@ -82,7 +82,7 @@ impl Complex {
     }
 
     /// Constrains the vertices of lines as features do; fixes those of lines that are not edges of a tet.
-    pub(super) fn hold_lines(&mut self, loose: &[VertexId]) {
+    pub(super) fn constrain_lines(&mut self, loose: &[VertexId]) {
         for v in self.lines().into_iter().flat_map(|(edge, _)| edge) {
             self.holds[v.index()] = self.holds[v.index()].max(Hold::Edge);
         }

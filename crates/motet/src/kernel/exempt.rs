@@ -18,14 +18,14 @@ use crate::kernel::complex::{Complex, UNMEASURED};
 use crate::kernel::link::HalfFacet;
 
 /// The quality stored for an exempt tet: above that of any tet.
-const SPARED: f64 = f64::INFINITY;
+const EXEMPT: f64 = f64::INFINITY;
 
 /// A tet below this EAS is nearly flat, and never counts as good: two of its walls may come to lie on each
 /// other.
 pub const FLATTEST: f64 = 1e-6;
 
 /// The range of qualities of new tets that may be exempt when none may: empty.
-pub(super) const NONE_SPARED: Range<f64> = f64::INFINITY..f64::INFINITY;
+pub(super) const NONE_EXEMPT: Range<f64> = f64::INFINITY..f64::INFINITY;
 
 /// A quality within this of the highest that walls allow counts as reaching it.
 const NEARLY: f64 = 1e-6;
@@ -54,33 +54,37 @@ pub enum Side {
 impl Complex {
     /// Exempts `tets`, which count as good from now on. New tets are exempt, too, if their quality is below
     /// `limit`, not below the worst of `tets`, and as high as two walls on both sides of the tet, or the
-    /// angles of a wall that is [`Side::Firm`], allow. Ends with [`Self::spare_none`].
+    /// angles of a wall that is [`Side::Firm`], allow. Ends with [`Self::end_exemptions`].
     ///
     /// Cannot be undone by [`Self::undo`].
-    pub fn spare(&mut self, tets: &[TetId], limit: f64) {
+    pub fn exempt(&mut self, tets: &[TetId], limit: f64) {
         let worst = tets.iter().map(|&tet| self.measure(self.corners(tet))).fold(f64::INFINITY, f64::min);
-        self.spared = worst.max(FLATTEST)..limit;
-        tets.iter().for_each(|tet| self.qualities[tet.index()].set(SPARED));
+        self.exempt_range = worst.max(FLATTEST)..limit;
+        tets.iter().for_each(|tet| self.qualities[tet.index()].set(EXEMPT));
         self.forget();
     }
 
     /// Ends all exemptions: every tet is judged by its quality again.
     ///
     /// Cannot be undone by [`Self::undo`].
-    pub fn spare_none(&mut self) {
-        self.spared = NONE_SPARED;
-        let marked = self.qualities.iter_mut().filter(|quality| quality.get() == SPARED);
+    pub fn end_exemptions(&mut self) {
+        self.exempt_range = NONE_EXEMPT;
+        let marked = self.qualities.iter_mut().filter(|quality| quality.get() == EXEMPT);
         marked.for_each(|quality| *quality = Cell::new(UNMEASURED));
         self.forget();
     }
 
     /// How many tets are exempt.
-    pub fn n_spared(&self) -> usize {
-        if self.spared == NONE_SPARED { 0 } else { self.tets().filter(|&tet| self.is_spared(tet)).count() }
+    pub fn n_exempt(&self) -> usize {
+        if self.exempt_range == NONE_EXEMPT {
+            0
+        } else {
+            self.tets().filter(|&tet| self.is_exempt(tet)).count()
+        }
     }
 
-    pub(super) fn is_spared(&self, tet: TetId) -> bool {
-        self.qualities[tet.index()].get() == SPARED
+    pub(super) fn is_exempt(&self, tet: TetId) -> bool {
+        self.qualities[tet.index()].get() == EXEMPT
     }
 
     /// The quality of a new tet whose facets will be `sides`: its EAS, or the mark of an exempt tet if walls
@@ -88,15 +92,15 @@ impl Complex {
     #[inline]
     pub fn judge(&self, corners: [Point; 4], sides: impl Fn(usize) -> Side) -> f64 {
         let quality = self.measure(corners);
-        let may_be_spared = self.spared.contains(&quality);
-        if may_be_spared && is_forced(corners, quality, sides) { SPARED } else { quality }
+        let may_be_exempt = self.exempt_range.contains(&quality);
+        if may_be_exempt && is_forced(corners, quality, sides) { EXEMPT } else { quality }
     }
 
     /// The role of facet `i` of a tet.
     pub fn side(&self, tet: TetId, i: usize) -> Side {
         match self.is_wall(tet, i) {
             false => Side::Inside,
-            true if self.keeps_surface() || self.is_spared(tet) => Side::Firm,
+            true if self.keeps_surface() || self.is_exempt(tet) => Side::Firm,
             true => Side::Wall,
         }
     }

@@ -12,7 +12,7 @@ use crate::kernel::complex::Complex;
 impl Complex {
     /// Checks that new edges and facets do not exist already. If all tets are positive none can: it would lie
     /// within the cavity, inside other tets.
-    pub(super) fn check_news(&self, change: &Change) -> Result<(), Reject> {
+    pub(super) fn check_existing(&self, change: &Change) -> Result<(), Reject> {
         let mut stars = Stars { complex: self, known: Vec::new() };
         let is_in_cavity = |vertices: &[VertexId]| {
             change.cavity.iter().any(|&t| vertices.iter().all(|v| self.vertices(t).contains(v)))

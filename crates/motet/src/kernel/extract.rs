@@ -25,9 +25,9 @@ pub struct Extract {
     /// For each line the old one that it was, or is part of.
     pub line_to_old: Vec<u32>,
     /// Ids in the complex of the new tets, in their order at the end of the mesh.
-    pub came: Vec<TetId>,
+    pub new_tets: Vec<TetId>,
     /// Tets of the old mesh that were removed, in rising order.
-    pub gone_tets: Vec<TetId>,
+    pub removed_tets: Vec<TetId>,
     /// Vertices of the new mesh that were inserted or moved, in rising order.
     pub changed_vertices: Vec<VertexId>,
 }
@@ -35,8 +35,8 @@ pub struct Extract {
 impl Extract {
     /// The id in the mesh of a tet of the complex.
     pub fn tet(&self, tet: TetId) -> TetId {
-        let n_kept = self.tet_to_old.len() - self.came.len();
-        let place = self.came.binary_search(&tet).map(|i| n_kept + i);
+        let n_kept = self.tet_to_old.len() - self.new_tets.len();
+        let place = self.new_tets.binary_search(&tet).map(|i| n_kept + i);
         TetId::new(place.or_else(|_| self.tet_to_old[..n_kept].binary_search(&tet.0)).unwrap_or_default())
     }
 
@@ -67,15 +67,15 @@ impl Complex {
         }
         for t in self.tets().filter(|&t| !self.is_original(t)) {
             let mut tet = self.vertices(t).map(new_id);
-            if self.mostly_turned {
+            if self.mostly_reversed {
                 tet.swap(2, 3);
             }
             tets.push(tet);
             extract.mesh.regions.push(self.region(t));
             extract.tet_to_old.push(NEW);
-            extract.came.push(t);
+            extract.new_tets.push(t);
         }
-        extract.gone_tets = (0..n_first).filter(|t| !is_kept(t)).map(TetId::new).collect();
+        extract.removed_tets = (0..n_first).filter(|t| !is_kept(t)).map(TetId::new).collect();
         self.extract_triangles(first, new_id, &mut extract);
         self.extract_lines(first, new_id, &mut extract);
         extract.mesh.fixed_vertices = first.fixed_vertices.iter().map(|&v| new_id(v)).collect();
@@ -86,22 +86,26 @@ impl Complex {
     /// Extracts the points without removed ones; returns the new id of each vertex, or an empty list if none
     /// was removed.
     fn extract_vertices(&self, n_first: usize, extract: &mut Extract) -> Vec<VertexId> {
-        let mut is_gone = vec![false; if self.free_vertices.is_empty() { 0 } else { self.points.len() }];
-        self.free_vertices.iter().for_each(|v| is_gone[v.index()] = true);
+        let mut is_removed = vec![false; if self.free_vertices.is_empty() { 0 } else { self.points.len() }];
+        self.free_vertices.iter().for_each(|v| is_removed[v.index()] = true);
         let mut old_to_new = Vec::new();
         let mut points: Vec<Point> = Vec::with_capacity(self.points.len() - self.free_vertices.len());
         for v in 0..self.points.len() {
             let new_id = VertexId::new(points.len());
-            if !is_gone.is_empty() {
+            if !is_removed.is_empty() {
                 old_to_new.push(new_id);
-                if is_gone[v] {
+                if is_removed[v] {
                     continue;
                 }
             }
             points.push(self.points[v]);
             // A vertex that moved is still the same vertex; one in the slot of a removed vertex is not.
-            extract.vertex_to_old.push(if v < n_first && !self.vertex_came[v] { v as u32 } else { NEW });
-            if self.vertex_is_new[v] {
+            extract.vertex_to_old.push(if v < n_first && !self.vertex_is_inserted[v] {
+                v as u32
+            } else {
+                NEW
+            });
+            if self.vertex_is_changed[v] {
                 extract.changed_vertices.push(new_id);
             }
         }
@@ -141,10 +145,11 @@ impl Complex {
             extract.mesh.patches.push(patch);
             extract.triangle_to_old.push(old);
         };
-        let mut is_gone = vec![false; if self.gone_triangles.is_empty() { 0 } else { first.triangles.len() }];
-        self.gone_triangles.iter().for_each(|&t| is_gone[t as usize] = true);
+        let mut is_removed =
+            vec![false; if self.removed_triangles.is_empty() { 0 } else { first.triangles.len() }];
+        self.removed_triangles.iter().for_each(|&t| is_removed[t as usize] = true);
         for (t, &vertices) in first.triangles.iter().enumerate() {
-            if !is_gone.get(t).copied().unwrap_or(false) {
+            if !is_removed.get(t).copied().unwrap_or(false) {
                 push(vertices, first.patches[t], t as u32);
             }
         }

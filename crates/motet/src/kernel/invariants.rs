@@ -36,7 +36,7 @@ impl Complex {
                 return Err(format!("tet {t} has the vertices {tet:?}"));
             }
             let measured = self.measure(self.corners(t));
-            if measured.to_bits() != self.quality(t).to_bits() && !self.is_spared(t) {
+            if measured.to_bits() != self.quality(t).to_bits() && !self.is_exempt(t) {
                 return Err(format!("tet {t} has the quality {measured}, not {}", self.quality(t)));
             }
         }
@@ -48,14 +48,14 @@ impl Complex {
             let other = self.across(half.tet(), half.facet());
             match self.behind(half.tet(), half.facet()) {
                 Behind::Tet(_) if other.is_none() => {
-                    return Err(format!("{half:?} has nothing behind it and is no wall"));
+                    return Err(format!("{half:?} has nothing behind it and is not a wall"));
                 }
                 Behind::Tet(_) if self.region(other.tet()) != self.region(half.tet()) => {
-                    return Err(format!("{half:?} lies between regions and is no wall"));
+                    return Err(format!("{half:?} lies between regions and is not a wall"));
                 }
                 Behind::Tet(_) => {}
                 Behind::Wall(wall) if !self.wall(wall).sides.contains(&half) => {
-                    return Err(format!("{half:?} is at {wall:?}, which does not know it"));
+                    return Err(format!("{half:?} is linked to {wall:?}, which does not list it"));
                 }
                 Behind::Wall(_) => {}
             }
@@ -67,7 +67,7 @@ impl Complex {
             }
             let ([a, b, c], theirs) = (self.facet(half), self.facet(other));
             if ![[a, c, b], [b, a, c], [c, b, a]].contains(&theirs) {
-                return Err(format!("{half:?} and {other:?} do not see one facet from two sides"));
+                return Err(format!("{half:?} and {other:?} do not see their facet from opposite sides"));
             }
         }
         for (id, wall) in self.walls() {
@@ -75,7 +75,7 @@ impl Complex {
                 side.is_none() || self.behind(side.tet(), side.facet()) == Behind::Wall(id)
             };
             if !wall.sides.iter().all(knows) {
-                return Err(format!("{id:?} has a side that is not at it"));
+                return Err(format!("{id:?} has a side that is not linked to it"));
             }
         }
         Ok(())
@@ -103,7 +103,7 @@ impl Complex {
         let edges = self.tets().flat_map(|t| EDGES.map(|edge| rising(edge.map(|i| self.vertices(t)[i]))));
         let edges: HashSet<[VertexId; 2]> = if lines.is_empty() { HashSet::new() } else { edges.collect() };
         match lines.iter().find(|(edge, _)| !edges.contains(edge)) {
-            Some((edge, _)) => Err(format!("the line {edge:?} is no edge of a tet")),
+            Some((edge, _)) => Err(format!("the line {edge:?} is not an edge of a tet")),
             None => Ok(()),
         }
     }
@@ -170,7 +170,7 @@ mod tests {
                 let (t, _) = facet(c, false);
                 c.regions[t.index()] += 7;
             }),
-            ("does not know it", |c| {
+            ("does not list it", |c| {
                 let (t, i) = facet(c, true);
                 c.links[t.index()][i] = Link::wall(WallId(c.walls.len() as u32 - 1));
                 let (u, k) = facet(c, false);
@@ -181,14 +181,14 @@ mod tests {
                 let k = (0..4).find(|&k| k != i && !c.is_wall(t, k)).unwrap();
                 c.links[t.index()].swap(i, k);
             }),
-            ("from two sides", |c| {
+            ("from opposite sides", |c| {
                 c.points.push([0.3; 3]);
                 let (t, i) = facet(c, false);
                 let k = (0..4).find(|&k| k != i).unwrap();
                 c.tets[t.index()][k] = VertexId::new(c.points.len() - 1);
                 c.qualities[t.index()].set(c.measure(c.corners(t)));
             }),
-            ("a side that is not at it", |c| {
+            ("a side that is not linked to it", |c| {
                 let (t, i) = facet(c, false);
                 c.walls.push(Wall {
                     sides: [HalfFacet::new(t, i), HalfFacet::NONE],
@@ -197,7 +197,7 @@ mod tests {
                     is_new: true,
                 });
             }),
-            ("is no edge of a tet", |c| {
+            ("is not an edge of a tet", |c| {
                 let line = c.lines()[0].1;
                 let far = |p: &[f64; 3]| c.points.iter().position(|q| q == p).map(VertexId::new).unwrap();
                 let edge = rising([far(&[0.0; 3]), far(&[1.0; 3])]);

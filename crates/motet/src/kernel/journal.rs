@@ -22,7 +22,7 @@ pub(super) enum Entry {
     FreedTet,
     FreedVertex,
     FreedWall,
-    GoneTriangle,
+    RemovedTriangle,
     Line([VertexId; 2], Option<Line>),
     RemovedLine,
 }
@@ -41,7 +41,7 @@ pub(super) struct VertexRecord {
     pub(super) point: Point,
     pub(super) hold: Hold,
     pub(super) is_new: bool,
-    pub(super) came: bool,
+    pub(super) is_inserted: bool,
 }
 
 /// The entries; they are recorded while the journal is open.

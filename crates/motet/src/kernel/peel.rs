@@ -42,9 +42,9 @@ impl Complex {
             Behind::Wall(wall) => self.across(tet, i).is_none() && self.wall(wall).triangle != NO_TRIANGLE,
             Behind::Tet(_) => false,
         };
-        let may_go =
+        let may_peel =
             !self.is_locked(tet) && !self.vertices(tet).iter().any(is_fixed) && !(0..4).any(is_labelled);
-        may_go.then_some(only)
+        may_peel.then_some(only)
     }
 
     fn peel_off(&mut self, tet: TetId, behind: HalfFacet) {

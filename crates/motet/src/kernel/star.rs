@@ -37,7 +37,7 @@ const OTHERS: [[[u8; 2]; 4]; 4] = [
 
 /// The local numbers of the vertices other than `i` and `j`; see [`OTHERS`].
 #[inline(always)]
-pub(super) fn others(i: usize, j: usize) -> [usize; 2] {
+pub(super) fn other_places(i: usize, j: usize) -> [usize; 2] {
     OTHERS[i][j].map(usize::from)
 }
 
@@ -45,14 +45,14 @@ impl Shell {
     /// Walks around the edge from `a` to `b`, beginning at `start`, a tet that has it.
     pub fn walk(&mut self, complex: &Complex, start: TetId, a: VertexId, b: VertexId) {
         self.clear();
-        if self.turn(complex, start, a, b) {
+        if self.walk_ring(complex, start, a, b) {
             return;
         }
         // The walk met the boundary: go back the other way to the first tet, and walk again from there.
         let first = Self::first(complex, start, a, b);
         self.clear();
         self.walls.push(0);
-        self.turn(complex, first, a, b);
+        self.walk_ring(complex, first, a, b);
     }
 
     fn clear(&mut self) {
@@ -63,11 +63,11 @@ impl Shell {
     }
 
     /// Walks around the edge until it is back at `start` (true) or at the boundary (false).
-    fn turn(&mut self, complex: &Complex, start: TetId, a: VertexId, b: VertexId) -> bool {
+    fn walk_ring(&mut self, complex: &Complex, start: TetId, a: VertexId, b: VertexId) -> bool {
         let mut tet = start;
         loop {
             let (i, j) = (complex.place(tet, a), complex.place(tet, b));
-            let [k, l] = others(i, j);
+            let [k, l] = other_places(i, j);
             let vertices = complex.vertices(tet);
             self.tets.push(tet);
             self.ring.push(vertices[k]);
@@ -94,11 +94,11 @@ impl Shell {
         }
     }
 
-    /// The tet of an open shell from which [`Self::turn`] visits all of them.
+    /// The tet of an open shell from which [`Self::walk_ring`] visits all of them.
     fn first(complex: &Complex, start: TetId, a: VertexId, b: VertexId) -> TetId {
         let mut tet = start;
         loop {
-            let [_, l] = others(complex.place(tet, a), complex.place(tet, b));
+            let [_, l] = other_places(complex.place(tet, a), complex.place(tet, b));
             let next = complex.across(tet, l);
             if next.is_none() {
                 return tet;
@@ -217,13 +217,13 @@ impl Marks {
 
 #[cfg(test)]
 mod tests {
-    use super::others;
+    use super::other_places;
 
     #[test]
     fn the_other_places_make_an_even_permutation() {
         for i in 0..4 {
             for j in (0..4).filter(|&j| j != i) {
-                let [k, l] = others(i, j);
+                let [k, l] = other_places(i, j);
                 let order = [i, j, k, l];
                 let swaps = (0..4).flat_map(|x| (0..x).map(move |y| (y, x)));
                 let n_inversions = swaps.filter(|&(y, x)| order[y] > order[x]).count();

@@ -46,8 +46,8 @@ impl Complex {
             Entry::Vertex(v, record) => {
                 self.points[v.index()] = record.point;
                 self.holds[v.index()] = record.hold;
-                self.vertex_is_new[v.index()] = record.is_new;
-                self.vertex_came[v.index()] = record.came;
+                self.vertex_is_changed[v.index()] = record.is_new;
+                self.vertex_is_inserted[v.index()] = record.is_inserted;
             }
             Entry::Wall(w, wall) => self.walls[w.index()] = wall,
             Entry::Link(t, i, link) => self.links[t.index()][usize::from(i)] = link,
@@ -62,8 +62,8 @@ impl Complex {
             Entry::VertexSlots(n) => {
                 self.points.truncate(n);
                 self.holds.truncate(n);
-                self.vertex_is_new.truncate(n);
-                self.vertex_came.truncate(n);
+                self.vertex_is_changed.truncate(n);
+                self.vertex_is_inserted.truncate(n);
                 self.vertex_to_tet.truncate(n);
                 self.vertex_to_n_tets.truncate(n);
             }
@@ -74,7 +74,7 @@ impl Complex {
             Entry::FreedTet => drop(self.free_tets.pop()),
             Entry::FreedVertex => drop(self.free_vertices.pop()),
             Entry::FreedWall => drop(self.free_walls.pop()),
-            Entry::GoneTriangle => drop(self.gone_triangles.pop()),
+            Entry::RemovedTriangle => drop(self.removed_triangles.pop()),
             Entry::Line(edge, line) => drop(self.lines.set(edge, line)),
             Entry::RemovedLine => drop(self.lines.removed.pop()),
         }

@@ -4,7 +4,7 @@ use crate::base::{Error, Result, Threads, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::distance;
 use crate::mesh::{TetMesh, TetPart};
-use crate::moving::handle::MovingMesh;
+use crate::moving::moving_mesh::MovingMesh;
 use crate::moving::step::Change;
 use crate::moving::wall::NO_NODE;
 use crate::refine::sizes::SizeLimits;
@@ -32,9 +32,8 @@ impl MovingMesh {
     /// everything is as before the call.
     pub fn coarsen(&mut self, smallest: f64, threads: &Threads) -> Result<Option<Change>> {
         if smallest.is_nan() || smallest < 0.0 {
-            return Err(
-                Error::options(format!("a smallest length of {smallest}")).remedy("give one from 0 on")
-            );
+            return Err(Error::options(format!("the smallest length must be 0 or more; got {smallest}"))
+                .remedy("give a length of 0 or more"));
         }
         let gaps = self.gaps_here(threads)?;
         let Self { now, options, wall, .. } = &*self;
@@ -49,12 +48,12 @@ impl MovingMesh {
             return Ok(None);
         }
         let shape = now.tets.shape(&now.mesh.points, options.limit(), threads);
-        let nodes = (0..).zip(&now.known.node).filter(|(_, node)| **node != NO_NODE);
+        let nodes = (0..).zip(&now.records.node).filter(|(_, node)| **node != NO_NODE);
         part.mesh.fixed_vertices.extend(nodes.map(|(v, _)| VertexId(v)));
         part.mesh.fixed_vertices.sort_unstable();
         part.mesh.fixed_vertices.dedup();
         let repair = options.repair.clone().unwrap_or_default();
-        let asked = remesh::Options {
+        let remesh_options = remesh::Options {
             goal: Goal::Coarsen,
             sizes: Some(Sizes::Vertices(sizes)),
             surface: SurfaceRule::Flat { distance: None },
@@ -65,8 +64,8 @@ impl MovingMesh {
             ..repair
         };
         let mut given = now.mesh.clone();
-        let rules = now.put_known(&mut given, &now.known.before, &options.rules);
-        let outcome = remesh_part(&given, &part, &asked, &rules, threads)?;
+        let rules = now.put_records(&mut given, &now.records.before, &options.rules);
+        let outcome = remesh_part(&given, &part, &remesh_options, &rules, threads)?;
         if outcome.report.kept == now.tets.len() && outcome.mesh.points == given.points {
             return Ok(None);
         }

@@ -9,7 +9,7 @@ use crate::mesh::{CellKind, Field, Labels, Mesh, Values};
 
 /// Moves the vertices of a mesh to `points`. The cell arrays named in `contents` are densities of what stays
 /// in its cell.
-pub(super) fn go_to(mesh: &mut Mesh, points: &[Point], contents: &[String]) {
+pub(super) fn move_points(mesh: &mut Mesh, points: &[Point], contents: &[String]) {
     for field in mesh.cell_data.iter_mut().filter(|field| contents.contains(&field.name)) {
         let n = field.components;
         for (cell, corners) in mesh.cells.tets() {
@@ -33,7 +33,7 @@ pub(super) fn go_to(mesh: &mut Mesh, points: &[Point], contents: &[String]) {
 /// overlap it, in proportion to the overlap. If vertices moved between a division and its reversal, a
 /// restored tet does not have quite the volume of its parts, and a mean over what it overlaps would lose
 /// some.
-pub(super) fn hand_over(before: &Mesh, after: &mut Mesh, history: &History, contents: &[String]) {
+pub(super) fn pass_contents(before: &Mesh, after: &mut Mesh, history: &History, contents: &[String]) {
     let fields: Vec<&Field> = contents.iter().filter_map(|name| before.cell_field(name)).collect();
     if fields.is_empty() {
         return;
@@ -94,16 +94,16 @@ impl<'a> Heirs<'a> {
         }
         let mut lost: Vec<CellId> = before.cells.tets().map(|(cell, _)| cell).collect();
         lost.retain(|old| !is_kept[old.index()] && taken[old.index()] == 0.0);
-        let of_lost = if lost.is_empty() { Vec::new() } else { of_lost(before, &lost, after, &rows) };
+        let of_lost = if lost.is_empty() { Vec::new() } else { heirs_of_lost(before, &lost, after, &rows) };
         Self { rows, taken, of_lost }
     }
 }
 
-fn of_lost(
+fn heirs_of_lost(
     before: &Mesh,
     lost: &[CellId],
     after: &Mesh,
-    came: &[(CellId, Row<'_, CellId>)],
+    new_tets: &[(CellId, Row<'_, CellId>)],
 ) -> Vec<(CellId, CellId, f64)> {
     let [was, is] = [before, after].map(Mesh::regions);
     let region =
@@ -111,7 +111,7 @@ fn of_lost(
     let heir = |&old: &CellId| {
         let (place, of_old) = (centre(before, old), region(&was, old));
         let far = |cell: &CellId| distance(centre(after, *cell), place);
-        let alike = came.iter().map(|(cell, _)| *cell).filter(|cell| region(&is, *cell) == of_old);
+        let alike = new_tets.iter().map(|(cell, _)| *cell).filter(|cell| region(&is, *cell) == of_old);
         let heir = alike.min_by(|x, y| far(x).total_cmp(&far(y)))?;
         Some((old, heir, volume(after, heir)))
     };

@@ -2,10 +2,10 @@
 
 use crate::base::{Id, Result, Threads, VertexId};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
-use crate::moving::first::{Count, FirstMesh, Returns};
-use crate::moving::now::{InFirst, Known, LeftBad};
+use crate::moving::current::{InFirst, LeftBad, Records};
+use crate::moving::first_mesh::{Count, FirstMesh, Returns};
 use crate::moving::options::Options;
-use crate::moving::state::{Taken, no_state};
+use crate::moving::state::{StateArrays, damaged_state};
 use crate::moving::wall::NO_NODE;
 
 /// Arrays on the vertices and cells of the mesh: the id of each in the first one.
@@ -28,7 +28,7 @@ const OF_CELLS: &str = "moving:first_mesh_cell:";
 impl Returns {
     /// Stores everything in the mesh of a saved state; nothing if the first mesh may not be put back and no
     /// mesh ever was.
-    pub(super) fn put_on(&self, file: &mut Mesh, in_first: &InFirst) {
+    pub(super) fn store_in(&self, file: &mut Mesh, in_first: &InFirst) {
         let Count { n_changed, has_changed, is_away, is_unsettled } = self.count;
         let count = [n_changed, u32::from(has_changed), u32::from(is_away), u32::from(is_unsettled)];
         let Some(first) = &self.first else {
@@ -40,16 +40,16 @@ impl Returns {
         file.field_data.push(Field::scalars(COUNT, count.to_vec()));
         file.set_point_field(Field::scalars(VERTEX, numbers(&in_first.vertices)));
         file.set_cell_field(Field::scalars(CELL, numbers(&in_first.cells)));
-        let FirstMesh { mesh, known, left, .. } = first.as_ref();
+        let FirstMesh { mesh, records, left, .. } = first.as_ref();
         let kinds: Vec<u8> = mesh.cells.kinds().iter().map(|kind| kind.0).collect();
         file.field_data.extend([
             Field::vectors(POINTS, &mesh.points),
             Field::scalars(KINDS, kinds),
             Field::scalars(OFFSETS, mesh.cells.connectivity().offsets().to_vec()),
             Field::scalars(VERTICES, numbers(mesh.cells.connectivity().items())),
-            Field::vectors(FIRST, &known.first),
-            Field::scalars(NODE, known.node.clone()),
-            Field::scalars(FIRST_EAS, known.first_eas.clone()),
+            Field::vectors(FIRST, &records.first),
+            Field::scalars(NODE, records.node.clone()),
+            Field::scalars(FIRST_EAS, records.first_eas.clone()),
         ]);
         file.field_data.extend(LeftBad::to_fields(left, LEFT));
         for (prefix, fields) in [(OF_POINTS, &mesh.point_data), (OF_CELLS, &mesh.cell_data)] {
@@ -59,64 +59,64 @@ impl Returns {
     }
 
     /// Restores everything from the arrays of a saved state with this `mesh`; the second result is
-    /// [`Known::in_first`].
-    pub(super) fn taken(
-        taken: &Taken,
+    /// [`Records::in_first`].
+    pub(super) fn from_state(
+        arrays: &StateArrays,
         mesh: &Mesh,
         n_nodes: usize,
         options: &Options,
         threads: &Threads,
     ) -> Result<(Self, InFirst)> {
-        if !taken.has(COUNT) {
+        if !arrays.has(COUNT) {
             return Ok((Self::default(), InFirst::default()));
         }
-        let &[n_changed, has_changed, is_away, is_unsettled] = taken.ids(COUNT)?.as_slice() else {
-            return Err(no_state(COUNT));
+        let &[n_changed, has_changed, is_away, is_unsettled] = arrays.ids(COUNT)?.as_slice() else {
+            return Err(damaged_state(COUNT));
         };
         let [has_changed, is_away, is_unsettled] = [has_changed, is_away, is_unsettled].map(|flag| flag != 0);
         let count = Count { n_changed, has_changed, is_away, is_unsettled };
-        if !taken.has(POINTS) {
+        if !arrays.has(POINTS) {
             return Ok((Self { first: None, count }, InFirst::default()));
         }
-        let (first, known) = first_mesh(taken, mesh)?;
-        check_known(&known, &first, n_nodes)?;
+        let (first, records) = first_mesh(arrays, mesh)?;
+        check_records(&records, &first, n_nodes)?;
         let in_first = InFirst {
-            vertices: ids_of(taken, VERTEX, mesh.points.len(), first.points.len())?,
-            cells: ids_of(taken, CELL, mesh.cells.len(), first.cells.len())?,
+            vertices: ids_of(arrays, VERTEX, mesh.points.len(), first.points.len())?,
+            cells: ids_of(arrays, CELL, mesh.cells.len(), first.cells.len())?,
         };
-        let left = taken.left(LEFT, first.cells.len())?;
-        let first = FirstMesh::from_parts(first, known, left, options, threads);
+        let left = arrays.left(LEFT, first.cells.len())?;
+        let first = FirstMesh::from_parts(first, records, left, options, threads);
         Ok((Self { first: Some(Box::new(first)), count }, in_first))
     }
 }
 
-fn first_mesh(taken: &Taken, mesh: &Mesh) -> Result<(Mesh, Known)> {
-    let kinds = taken.bytes(KINDS)?.into_iter().map(CellKind).collect();
-    let vertices = taken.ids(VERTICES)?.into_iter().map(VertexId).collect();
-    let cells = Cells::from_parts(kinds, taken.ids(OFFSETS)?, vertices)?;
-    let mut first = Mesh::new(taken.vectors(POINTS)?, cells);
+fn first_mesh(arrays: &StateArrays, mesh: &Mesh) -> Result<(Mesh, Records)> {
+    let kinds = arrays.bytes(KINDS)?.into_iter().map(CellKind).collect();
+    let vertices = arrays.ids(VERTICES)?.into_iter().map(VertexId).collect();
+    let cells = Cells::from_parts(kinds, arrays.ids(OFFSETS)?, vertices)?;
+    let mut first = Mesh::new(arrays.vectors(POINTS)?, cells);
     first.label_names = mesh.label_names.clone();
-    (first.point_data, first.cell_data) = (taken.named(OF_POINTS), taken.named(OF_CELLS));
+    (first.point_data, first.cell_data) = (arrays.named(OF_POINTS), arrays.named(OF_CELLS));
     first.validate()?;
-    let known = Known {
-        first: taken.vectors(FIRST)?,
-        node: taken.ids(NODE)?,
-        first_eas: taken.floats(FIRST_EAS)?,
+    let records = Records {
+        first: arrays.vectors(FIRST)?,
+        node: arrays.ids(NODE)?,
+        first_eas: arrays.floats(FIRST_EAS)?,
         in_first: InFirst::same(&first),
-        ..Known::default()
+        ..Records::default()
     };
-    Ok((first, known))
+    Ok((first, records))
 }
 
-fn check_known(known: &Known, first: &Mesh, n_nodes: usize) -> Result<()> {
+fn check_records(records: &Records, first: &Mesh, n_nodes: usize) -> Result<()> {
     let n_points = first.points.len();
     let is_node = |node: &u32| *node == NO_NODE || (*node as usize) < n_nodes;
     let all = [
-        (FIRST, known.first.len() == n_points),
-        (NODE, known.node.len() == n_points && known.node.iter().all(is_node)),
-        (FIRST_EAS, known.first_eas.len() == first.cells.len()),
+        (FIRST, records.first.len() == n_points),
+        (NODE, records.node.len() == n_points && records.node.iter().all(is_node)),
+        (FIRST_EAS, records.first_eas.len() == first.cells.len()),
     ];
-    all.iter().find(|(_, is_right)| !is_right).map_or(Ok(()), |(name, _)| Err(no_state(name)))
+    all.iter().find(|(_, is_right)| !is_right).map_or(Ok(()), |(name, _)| Err(damaged_state(name)))
 }
 
 fn numbers<I: Id>(ids: &[I]) -> Vec<u32> {
@@ -124,17 +124,17 @@ fn numbers<I: Id>(ids: &[I]) -> Vec<u32> {
 }
 
 /// An id in the first mesh, or none, for each of `n` entities; fails if an id occurs twice.
-fn ids_of<I: Id>(taken: &Taken, name: &str, n: usize, n_first: usize) -> Result<Vec<I>> {
-    let numbers = taken.ids(name)?;
-    let mut is_taken = vec![false; n_first];
+fn ids_of<I: Id>(arrays: &StateArrays, name: &str, n: usize, n_first: usize) -> Result<Vec<I>> {
+    let numbers = arrays.ids(name)?;
+    let mut is_used = vec![false; n_first];
     let mut is_free = |number: u32| {
         number == u32::MAX
-            || is_taken.get_mut(number as usize).is_some_and(|taken| !std::mem::replace(taken, true))
+            || is_used.get_mut(number as usize).is_some_and(|used| !std::mem::replace(used, true))
     };
     match numbers.len() == n && numbers.iter().all(|number| is_free(*number)) {
         true => {
             Ok(numbers.into_iter().map(|i| if i == u32::MAX { I::NONE } else { I::of(i as usize) }).collect())
         }
-        false => Err(no_state(name)),
+        false => Err(damaged_state(name)),
     }
 }

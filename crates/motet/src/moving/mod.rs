@@ -3,10 +3,12 @@
 //! | file | what it does |
 //! |---|---|
 //! | `options` | options: how the inside follows, what is repaired, what is watched; patches by label, since ids do not last |
-//! | `handle` | [`MovingMesh`]: made once, then [`advance`](MovingMesh::advance), [`refine`](MovingMesh::refine), arrays, velocity, history |
-//! | `legs` | a step, in as many parts as it takes: move while tets stay well shaped, repair, move on |
-//! | `first` | the first mesh, restored where walls return and the mesh does not settle by itself |
-//! | `now` | the mesh between two changes: its positions, what moves it, where each vertex was at first |
+//! | `moving_mesh` | [`MovingMesh`]: made once, then [`advance`](MovingMesh::advance), [`refine`](MovingMesh::refine), arrays, velocity, history |
+//! | `substeps` | a step, in as many parts as it takes: move while tets stay well shaped, repair, move on |
+//! | `step_run` | the state of one step in progress, and its result |
+//! | `first_mesh` | the first mesh, and when to restore it: where walls return and the mesh does not settle by itself |
+//! | `restore` | the first mesh put back |
+//! | `current` | the mesh between two changes: its positions, what moves it, where each vertex was at first |
 //! | `coarsen` | divisions undone by edge lengths, where the record of what was divided is lost |
 //! | `contents` | cell arrays whose contents stay in their cells while these move, and are passed on where they change |
 //! | `shapes` | which tets are bad, and how bad the worst is |
@@ -16,7 +18,7 @@
 //! | `swept` | the volume that each facet sweeps in a step, exact to rounding: needed for flow on a moving mesh |
 //! | `script` | the motion of walls in time, given by formulas or by frames |
 //! | `step` | the report of a step |
-//! | `described` | options as text: a saved run continues with the options it was saved with |
+//! | `options_text` | options as text: a saved run continues with the options it was saved with |
 //! | `first_state` | the first mesh as arrays of a saved state |
 //! | `state` | everything in a file, and back: a run that was stopped continues with the same bytes |
 //!
@@ -62,24 +64,26 @@
 
 mod coarsen;
 mod contents;
-mod described;
-mod first;
+mod current;
+mod first_mesh;
 mod first_state;
-mod handle;
 mod hold;
-mod legs;
-mod now;
+mod moving_mesh;
 mod options;
+mod options_text;
+mod restore;
 mod script;
 mod shapes;
 mod sizes;
 mod state;
 mod step;
+mod step_run;
+mod substeps;
 mod swept;
 mod wall;
 mod watch;
 
-pub use handle::{GAP, MovingMesh};
+pub use moving_mesh::{GAP, MovingMesh};
 pub use options::{Contents, Motion, Options, Watching};
 pub use script::{InTime, Script, normals};
 pub use step::{Change, Closest, Gaps, InvertedAtStart, Seconds, Step, Stopped, Why, WorstTet};

@@ -86,7 +86,7 @@ impl Options {
             [("margin", self.margin), ("floor", self.floor), ("improve_below", self.improve_below)]
         {
             if !(0.0..=1.0).contains(&value) {
-                let what = format!("{what} is {value}, expected a number in [0, 1]");
+                let what = format!("{what} must be in [0, 1]; got {value}");
                 return Err(Error::options(what).remedy("leave it out"));
             }
         }
@@ -182,13 +182,17 @@ impl Watching {
     fn check(&self) -> Result<()> {
         self.options.check()?;
         if let Some(hold) = self.hold.filter(|hold| !(*hold >= 0.0 && *hold <= LARGEST)) {
-            return Err(Error::options(format!("walls held at a distance of {hold}"))
-                .remedy("give a length from 0 on, or leave it out"));
+            return Err(Error::options(format!(
+                "the distance at which walls are kept apart must be 0 or more; got {hold}"
+            ))
+            .remedy("give a length of 0 or more, or leave it out"));
         }
         match self.horizon.filter(|horizon| horizon.is_nan() || *horizon <= 0.0) {
             None => Ok(()),
-            Some(horizon) => Err(Error::options(format!("a horizon of {horizon}"))
-                .remedy("give a time above 0, or leave it out")),
+            Some(horizon) => {
+                Err(Error::options(format!("the horizon must be a time above 0; got {horizon}"))
+                    .remedy("give a time above 0, or leave it out"))
+            }
         }
     }
 }

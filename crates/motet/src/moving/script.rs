@@ -34,9 +34,9 @@ impl InTime {
         match table.len() > 1 && is_finite && is_rising && is_within {
             true => Ok(()),
             false => Err(Error::options(
-                "a course in time that is no table of two entries or more, phases rising from 0 to 1",
+                "a course in time must be a table of two or more entries, with phases rising within 0 to 1",
             )
-            .remedy("give pairs of phase and part, such as [[0, 0], [0.3, 1], [1, 0]]")),
+            .remedy("give pairs of phase and fraction, such as [[0, 0], [0.3, 1], [1, 0]]")),
         }
     }
 
@@ -82,7 +82,7 @@ pub struct Script {
     driven: Vec<VertexId>,
     places: Vec<Point>,
     /// The part that each vertex follows, and its index in it.
-    obeys: Vec<Option<(usize, usize)>>,
+    part_of: Vec<Option<(usize, usize)>>,
     parts: Vec<Part>,
     /// The driven vertices that the last part names, and the index of each in it.
     last_rows: Vec<(usize, usize)>,
@@ -94,7 +94,7 @@ enum Part {
     /// A motion of space.
     Follow(Prescribed, InTime),
     /// A displacement for each vertex.
-    Go(Vec<Point>, InTime),
+    Displace(Vec<Point>, InTime),
     /// Displacements for each frame, evenly spaced over a period, and whether the first follows the last.
     Frames(Vec<Vec<Point>>, bool),
 }
@@ -106,7 +106,7 @@ impl Script {
         Self {
             driven: driven.to_vec(),
             places: driven.iter().map(|v| points[v.index()]).collect(),
-            obeys: vec![None; driven.len()],
+            part_of: vec![None; driven.len()],
             parts: Vec::new(),
             last_rows: Vec::new(),
         }
@@ -119,7 +119,7 @@ impl Script {
 
     /// Lets these vertices stay; returns how many of them were not named before, and so obey.
     pub fn hold(&mut self, vertices: &[VertexId]) -> usize {
-        self.give(vertices, Part::Stay)
+        self.assign(vertices, Part::Stay)
     }
 
     /// Lets these vertices follow a motion of space; returns how many of them were not named before.
@@ -129,7 +129,7 @@ impl Script {
     pub fn follow(&mut self, vertices: &[VertexId], motion: Prescribed, in_time: InTime) -> Result<usize> {
         motion.check()?;
         in_time.check()?;
-        Ok(self.give(vertices, Part::Follow(motion, in_time)))
+        Ok(self.assign(vertices, Part::Follow(motion, in_time)))
     }
 
     /// Lets each of these vertices move by its own displacement in `by`, scaled by `in_time`; returns how
@@ -140,7 +140,7 @@ impl Script {
     pub fn go(&mut self, vertices: &[VertexId], by: Vec<Point>, in_time: InTime) -> Result<usize> {
         in_time.check()?;
         check_rows(&by, vertices)?;
-        Ok(self.give(vertices, Part::Go(by, in_time)))
+        Ok(self.assign(vertices, Part::Displace(by, in_time)))
     }
 
     /// Lets these vertices follow frames, which are evenly spaced over a period, with linear interpolation in
@@ -155,20 +155,20 @@ impl Script {
         is_periodic: bool,
     ) -> Result<usize> {
         if frames.is_empty() {
-            return Err(Error::input("a motion by frames without a frame"));
+            return Err(Error::input("a motion by frames needs at least one frame"));
         }
         frames.iter().try_for_each(|frame| check_rows(frame, vertices))?;
-        Ok(self.give(vertices, Part::Frames(frames, is_periodic)))
+        Ok(self.assign(vertices, Part::Frames(frames, is_periodic)))
     }
 
-    fn give(&mut self, vertices: &[VertexId], part: Part) -> usize {
+    fn assign(&mut self, vertices: &[VertexId], part: Part) -> usize {
         let mut n = 0;
         self.last_rows.clear();
         for (row, v) in vertices.iter().enumerate() {
             let Ok(i) = self.driven.binary_search(v) else { continue };
             self.last_rows.push((i, row));
-            if self.obeys[i].is_none() {
-                self.obeys[i] = Some((self.parts.len(), row));
+            if self.part_of[i].is_none() {
+                self.part_of[i] = Some((self.parts.len(), row));
                 n += 1;
             }
         }
@@ -190,7 +190,7 @@ impl Script {
                 norm(sub(a, b)) > ROUNDING * (norm(a) + norm(b) + norm(place))
             })
         };
-        let contradicted = |(&i, &row): (&usize, &usize)| match self.obeys[i] {
+        let contradicted = |(&i, &row): (&usize, &usize)| match self.part_of[i] {
             Some((earlier, _)) if earlier == last || matches!(self.parts[earlier], Part::Stay) => None,
             Some(earlier) => differs(i, row, earlier).then_some(self.driven[i]),
             None => None,
@@ -200,11 +200,11 @@ impl Script {
 
     /// The displacement of each driven vertex at a phase, which is time over period.
     pub fn at(&self, phase: f64) -> Vec<Point> {
-        let of = |(&place, obeys): (&Point, &Option<(usize, usize)>)| match obeys {
+        let of = |(&place, part_of): (&Point, &Option<(usize, usize)>)| match part_of {
             None => [0.0; 3],
             Some((part, row)) => self.parts[*part].displacement(place, *row, phase),
         };
-        self.places.iter().zip(&self.obeys).map(of).collect()
+        self.places.iter().zip(&self.part_of).map(of).collect()
     }
 }
 
@@ -213,7 +213,7 @@ impl Part {
         match self {
             Self::Stay => [0.0; 3],
             Self::Follow(motion, in_time) => motion.displacement(place, in_time.at(phase)),
-            Self::Go(by, in_time) => scale(by[row], in_time.at(phase)),
+            Self::Displace(by, in_time) => scale(by[row], in_time.at(phase)),
             Self::Frames(frames, is_periodic) => {
                 let n = frames.len();
                 // A phase of k / n is frame k, whatever its rounding error.
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_met_to_the_bit_and_the_first_told_is_obeyed() {
+    fn frames_are_met_to_the_bit_and_the_first_part_named_is_followed() {
         let driven = [2, 4, 5].map(VertexId);
         let points = vec![[1.0; 3]; 6];
         let mut script = Script::still(&driven, &points);

@@ -14,7 +14,7 @@ use crate::geometry::rigid::Rigid;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::distance_squared;
 use crate::mesh::{Mesh, mean_edge_lengths};
-use crate::moving::now::Now;
+use crate::moving::current::Current;
 use crate::moving::options::Options;
 use crate::moving::wall::{NO_NODE, Wall, wall_triangles};
 use crate::spatial::{BoxTree, NearestTriangle};
@@ -129,7 +129,7 @@ impl SizeMap {
     }
 
     /// The sizes of a mesh as it is, wherever its walls are.
-    pub(super) fn anew(now: &Now, options: &Options, threads: &Threads) -> Self {
+    pub(super) fn anew(now: &Current, options: &Options, threads: &Threads) -> Self {
         let places = pulled_back(now, &now.mesh.points, options, threads);
         Self::new(places.into_iter().map(|(_, place)| place).collect(), lengths(&now.mesh))
     }
@@ -137,7 +137,7 @@ impl SizeMap {
     /// The size at each vertex of a mesh whose vertices are at `points`; 0 if no size is known anywhere.
     pub(super) fn at_vertices(
         &self,
-        (now, points): (&Now, &[Point]),
+        (now, points): (&Current, &[Point]),
         wall: &Wall,
         options: &Options,
         threads: &Threads,
@@ -150,8 +150,8 @@ impl SizeMap {
 
 /// Where each vertex of a mesh was when the walls were at their first position, as if it were fixed to the
 /// wall triangle nearest to it; with a node of the part of the walls it belongs to, or [`NO_NODE`].
-fn pulled_back(now: &Now, points: &[Point], options: &Options, threads: &Threads) -> Vec<(u32, Point)> {
-    let first = &now.known.first;
+fn pulled_back(now: &Current, points: &[Point], options: &Options, threads: &Threads) -> Vec<(u32, Point)> {
+    let first = &now.records.first;
     let mut is_driven = vec![false; points.len()];
     now.mover.boundary().iter().for_each(|v| is_driven[v.index()] = true);
     let has_area = |t: &[VertexId; 3]| area_vector(t.map(|v| points[v.index()])) != [0.0; 3];
@@ -161,7 +161,7 @@ fn pulled_back(now: &Now, points: &[Point], options: &Options, threads: &Threads
     sets.join_all(triangles.iter().map(|t| t.as_slice()));
     let roots = sets.roots();
     let mut node = vec![NO_NODE; points.len()];
-    for (root, its) in roots.iter().zip(&now.known.node).filter(|(_, its)| **its != NO_NODE) {
+    for (root, its) in roots.iter().zip(&now.records.node).filter(|(_, its)| **its != NO_NODE) {
         node[*root as usize] = *its;
     }
     let back = |t: &[VertexId; 3]| Rigid::fit(&t.map(|v| (points[v.index()], first[v.index()])));

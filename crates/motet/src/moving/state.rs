@@ -11,11 +11,11 @@ use crate::base::{CellId, Error, Point, Result, Threads, VertexId};
 use crate::io::{self, Compression, WriteOptions};
 use crate::mesh::{Field, Mesh, Values};
 use crate::motion::Mover;
-use crate::moving::described::differences;
-use crate::moving::first::Returns;
-use crate::moving::handle::{Clock, MovingMesh};
-use crate::moving::now::{BEFORE, FIRST, FIRST_EAS, Known, LeftBad, Now, REST};
+use crate::moving::current::{BEFORE, Current, FIRST, FIRST_EAS, LeftBad, REST, Records};
+use crate::moving::first_mesh::Returns;
+use crate::moving::moving_mesh::{Clock, MovingMesh};
 use crate::moving::options::Options;
+use crate::moving::options_text::differences;
 use crate::moving::sizes::{SizeMap, Sizes};
 use crate::moving::wall::Wall;
 
@@ -44,19 +44,19 @@ impl MovingMesh {
     /// # Errors
     /// As for [`io::write`].
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        let Now { mesh, mover, known, left, .. } = &self.now;
+        let Current { mesh, mover, records, left, .. } = &self.now;
         let clock = self.clock;
         let n_free = clock.n_free.map_or(f64::NAN, |n| n as f64);
         let mut file = mesh.clone();
-        for (name, values) in [(FIRST, &known.first), (BEFORE, &known.before)] {
+        for (name, values) in [(FIRST, &records.first), (BEFORE, &records.before)] {
             file.set_point_field(Field::vectors(name, values));
         }
-        if let Some(rest) = &known.rest {
+        if let Some(rest) = &records.rest {
             file.set_point_field(Field::vectors(REST, rest));
         }
         file.set_point_field(Field::vectors(REFERENCE, mover.reference()));
-        file.set_point_field(Field::scalars(NODE, known.node.clone()));
-        file.set_cell_field(Field::scalars(FIRST_EAS, known.first_eas.clone()));
+        file.set_point_field(Field::scalars(NODE, records.node.clone()));
+        file.set_cell_field(Field::scalars(FIRST_EAS, records.first_eas.clone()));
         let triangles: Vec<u32> = self.wall.triangles.as_flattened().iter().map(|v| v.0).collect();
         file.field_data.extend([
             Field::vectors(PLACES, &self.wall.places),
@@ -64,10 +64,10 @@ impl MovingMesh {
             Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, n_free]),
         ]);
         file.field_data.extend(LeftBad::to_fields(left, LEFT));
-        self.sizes.put_on(&mut file);
-        self.returns.put_on(&mut file, &known.in_first);
+        self.sizes.store_in(&mut file);
+        self.returns.store_in(&mut file, &records.in_first);
         file.field_data.extend([
-            text(OPTIONS, &self.options.described()?),
+            text(OPTIONS, &self.options.to_json()?),
             text(POINT_ARRAYS, &names(&mesh.point_data)),
             text(CELL_ARRAYS, &names(&mesh.cell_data)),
         ]);
@@ -91,61 +91,61 @@ impl MovingMesh {
     pub fn load(path: impl AsRef<Path>, options: Options, threads: &Threads) -> Result<Self> {
         let path = path.as_ref();
         let file = io::read(path)?;
-        Self::taken(file, options, threads).map_err(|e| match e.file() {
+        Self::from_state(file, options, threads).map_err(|e| match e.file() {
             Some(_) => e,
             None => e.in_file(path),
         })
     }
 
-    fn taken(mut mesh: Mesh, options: Options, threads: &Threads) -> Result<Self> {
-        let mut taken = Taken { fields: Vec::new() };
+    fn from_state(mut mesh: Mesh, options: Options, threads: &Threads) -> Result<Self> {
+        let mut arrays = StateArrays { fields: Vec::new() };
         for list in [&mut mesh.point_data, &mut mesh.cell_data, &mut mesh.field_data] {
             let is_ours = |field: &mut Field| field.name.starts_with(PREFIX);
-            taken.fields.extend(list.extract_if(.., is_ours));
+            arrays.fields.extend(list.extract_if(.., is_ours));
         }
-        let differ = differences(&taken.text(OPTIONS)?, &options.described()?);
+        let differ = differences(&arrays.text(OPTIONS)?, &options.to_json()?);
         if !differ.is_empty() {
-            return Err(Error::options(format!("was saved with other options: {}", differ.join("; ")))
-                .remedy("give the options that it was saved with, or start anew from its mesh"));
+            return Err(Error::options(format!("was saved with different options: {}", differ.join("; ")))
+                .remedy("use the options it was saved with, or start a new run from its mesh"));
         }
         // Writers add arrays of labels if the mesh has them under other names.
-        arrange(&mut mesh.point_data, &taken.text(POINT_ARRAYS)?)?;
-        arrange(&mut mesh.cell_data, &taken.text(CELL_ARRAYS)?)?;
-        let clock = taken.floats(CLOCK)?;
-        let &[step, time, dt, n_free] = clock.as_slice() else { return Err(no_state(CLOCK)) };
+        arrange(&mut mesh.point_data, &arrays.text(POINT_ARRAYS)?)?;
+        arrange(&mut mesh.cell_data, &arrays.text(CELL_ARRAYS)?)?;
+        let clock = arrays.floats(CLOCK)?;
+        let &[step, time, dt, n_free] = clock.as_slice() else { return Err(damaged_state(CLOCK)) };
         let clock =
             Clock { step: step as usize, time, dt, n_free: (n_free >= 0.0).then_some(n_free as usize) };
         let wall = Wall {
-            places: taken.vectors(PLACES)?,
-            triangles: triangles(&taken.ids(TRIANGLES)?)?,
+            places: arrays.vectors(PLACES)?,
+            triangles: triangles(&arrays.ids(TRIANGLES)?)?,
             body: match options.watch.as_ref().and_then(|watch| watch.hold) {
-                Some(_) => taken.ids(BODY)?,
+                Some(_) => arrays.ids(BODY)?,
                 None => Vec::new(),
             },
         };
-        let sizes = Sizes::taken(&taken)?;
-        let (returns, in_first) = Returns::taken(&taken, &mesh, wall.places.len(), &options, threads)?;
-        let known = Known {
-            first: taken.vectors(FIRST)?,
-            rest: options.returns.then(|| taken.vectors(REST)).transpose()?,
-            before: taken.vectors(BEFORE)?,
-            node: taken.ids(NODE)?,
-            first_eas: taken.floats(FIRST_EAS)?,
+        let sizes = Sizes::from_state(&arrays)?;
+        let (returns, in_first) = Returns::from_state(&arrays, &mesh, wall.places.len(), &options, threads)?;
+        let records = Records {
+            first: arrays.vectors(FIRST)?,
+            rest: options.returns.then(|| arrays.vectors(REST)).transpose()?,
+            before: arrays.vectors(BEFORE)?,
+            node: arrays.ids(NODE)?,
+            first_eas: arrays.floats(FIRST_EAS)?,
             in_first,
         };
-        check(&wall, &known, [mesh.points.len(), mesh.cells.len()])?;
-        let left = taken.left(LEFT, mesh.cells.len())?;
-        let here = std::mem::replace(&mut mesh.points, taken.vectors(REFERENCE)?);
+        check(&wall, &records, [mesh.points.len(), mesh.cells.len()])?;
+        let left = arrays.left(LEFT, mesh.cells.len())?;
+        let here = std::mem::replace(&mut mesh.points, arrays.vectors(REFERENCE)?);
         let mover = Mover::new(&mesh, &options.motion.of(&mesh), threads)?;
         mesh.points = here;
-        let now = Now::of(mesh, mover, known, left, &wall, threads)?;
+        let now = Current::of(mesh, mover, records, left, &wall, threads)?;
         let forgotten = Some(clock.step);
         let mut moving = Self::of(options, wall, now, sizes, clock, threads)?;
         (moving.forgotten, moving.returns) = (forgotten, returns);
         if let Some(hold) = &mut moving.hold {
-            hold.last = taken.vectors(HELD)?;
+            hold.last = arrays.vectors(HELD)?;
             if hold.last.len() != moving.wall.places.len() {
-                return Err(no_state(HELD));
+                return Err(damaged_state(HELD));
             }
         }
         Ok(moving)
@@ -153,11 +153,11 @@ impl MovingMesh {
 }
 
 /// The arrays taken from a file.
-pub(super) struct Taken {
+pub(super) struct StateArrays {
     fields: Vec<Field>,
 }
 
-impl Taken {
+impl StateArrays {
     pub(super) fn has(&self, name: &str) -> bool {
         self.fields.iter().any(|field| field.name == name)
     }
@@ -171,7 +171,7 @@ impl Taken {
     }
 
     fn field(&self, name: &str) -> Result<&Field> {
-        self.fields.iter().find(|field| field.name == name).ok_or_else(|| no_state(name))
+        self.fields.iter().find(|field| field.name == name).ok_or_else(|| damaged_state(name))
     }
 
     pub(super) fn vectors(&self, name: &str) -> Result<Vec<Point>> {
@@ -179,25 +179,25 @@ impl Taken {
     }
 
     pub(super) fn floats(&self, name: &str) -> Result<Vec<f64>> {
-        self.field(name)?.values.to_f64().ok_or_else(|| no_state(name))
+        self.field(name)?.values.to_f64().ok_or_else(|| damaged_state(name))
     }
 
     pub(super) fn ids(&self, name: &str) -> Result<Vec<u32>> {
         match &self.field(name)?.values {
             Values::U32(ids) => Ok(ids.clone()),
-            _ => Err(no_state(name)),
+            _ => Err(damaged_state(name)),
         }
     }
 
     pub(super) fn bytes(&self, name: &str) -> Result<Vec<u8>> {
         match &self.field(name)?.values {
             Values::U8(bytes) => Ok(bytes.clone()),
-            _ => Err(no_state(name)),
+            _ => Err(damaged_state(name)),
         }
     }
 
     fn text(&self, name: &str) -> Result<String> {
-        String::from_utf8(self.bytes(name)?).map_err(|_| no_state(name))
+        String::from_utf8(self.bytes(name)?).map_err(|_| damaged_state(name))
     }
 
     /// The bad tets that [`LeftBad::to_fields`] wrote.
@@ -209,7 +209,7 @@ impl Taken {
             && cells.is_sorted()
             && cells.iter().all(|&cell| (cell as usize) < n_cells);
         if !is_right {
-            return Err(no_state(name));
+            return Err(damaged_state(name));
         }
         let all = cells.into_iter().zip(eas).zip(forced);
         Ok(all
@@ -219,7 +219,7 @@ impl Taken {
 }
 
 impl Sizes {
-    fn put_on(&self, file: &mut Mesh) {
+    fn store_in(&self, file: &mut Mesh) {
         let Self { first, now } = self;
         let is_refined = !Arc::ptr_eq(first, now);
         for ([places, sizes], map) in SIZES.into_iter().zip([Some(first), is_refined.then_some(now)]) {
@@ -230,18 +230,18 @@ impl Sizes {
         }
     }
 
-    fn taken(taken: &Taken) -> Result<Self> {
+    fn from_state(arrays: &StateArrays) -> Result<Self> {
         let of = |[places, sizes]: [&str; 2]| -> Result<Arc<SizeMap>> {
-            let map = SizeMap::new(taken.vectors(places)?, taken.floats(sizes)?);
+            let map = SizeMap::new(arrays.vectors(places)?, arrays.floats(sizes)?);
             let is_size = |size: &f64| (0.0..f64::INFINITY).contains(size);
             let is_right = map.places.len() == map.sizes.len();
             match is_right && map.sizes.iter().all(is_size) {
                 true => Ok(Arc::new(map)),
-                false => Err(no_state(sizes)),
+                false => Err(damaged_state(sizes)),
             }
         };
         let first = of(SIZES[0])?;
-        let now = if taken.has(SIZES[1][0]) { of(SIZES[1])? } else { first.clone() };
+        let now = if arrays.has(SIZES[1][0]) { of(SIZES[1])? } else { first.clone() };
         Ok(Self { first, now })
     }
 }
@@ -274,7 +274,7 @@ fn names(fields: &[Field]) -> String {
 fn arrange(fields: &mut Vec<Field>, names: &str) -> Result<()> {
     let mut all = std::mem::take(fields);
     for name in names.split_terminator(BETWEEN) {
-        let place = all.iter().position(|field| field.name == name).ok_or_else(|| no_state(name))?;
+        let place = all.iter().position(|field| field.name == name).ok_or_else(|| damaged_state(name))?;
         fields.push(all.remove(place));
     }
     Ok(())
@@ -283,29 +283,31 @@ fn arrange(fields: &mut Vec<Field>, names: &str) -> Result<()> {
 fn triangles(ids: &[u32]) -> Result<Vec<[VertexId; 3]>> {
     match ids.as_chunks::<3>() {
         (triangles, []) => Ok(triangles.iter().map(|t| t.map(VertexId)).collect()),
-        _ => Err(no_state(TRIANGLES)),
+        _ => Err(damaged_state(TRIANGLES)),
     }
 }
 
-fn check(wall: &Wall, known: &Known, [n_points, n_cells]: [usize; 2]) -> Result<()> {
+fn check(wall: &Wall, records: &Records, [n_points, n_cells]: [usize; 2]) -> Result<()> {
     let n = wall.places.len();
     let is_node = |&node: &u32| node == super::wall::NO_NODE || (node as usize) < n;
-    if !known.node.iter().all(is_node) || known.node.len() != n_points {
-        return Err(no_state(NODE));
+    if !records.node.iter().all(is_node) || records.node.len() != n_points {
+        return Err(damaged_state(NODE));
     }
-    if known.first_eas.len() != n_cells {
-        return Err(no_state(FIRST_EAS));
+    if records.first_eas.len() != n_cells {
+        return Err(damaged_state(FIRST_EAS));
     }
     if !wall.body.is_empty() && wall.body.len() != wall.triangles.len() {
-        return Err(no_state(BODY));
+        return Err(damaged_state(BODY));
     }
     match wall.triangles.as_flattened().iter().all(|v| v.index() < n) {
         true => Ok(()),
-        false => Err(no_state(TRIANGLES)),
+        false => Err(damaged_state(TRIANGLES)),
     }
 }
 
-pub(super) fn no_state(name: &str) -> Error {
-    Error::input(format!("is no state of a moving mesh, or is damaged: the array {name} is missing or off"))
-        .remedy("start the run anew")
+pub(super) fn damaged_state(name: &str) -> Error {
+    Error::input(format!(
+        "is not a saved state of a moving mesh, or is damaged: the array {name} is missing or invalid"
+    ))
+    .remedy("restart the run from the beginning")
 }

@@ -53,7 +53,7 @@ impl Step {
     pub fn not_reached(&self) -> Option<String> {
         if !self.complete {
             let way = percent(self.fraction);
-            return Some(format!("the step stopped at {way} of its way, where tets would turn over"));
+            return Some(format!("the step stopped after {way} of its way, where tets would be inverted"));
         }
         let patch = self.gaps.as_ref()?.cramped.as_ref()?;
         Some(format!("the patch {patch} has no room to keep its distance (hold) from the patches after it"))

@@ -72,8 +72,8 @@ impl Wall {
         node: &[u32],
         threads: &Threads,
     ) -> Result<Drive> {
-        let came = driven.iter().filter(|v| node[v.index()] == NO_NODE);
-        let places: Vec<Point> = came.map(|v| first[v.index()]).collect();
+        let not_nodes = driven.iter().filter(|v| node[v.index()] == NO_NODE);
+        let places: Vec<Point> = not_nodes.map(|v| first[v.index()]).collect();
         let carrier = match places.is_empty() {
             true => None,
             false => Some(SurfaceCarrier::new(&self.places, &self.triangles, &places, threads)?),
@@ -92,8 +92,8 @@ pub(super) fn wall_triangles(mesh: &Mesh, options: &Options) -> Vec<[VertexId; 3
 }
 
 fn not_driven(name: &str) -> Error {
-    Error::input(format!("the patch {name} is to be kept apart from others, but is not driven"))
-        .remedy("name it as one inside that moves, or keep patches of the boundary apart")
+    Error::input(format!("the patch {name} is to be kept apart from others, but its vertices are not driven"))
+        .remedy("list it among the moving patches inside, or keep apart patches of the boundary only")
 }
 
 /// How the driven vertices of a mesh take their displacements from those of the nodes.
@@ -109,9 +109,9 @@ impl Drive {
     /// The displacement of each driven vertex.
     pub(super) fn carry(&self, displacement: &[Point]) -> Vec<Point> {
         let carried = self.carrier.as_ref().map(|carrier| carrier.carry(displacement));
-        let mut came = carried.unwrap_or_default().into_iter();
+        let mut carried = carried.unwrap_or_default().into_iter();
         let of = |&node: &u32| match node {
-            NO_NODE => came.next().unwrap_or_default(),
+            NO_NODE => carried.next().unwrap_or_default(),
             node => displacement[node as usize],
         };
         self.node.iter().map(of).collect()

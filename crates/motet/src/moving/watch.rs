@@ -9,15 +9,15 @@ use crate::moving::step::{Closest, Gaps};
 /// The watched patches: prepared once for each mesh, refitted at each step.
 #[derive(Clone, Debug)]
 pub(super) struct Watch {
-    asked: Watching,
+    watching: Watching,
     contact: Option<Contact>,
     /// The last measurement.
     pub(super) last: Option<contact::Gaps>,
 }
 
 impl Watch {
-    pub(super) fn new(asked: Watching) -> Self {
-        Self { asked, contact: None, last: None }
+    pub(super) fn new(watching: Watching) -> Self {
+        Self { watching, contact: None, last: None }
     }
 
     /// Discards the prepared search after the mesh has changed its triangles.
@@ -43,8 +43,8 @@ impl Watch {
                 contact
             }
             None => {
-                let bodies = self.asked.bodies(mesh)?;
-                let options = within_reach(&bodies, self.asked.options);
+                let bodies = self.watching.bodies(mesh)?;
+                let options = within_reach(&bodies, self.watching.options);
                 Contact::new(mesh.points.clone(), bodies, options, threads)?
             }
         };
@@ -52,14 +52,14 @@ impl Watch {
         let gaps = contact.measure(threads);
         let first = match velocity {
             Some((velocity, dt)) => {
-                let horizon = self.asked.horizon.unwrap_or(dt);
+                let horizon = self.watching.horizon.unwrap_or(dt);
                 contact.look_ahead(velocity, horizon, threads)?.first
             }
             None => None,
         };
-        let told = told(contact, &gaps, first);
+        let report = report_of(contact, &gaps, first);
         self.last = Some(gaps);
-        Ok(told)
+        Ok(report)
     }
 }
 
@@ -83,7 +83,7 @@ fn within_reach(bodies: &[contact::Body], options: contact::Options) -> contact:
     contact::Options { within: if is_joined { JOINED_WARNINGS * warn } else { options.within }, ..options }
 }
 
-fn told(contact: &Contact, gaps: &contact::Gaps, first: Option<FirstContact>) -> Gaps {
+fn report_of(contact: &Contact, gaps: &contact::Gaps, first: Option<FirstContact>) -> Gaps {
     let name = |body: u32| contact.name(body).to_owned();
     let pairs = gaps.pairs.iter().map(|pair| Closest {
         patches: pair.bodies.map(name),

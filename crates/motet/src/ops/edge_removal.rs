@@ -13,7 +13,7 @@ use crate::kernel::{Change, Complex, NewWall, Shell};
 use crate::ops::{Objective, WorstAbove};
 
 /// Edges with more ring vertices than this are not removed: triangulations become many, and good ones rare.
-const LARGEST_RING: usize = 10;
+const MAX_RING: usize = 10;
 
 /// Work arrays, reused from call to call.
 #[derive(Clone, Debug, Default)]
@@ -100,11 +100,11 @@ impl EdgeRemoval {
         objective: &mut impl Objective,
         change: &mut Change,
     ) -> bool {
-        if n > LARGEST_RING {
+        if n > MAX_RING {
             return false;
         }
         let m = self.shell.ring.len();
-        let mut ring = [VertexId(0); LARGEST_RING];
+        let mut ring = [VertexId(0); MAX_RING];
         for (i, vertex) in ring[..n].iter_mut().enumerate() {
             *vertex = self.shell.ring[(start + i) % m];
         }
@@ -132,7 +132,7 @@ impl EdgeRemoval {
         let best = &mut self.best;
         let m = ring.len();
         let [pa, pb] = [complex.point(a), complex.point(b)];
-        let mut points = [[0.0; 3]; LARGEST_RING];
+        let mut points = [[0.0; 3]; MAX_RING];
         for i in 0..m {
             points[i] = complex.point(ring[i]);
         }

@@ -10,9 +10,9 @@ use crate::geometry::tet::FACETS;
 use crate::kernel::{Behind, Change, Complex};
 
 /// The largest number of facets removed at once.
-const MOST_FACES: usize = 8;
+const MAX_FACES: usize = 8;
 /// The largest number of edges crossed from the first facet to any other.
-const MOST_DEPTH: usize = 4;
+const MAX_DEPTH: usize = 4;
 
 /// Work arrays, reused from call to call.
 #[derive(Clone, Debug, Default)]
@@ -74,7 +74,7 @@ impl FaceRemoval {
     ) -> f64 {
         let stop = self.judge(complex, [a, b, p, q]);
         let (n_tets, n_edges) = (self.cavity.len(), self.rim.len());
-        let may_go_on = n_tets / 2 < MOST_FACES && depth < MOST_DEPTH;
+        let may_go_on = n_tets / 2 < MAX_FACES && depth < MAX_DEPTH;
         let next = if may_go_on { Self::beside(complex, [a, b], face, [p, q]) } else { None };
         let is_new = |face: &Face| !self.cavity.contains(&face.at_a) && !self.cavity.contains(&face.at_b);
         if let Some((next, w)) = next.filter(|(face, _)| is_new(face)) {

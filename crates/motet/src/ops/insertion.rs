@@ -11,7 +11,7 @@ use crate::ops::smoothing::Corner;
 use crate::ops::{Anywhere, Smoothing};
 
 /// The largest number of tets in the cavity.
-const LARGEST_CAVITY: usize = 40;
+const MAX_CAVITY: usize = 40;
 
 /// Work arrays, reused from call to call.
 #[derive(Clone, Debug, Default)]
@@ -80,7 +80,7 @@ impl Insertion {
                 return true;
             }
             let Behind::Tet(behind) = complex.behind(tet, facet) else { return false };
-            if change.cavity.len() >= LARGEST_CAVITY {
+            if change.cavity.len() >= MAX_CAVITY {
                 return false;
             }
             is_open = self.take(complex, behind.tet(), point, bar, change);

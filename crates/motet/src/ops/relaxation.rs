@@ -14,9 +14,9 @@ pub fn defect(quality: f64) -> f64 {
 }
 
 /// The largest number of directions tried.
-const MOST_STEPS: usize = 6;
+const MAX_STEPS: usize = 6;
 /// The largest number of times a step is halved.
-const MOST_HALVINGS: usize = 4;
+const MAX_HALVINGS: usize = 4;
 /// Length of the first step, relative to the mean edge of the star.
 const FIRST_STEP: f64 = 0.15;
 /// A step that lowers the sum by less than this fraction is the last.
@@ -171,14 +171,14 @@ impl Relaxation {
         self.take_tried();
         let (mut place, mut step, mut gain) = (start, FIRST_STEP * size, 0.0);
         self.places.clear();
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let gradient = track.along(self.gradient(place, DIFFERENCE * size));
             let steep = norm(gradient);
             if steep * size <= 1e-6 {
                 break;
             }
             let mut found = None;
-            for _ in 0..=MOST_HALVINGS {
+            for _ in 0..=MAX_HALVINGS {
                 if gain + step * steep < reach.gain {
                     break;
                 }

@@ -12,9 +12,9 @@ use crate::kernel::{Change, Complex, Fill, Side, VertexChange};
 /// Qualities that exceed the worst by no more than this count as nearly smallest.
 const NEARLY: f64 = 0.03;
 /// The largest number of directions tried.
-const MOST_STEPS: usize = 8;
+const MAX_STEPS: usize = 8;
 /// The largest number of times a step is halved.
-const MOST_HALVINGS: usize = 5;
+const MAX_HALVINGS: usize = 5;
 /// A step that raises the worst quality by less than this is the last.
 const SMALLEST_GAIN: f64 = 1e-3;
 /// Step of the difference quotients for gradients, relative to the size of the star.
@@ -112,7 +112,7 @@ impl Smoothing {
         let mut place = start;
         let mut worst = self.worst();
         let mut gain = 0.05;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if worst >= enough {
                 break;
             }
@@ -125,7 +125,7 @@ impl Smoothing {
             }
             let mut length = (2.0 * gain / slope).min(0.5 * size / slope.sqrt());
             let mut found = None;
-            for _ in 0..=MOST_HALVINGS {
+            for _ in 0..=MAX_HALVINGS {
                 if let Some(trial) = track.draw(add(place, scale(direction, length))) {
                     let quality = self.worst_at(complex, trial, worst);
                     if quality > worst {

@@ -174,14 +174,14 @@ mod tests {
 
     /// Compares units for the limits: how often a tet constructed as one type is classified as that type.
     #[test]
-    fn the_mean_edge_tells_the_types_best() {
+    fn the_mean_edge_distinguishes_the_types_best() {
         type Unit = fn([f64; 6]) -> f64;
         let units: [Unit; 3] = [
             |l| l.into_iter().fold(f64::INFINITY, f64::min),
             |l| l.iter().sum::<f64>() / 6.0,
             |l| l.into_iter().fold(0.0, f64::max),
         ];
-        let told = [0, 1, 2].map(|u| {
+        let correct = [0, 1, 2].map(|u| {
             let (name, unit) = (["shortest", "mean", "longest"][u], units[u]);
             let mut state = 1;
             let (mut right, mut all) = ([0usize; 4], [0usize; 4]);
@@ -194,9 +194,9 @@ mod tests {
                 }
             }
             let shares = [0, 1, 2, 3].map(|k| right[k] as f64 / all[k] as f64);
-            println!("{name:>9}: {shares:.3?} of types I to IV are told as made");
+            println!("{name:>9}: {shares:.3?} of types I to IV are found as made");
             shares.into_iter().fold(f64::INFINITY, f64::min)
         });
-        assert!(told[1] > 0.7 && told[1] > told[0] && told[1] >= told[2], "{told:?}");
+        assert!(correct[1] > 0.7 && correct[1] > correct[0] && correct[1] >= correct[2], "{correct:?}");
     }
 }

@@ -35,11 +35,9 @@ impl Held {
                 let names = |labels: &Labels| {
                     labels.used().into_iter().map(|id| labels.name(id)).collect::<Vec<_>>().join(", ")
                 };
-                let what = format!(
-                    "`{word}` is to be held, and the mesh has no region and no patch of this name or number"
-                );
+                let what = format!("no region or patch is called `{word}`, which is to be held");
                 return Err(Error::options(what).remedy(format!(
-                    "its regions: {}; its patches: {}",
+                    "the mesh has the regions {} and the patches {}",
                     names(&regions),
                     names(&patches)
                 )));

@@ -73,23 +73,27 @@ impl fmt::Display for Reason {
             Self::WallAngle { degrees, best_eas } => {
                 write!(
                     f,
-                    "a wall of it has an angle of {degrees:.2} degrees: no tet on it can have an EAS above {best_eas:.3}"
+                    "one of its walls has an angle of {degrees:.2} degrees: \
+                     no tet on that wall can have an EAS above {best_eas:.3}"
                 )
             }
             Self::WallsMeet { degrees, best_eas } => {
                 write!(
                     f,
-                    "walls meet at it at {degrees:.2} degrees: no tet between can have an EAS above {best_eas:.3}"
+                    "walls meet at {degrees:.2} degrees at one of its edges: \
+                     no tet between them can have an EAS above {best_eas:.3}"
                 )
             }
             Self::WallNear { degrees, best_eas } => {
                 write!(
                     f,
-                    "a wall stands so near above one that there is room for {degrees:.2} degrees: no tet between can have an EAS above {best_eas:.3}"
+                    "a wall is so close to one of its walls \
+                     that dihedral angles are limited to {degrees:.2} degrees: \
+                     no tet between them can have an EAS above {best_eas:.3}"
                 )
             }
             Self::AllHeld => write!(f, "all four vertices are held by the surface, and no swap helps"),
-            Self::NothingHelps => write!(f, "no operation raises the worst quality round it"),
+            Self::NothingHelps => write!(f, "no operation raises the worst quality around it"),
         }
     }
 }

@@ -25,8 +25,8 @@
 //! deformations*, and goes beyond it.
 
 pub mod classify;
-mod given;
 mod held;
+mod input_mesh;
 mod left;
 mod lengths;
 mod lines;

@@ -63,12 +63,12 @@ impl Options {
     pub fn check(&self) -> Result<()> {
         let refused = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
         if !(0.0..=1.0).contains(&self.min_eas) {
-            let what = format!("an EAS of {} as the least, expected a number in [0, 1]", self.min_eas);
+            let what = format!("the least EAS must be in [0, 1]; got {}", self.min_eas);
             return refused(what, "0.2 is the default");
         }
         if !(0.0..=REGULAR.to_degrees()).contains(&self.min_dihedral_deg) {
             let what = format!(
-                "dihedral angles of at least {} degrees, expected a number in [0, 70.5]",
+                "the least dihedral angle must be in [0, 70.5] degrees; got {}",
                 self.min_dihedral_deg
             );
             return refused(what, "leave it out");
@@ -76,20 +76,23 @@ impl Options {
         if let Some(below) = self.improve.as_ref().map(|improve| improve.below)
             && !(0.0..=1.0).contains(&below)
         {
-            let what = format!("tets to be improved below an EAS of {below}, expected a number in [0, 1]");
+            let what = format!("the EAS below which tets are improved must be in [0, 1]; got {below}");
             return refused(what, "0.75 is the default of a moving mesh");
         }
         if let Some(cost) = self.improve.as_ref().map(|improve| improve.cost)
             && !(0.0..=LARGEST).contains(&cost)
         {
-            let what = format!("a cost of {cost} for each tet that changes, expected a number from 0");
-            return refused(what, "0 says that it does not matter how many change");
+            let what = format!("the cost of each changed tet must be a number of 0 or more; got {cost}");
+            return refused(what, "use 0 if the number of changed tets does not matter");
         }
         match self.surface {
             SurfaceRule::Adapt { distance: Some(d) } | SurfaceRule::Loose { distance: Some(d) }
                 if !(0.0..=LARGEST).contains(&d) =>
             {
-                refused(format!("a surface that may stray by {d}, expected a length from 0"), "leave it out")
+                refused(
+                    format!("the distance by which the surface may stray must be 0 or more; got {d}"),
+                    "leave it out",
+                )
             }
             _ => Ok(()),
         }
@@ -154,7 +157,7 @@ impl Improve {
     /// Checks that the arrays have one entry for each of the `n_points` points of the mesh.
     pub(super) fn check(&self, n_points: usize) -> Result<()> {
         let sizes = self.density.as_ref().map(|density| ("sizes", density.sizes.len()));
-        let pose = self.pose.as_ref().map(|pose| ("places of the other pose", pose.len()));
+        let pose = self.pose.as_ref().map(|pose| ("positions in the other pose", pose.len()));
         match sizes.into_iter().chain(pose).find(|(_, n)| *n != n_points) {
             None => Ok(()),
             Some((what, n)) => Err(Error::input(format!("{n} {what} for {n_points} points"))
@@ -180,7 +183,8 @@ pub enum SurfaceRule {
     Keep,
     /// Walls may change within a distance of where they were; features and borders of patches are kept.
     Adapt {
-        /// How far a wall may stray, in the unit of the mesh; `None`: [`DEFAULT_DISTANCE`] of the mesh's largest extent.
+        /// How far a wall may stray, in the unit of the mesh; `None`: [`DEFAULT_DISTANCE`] of the mesh's
+        /// largest extent.
         distance: Option<f64>,
     },
     /// Walls may change within a distance of where they were. Where nothing else helps, only borders of
@@ -208,14 +212,14 @@ impl SurfaceRule {
     pub fn of_name(name: &str, distance: Option<f64>) -> Result<Self> {
         match (name, distance) {
             ("keep", None) => Ok(Self::Keep),
-            ("keep", Some(_)) => {
-                Err(Error::options("a distance says how far a surface may stray, and this one is kept")
-                    .remedy("let the surface `adapt`"))
-            }
+            ("keep", Some(_)) => Err(Error::options("a distance was given, but the surface is kept")
+                .remedy("use `adapt` for the surface, or leave the distance out")),
             ("adapt", distance) => Ok(Self::Adapt { distance }),
             ("loose", distance) => Ok(Self::Loose { distance }),
-            _ => Err(Error::options(format!("there is no rule `{name}` for a surface"))
-                .remedy("give one of keep, adapt, loose")),
+            _ => {
+                Err(Error::options(format!("unknown surface rule `{name}`"))
+                    .remedy("use keep, adapt or loose"))
+            }
         }
     }
 

@@ -185,7 +185,8 @@ impl Report {
         let bad = (bad > 0).then(|| {
             let n_forced = self.left.iter().filter(|left| left.reason.is_forced()).count();
             format!(
-                "{bad} of {} bad tets (EAS below {}) are left: {inverted} inverted or flat, {n_forced} forced by walls",
+                "{bad} of {} bad tets (EAS below {}) are left: \
+                 {inverted} inverted or flat, {n_forced} forced by walls",
                 self.before.bad.max(bad),
                 self.min_eas
             )

@@ -7,8 +7,8 @@ use std::time::Instant;
 use crate::base::{CellId, Point, Result, TetId, Threads};
 use crate::kernel::{Complex, Extract};
 use crate::mesh::{OrientedTets, TetMesh, bounds, largest_extent};
-use crate::remesh::given::{Given, Pose};
 use crate::remesh::held::{Required, hold};
+use crate::remesh::input_mesh::{InputMesh, Pose};
 use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
 use crate::remesh::options::{Goal, Improve, Options, SurfaceRule};
@@ -34,11 +34,11 @@ pub struct Outcome {
 /// sizes would have far too many tets: more than ten million and more than 100 times as many as `mesh`, or
 /// more than 2^28.
 pub fn remesh(mesh: &TetMesh, options: &Options, threads: &Threads) -> Result<Outcome> {
-    remesh_but(mesh, &Required::default(), options, threads)
+    remesh_keeping(mesh, &Required::default(), options, threads)
 }
 
 /// Remeshes as [`remesh`] does, leaving everything that is `required`.
-pub(super) fn remesh_but(
+pub(super) fn remesh_keeping(
     mesh: &TetMesh,
     required: &Required,
     options: &Options,
@@ -51,7 +51,7 @@ pub(super) fn remesh_but(
     }
     let min_eas = options.limit();
     let mut report = Report { min_eas, ..Report::default() };
-    let most_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
+    let max_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
     threads.watch().go_on("joining tets", 0, 0)?;
     let mut complex = Complex::new(mesh)?;
     hold(&mut complex, mesh, &options.held, required, options.surface != SurfaceRule::Keep);
@@ -64,7 +64,7 @@ pub(super) fn remesh_but(
     bad.retain(|&t| !complex.is_locked(t));
     report.held = n_bad - bad.len();
     let layers = match options.keep_layers {
-        true => take_out_layers(&oriented(&complex, mesh), &mesh.points, &mut bad, min_eas),
+        true => split_off_layers(&oriented(&complex, mesh), &mesh.points, &mut bad, min_eas),
         false => Vec::new(),
     };
     layers.iter().for_each(|&tet| complex.lock(tet));
@@ -74,16 +74,16 @@ pub(super) fn remesh_but(
     let surface = adaptable(&mut complex, mesh, options);
     let splits = options.goal != Goal::Coarsen;
     let longest = if splits { LONG } else { 1.0 };
-    let given = LazyCell::new(|| Arc::new(Given::new(mesh)));
-    let mut field = options.sizes.as_ref().map(|sizes| SizeField::new(sizes, || given.clone(), longest));
+    let input = LazyCell::new(|| Arc::new(InputMesh::new(mesh)));
+    let mut field = options.sizes.as_ref().map(|sizes| SizeField::new(sizes, || input.clone(), longest));
     let lengths_before = field.as_mut().map(|field| Lengths::of(&complex, field));
     let mut repair = Repair::new(complex, surface, others, min_eas, threads.watch());
     repair.operations.add_many(Operation::Peeling, n_peeled);
     let pose = options.improve.as_ref().and_then(|improve| improve.pose.clone());
-    repair.pose = pose.map(|pose| Pose::new(given.clone(), pose));
-    let mut left = match (field, most_tets) {
-        (Some(field), Some(most_tets)) => {
-            repair.bring_to_sizes(Sizing { field, splits, most_tets }, options.rounds)?
+    repair.pose = pose.map(|pose| Pose::new(input.clone(), pose));
+    let mut left = match (field, max_tets) {
+        (Some(field), Some(max_tets)) => {
+            repair.bring_to_sizes(Sizing { field, splits, max_tets }, options.rounds)?
         }
         _ => repair.run(bad, options.rounds)?,
     };
@@ -108,7 +108,7 @@ pub(super) fn remesh_but(
     if let Some(improve) = options.improve.as_ref().filter(|_| !repair.is_hopeless()) {
         let density = improve.density.as_ref().map(|density| {
             let n_free = density.free_vertices.unwrap_or(report.before.free_vertices);
-            Density::new(&density.sizes, &given, n_free)
+            Density::new(&density.sizes, &input, n_free)
         });
         let vertices_left = repair.vertices_of(&left);
         improve_near(&mut repair, improve, density, options, mesh.tets.len())?;
@@ -123,10 +123,10 @@ pub(super) fn remesh_but(
 
     let extract = complex.extract(mesh);
     if options.keep_layers {
-        report.layers = judge_anew(&complex, &extract, &mut left, &layers, min_eas);
+        report.layers = rejudge(&complex, &extract, &mut left, &layers, min_eas);
     }
     report.after = State::of(&complex, &left, report.layers, |t| extract.tet(t));
-    report.kept = mesh.tets.len() - extract.gone_tets.len();
+    report.kept = mesh.tets.len() - extract.removed_tets.len();
     report.kept_share = report.kept as f64 / mesh.tets.len().max(1) as f64;
     report.left = explain(&complex, &left, min_eas, |t: TetId| extract.tet(t).0);
     report.seconds.extract = clock.lap();
@@ -160,7 +160,7 @@ fn improve_near(
         repair.kept = others(n_tets, cells);
     }
     let aim = Aim { below: improve.below, floor: min_eas, limit: min_eas, cost: improve.cost };
-    match improve.raises_worst && !repair.are_many(repair.below(min_eas).len()) {
+    match improve.raises_worst && !repair.are_too_many(repair.below(min_eas).len()) {
         true => repair.best_within(aim, zone, options.rounds),
         false => repair.improve(aim, zone),
     }
@@ -182,7 +182,7 @@ fn oriented(complex: &Complex, mesh: &TetMesh) -> OrientedTets {
 }
 
 /// Removes tets that belong to boundary layers from `low`, which keeps the bad ones, and returns them.
-fn take_out_layers(tets: &OrientedTets, points: &[Point], low: &mut Vec<TetId>, min_eas: f64) -> Vec<TetId> {
+fn split_off_layers(tets: &OrientedTets, points: &[Point], low: &mut Vec<TetId>, min_eas: f64) -> Vec<TetId> {
     let judged = tets.judge(points, low.iter().map(|tet| tet.index()).collect(), min_eas);
     let [bad, layers] = [judged.bad, judged.layers].map(|tets| tets.into_iter().map(TetId::new).collect());
     *low = bad;
@@ -192,7 +192,7 @@ fn take_out_layers(tets: &OrientedTets, points: &[Point], low: &mut Vec<TetId>, 
 /// Judges the tets in `left` and `layers` anew, in the extracted mesh: keeps the bad ones in `left`, worst
 /// first, and returns how many belong to layers. A count of bad tets in the written mesh then gives the same
 /// number.
-fn judge_anew(
+fn rejudge(
     complex: &Complex,
     extract: &Extract,
     left: &mut Vec<TetId>,
@@ -206,7 +206,7 @@ fn judge_anew(
     let mut low: Vec<TetId> = left.iter().map(|&tet| extract.tet(tet)).collect();
     low.sort_unstable();
     let tets = OrientedTets::of_tets(&extract.mesh);
-    let layers = take_out_layers(&tets, &extract.mesh.points, &mut low, min_eas);
+    let layers = split_off_layers(&tets, &extract.mesh.points, &mut low, min_eas);
     left.retain(|&tet| low.binary_search(&extract.tet(tet)).is_ok());
     left.sort_unstable_by(|&a, &b| complex.quality(a).total_cmp(&complex.quality(b)).then(a.cmp(&b)));
     layers.len()
@@ -216,7 +216,7 @@ fn judge_anew(
 fn adaptable(complex: &mut Complex, mesh: &TetMesh, options: &Options) -> Option<Surface> {
     let distance = options.surface.distance(|| bounds(&mesh.points).map_or(0.0, largest_extent))?;
     let mut surface = Surface::of(complex, distance);
-    surface.hold_features(complex, Crease::SHARP);
+    surface.constrain_features(complex, Crease::SHARP);
     complex.adapt_surface();
     Some(surface)
 }

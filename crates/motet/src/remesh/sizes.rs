@@ -9,7 +9,7 @@ use crate::geometry::tet::{EDGES, volume};
 use crate::geometry::vector::{LARGEST, distance};
 use crate::kernel::{Change, Complex};
 use crate::mesh::TetMesh;
-use crate::remesh::given::Given;
+use crate::remesh::input_mesh::InputMesh;
 
 /// An edge shorter than this fraction of its size is too short.
 pub const SHORT: f64 = 0.5;
@@ -19,9 +19,9 @@ pub const LONG: f64 = 1.5;
 /// A mesh of no more than this many tets may be made from any mesh: about 2 GB.
 const ALWAYS: f64 = 1e7;
 /// A larger mesh may be made if it has at most so many times the input's tets, ...
-const MOST_GROWTH: f64 = 100.0;
+const MAX_GROWTH: f64 = 100.0;
 /// ... and never more than this: half of what the kernel's ids can distinguish.
-const MOST: f64 = (1u32 << 28) as f64;
+const MAX_TETS: f64 = (1u32 << 28) as f64;
 
 /// Requested edge lengths. The size of an edge is the mean of the sizes at its two ends.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,7 +40,7 @@ impl Sizes {
         match self {
             Self::Uniform(h) if is_size(*h) => {}
             Self::Uniform(h) => {
-                return Err(Error::options(format!("the size {h} is no length of an edge"))
+                return Err(Error::options(format!("an edge length must be a positive number; got {h}"))
                     .remedy("give a number above 0"));
             }
             Self::Vertices(sizes) if sizes.len() != mesh.points.len() => {
@@ -50,31 +50,32 @@ impl Sizes {
             Self::Vertices(sizes) => {
                 let is_off = |v: &&VertexId| !is_size(sizes[v.index()]);
                 if let Some(v) = mesh.tets.as_flattened().iter().filter(is_off).min() {
-                    let what = format!("the size {} is no length of an edge", sizes[v.index()]);
+                    let what = format!("an edge length must be a positive number; got {}", sizes[v.index()]);
                     return Err(Error::input(what)
                         .at(format!("point {v}"))
-                        .remedy("give every point of a tet a number above 0"));
+                        .remedy("give a positive size for every point of a tet"));
                 }
             }
         }
-        let (root, most) =
-            (self.root_of_n_tets(mesh), (MOST_GROWTH * mesh.tets.len() as f64).clamp(ALWAYS, MOST));
-        let factor = root / most.cbrt();
+        let (root, limit) =
+            (self.root_of_n_tets(mesh), (MAX_GROWTH * mesh.tets.len() as f64).clamp(ALWAYS, MAX_TETS));
+        let factor = root / limit.cbrt();
         if factor <= 1.0 {
             // The estimate may be off by a factor.
-            return Ok(2 * most as usize);
+            return Ok(2 * limit as usize);
         }
         let number = |x: f64| if x < 1e6 { format!("{x:.1}") } else { format!("{x:.1e}") };
-        let asked = match root.powi(3) {
+        let estimate = match root.powi(3) {
             n if n < 1e15 => format!("about {n:.1e}"),
             _ => "more than 1e15".to_owned(),
         };
         Err(Error::input(format!(
-            "a mesh of these sizes would have {asked} tets, and from {} at most {most:.1e} are made",
+            "a mesh of these sizes would have {estimate} tets; \
+             from a mesh of {} tets, at most {limit:.1e} are made",
             mesh.tets.len()
         ))
         .remedy(format!(
-            "ask for sizes {} times as large; a mesh of those may then be remeshed once more",
+            "request sizes {} times as large; that mesh can then be remeshed again",
             number(factor + 0.1)
         )))
     }
@@ -102,12 +103,12 @@ pub(super) struct SizeField {
     source: Source,
     /// Each known vertex's position when its size was evaluated, and the size: new and moved vertices are
     /// evaluated anew.
-    known: Vec<(Point, f64)>,
+    cached: Vec<(Point, f64)>,
     /// A collapse may not make an edge longer than this multiple of its size.
-    longest: f64,
+    collapse_limit: f64,
     /// Edges longer than this multiple of their size are too long now: [`LONG`] in the end, more while a
     /// coarse mesh is made finer.
-    pub(super) long: f64,
+    pub(super) long_limit: f64,
     /// Whether a change may leave an edge too short.
     pub(super) may_shorten: bool,
 }
@@ -116,41 +117,41 @@ pub(super) struct SizeField {
 enum Source {
     Uniform(f64),
     /// One size for each vertex of the mesh as it was given.
-    Vertices(Arc<Given>, Vec<f64>),
+    Vertices(Arc<InputMesh>, Vec<f64>),
 }
 
 impl SizeField {
-    /// A field of sizes that have been checked. Where nothing is split, `longest` keeps collapses from making
-    /// edges that a later remeshing would split at once.
-    pub(super) fn new(sizes: &Sizes, given: impl FnOnce() -> Arc<Given>, longest: f64) -> Self {
-        let (source, known) = match sizes {
+    /// A field of sizes that have been checked. Where nothing is split, `collapse_limit` keeps collapses from
+    /// making edges that a later remeshing would split at once.
+    pub(super) fn new(sizes: &Sizes, input: impl FnOnce() -> Arc<InputMesh>, collapse_limit: f64) -> Self {
+        let (source, cached) = match sizes {
             Sizes::Uniform(h) => (Source::Uniform(*h), Vec::new()),
             Sizes::Vertices(sizes) => {
-                let given = given();
-                let known = given.points().iter().copied().zip(sizes.iter().copied()).collect();
-                (Source::Vertices(given, sizes.clone()), known)
+                let input = input();
+                let cached = input.points().iter().copied().zip(sizes.iter().copied()).collect();
+                (Source::Vertices(input, sizes.clone()), cached)
             }
         };
-        Self { source, known, longest, long: LONG, may_shorten: false }
+        Self { source, cached, collapse_limit, long_limit: LONG, may_shorten: false }
     }
 
     /// The size at a vertex that is, or will be, at `point`: linear in the tet that contains it.
     pub(super) fn at(&mut self, vertex: VertexId, point: Point) -> f64 {
-        let (given, sizes) = match &self.source {
+        let (input, sizes) = match &self.source {
             Source::Uniform(h) => return *h,
-            Source::Vertices(given, sizes) => (given, sizes),
+            Source::Vertices(input, sizes) => (input, sizes),
         };
-        if self.known.len() <= vertex.index() {
-            self.known.resize(vertex.index() + 1, ([f64::NAN; 3], f64::NAN));
+        if self.cached.len() <= vertex.index() {
+            self.cached.resize(vertex.index() + 1, ([f64::NAN; 3], f64::NAN));
         }
-        let known = &mut self.known[vertex.index()];
-        if known.0 != point {
+        let cached = &mut self.cached[vertex.index()];
+        if cached.0 != point {
             let of = |(tet, weights): ([VertexId; 4], [f64; 4])| -> f64 {
                 tet.iter().zip(weights).map(|(v, weight)| sizes[v.index()] * weight).sum()
             };
-            *known = (point, given.at(point).map_or(f64::NAN, of));
+            *cached = (point, input.at(point).map_or(f64::NAN, of));
         }
-        known.1
+        cached.1
     }
 
     /// The length of an edge divided by its size.
@@ -181,12 +182,12 @@ impl SizeField {
     /// Whether a change makes no new edge that is too long or too short, and none that already is more so.
     pub(super) fn accepts(&mut self, complex: &Complex, change: &Change) -> bool {
         let low = if self.may_shorten { 0.0 } else { SHORT };
-        self.keeps_within([low, self.long], complex, change)
+        self.keeps_within([low, self.long_limit], complex, change)
     }
 
     /// Whether a collapse makes no edge too long.
     pub(super) fn lengthens_none(&mut self, complex: &Complex, change: &Change) -> bool {
-        self.keeps_within([0.0, self.longest], complex, change)
+        self.keeps_within([0.0, self.collapse_limit], complex, change)
     }
 
     fn keeps_within(&mut self, [low, high]: [f64; 2], complex: &Complex, change: &Change) -> bool {

@@ -158,8 +158,8 @@ fn facing_out(complex: &Complex, change: &Change, wall: [VertexId; 3]) -> [Verte
         wall.iter().all(|v| tet.contains(v)).then(|| FACETS[apex].map(|i| tet[i]))
     };
     let in_fill = change.fill.iter().find_map(|tet| facet_of(tet.vertices));
-    let laid_bare = || change.cavity.iter().find_map(|&tet| facet_of(complex.vertices(tet)));
-    in_fill.or_else(|| laid_bare().map(|[a, b, c]| [a, c, b])).unwrap_or(wall)
+    let exposed = || change.cavity.iter().find_map(|&tet| facet_of(complex.vertices(tet)));
+    in_fill.or_else(|| exposed().map(|[a, b, c]| [a, c, b])).unwrap_or(wall)
 }
 
 /// The walls of some tets, each once, with their vertices.
@@ -283,7 +283,7 @@ impl Surface {
 
     /// Finds features and corners, where walls meet at a sharper angle than `crease` or where lines run, and
     /// constrains the vertices on them.
-    pub(super) fn hold_features(&mut self, complex: &mut Complex, crease: Crease) {
+    pub(super) fn constrain_features(&mut self, complex: &mut Complex, crease: Crease) {
         self.crease = crease;
         for v in (0..complex.n_vertex_slots()).map(VertexId::new) {
             let is_fixed = self.is_fixed.get(v.index()).copied().unwrap_or(false);
@@ -333,12 +333,12 @@ impl Surface {
             let vertex = of_vertex[0].0;
             complex.set_hold(vertex, complex.hold(vertex).max(hold));
         }
-        hold_touching(complex);
+        fix_touching(complex);
     }
 }
 
 /// Fixes vertices at which parts of the mesh touch without sharing a facet.
-fn hold_touching(complex: &mut Complex) {
+fn fix_touching(complex: &mut Complex) {
     let mut star = Star::default();
     for v in (0..complex.n_vertex_slots()).map(VertexId::new) {
         if matches!(complex.hold(v), Hold::Surface | Hold::Edge) && !complex.is_one_star(v, &mut star) {
@@ -379,7 +379,7 @@ mod tests {
             let mesh = cubes(both);
             let mut complex = Complex::new(&mesh).unwrap();
             complex.adapt_surface();
-            Surface::of(&complex, 0.1).hold_features(&mut complex, Crease::NONE);
+            Surface::of(&complex, 0.1).constrain_features(&mut complex, Crease::NONE);
             // The vertex that the second cube has in place of the shared one has no tets.
             let used =
                 complex.tets().flat_map(|t| complex.vertices(t)).collect::<std::collections::BTreeSet<_>>();

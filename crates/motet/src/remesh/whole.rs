@@ -10,7 +10,7 @@ use crate::kernel::Extract;
 use crate::mesh::history::{History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Cells, Field, Mesh, TetPart};
 use crate::remesh::held::{Held, Required};
-use crate::remesh::run::{Outcome, remesh_but};
+use crate::remesh::run::{Outcome, remesh_keeping};
 use crate::remesh::{Options, Report};
 use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, quadratic_rows, trace};
 
@@ -36,9 +36,9 @@ pub struct MeshOutcome {
 /// If there is no tet, if the tets do not form a valid mesh (the error names the first offending cell), and
 /// if a rule fits no array.
 pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Threads) -> Result<MeshOutcome> {
-    let (part, taken_out) = taken_out(mesh, options)?;
+    let (part, extract_seconds) = extract_tets(mesh, options)?;
     let mut outcome = remesh_part(mesh, &part, options, rules, threads)?;
-    outcome.report.seconds.join += taken_out;
+    outcome.report.seconds.join += extract_seconds;
     Ok(outcome)
 }
 
@@ -82,9 +82,9 @@ fn labels(mesh: &Mesh) -> impl Iterator<Item = &Field> {
 /// # Errors
 /// If there is no tet, and if the tets do not form a valid mesh (the error names the first offending cell).
 pub fn remesh_labelled(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<(Mesh, Report)> {
-    let (part, taken_out) = taken_out(mesh, options)?;
+    let (part, extract_seconds) = extract_tets(mesh, options)?;
     let Changed { mut report, extract, joined } = changed(mesh, &part, options, threads)?;
-    report.seconds.join += taken_out;
+    report.seconds.join += extract_seconds;
     let sources = joined.label_sources(&part, &extract);
     let pick = |field: &Field| field.pick(sources.iter().map(|cell| cell.index()));
     let new = Mesh {
@@ -97,7 +97,7 @@ pub fn remesh_labelled(mesh: &Mesh, options: &Options, threads: &Threads) -> Res
 }
 
 /// Checks the options and extracts the tets of a mesh; returns them with the seconds that it took.
-fn taken_out(mesh: &Mesh, options: &Options) -> Result<(TetPart, f64)> {
+fn extract_tets(mesh: &Mesh, options: &Options) -> Result<(TetPart, f64)> {
     options.check()?;
     let begin = Instant::now();
     let part = TetPart::of(mesh)?;
@@ -121,7 +121,7 @@ fn changed(mesh: &Mesh, part: &TetPart, options: &Options, threads: &Threads) ->
     }
     let required = Required::of(mesh, part);
     let Outcome { mut report, extract } =
-        remesh_but(&part.mesh, &required, &options, threads).map_err(|error| part.at_cell(error))?;
+        remesh_keeping(&part.mesh, &required, &options, threads).map_err(|error| part.at_cell(error))?;
     let begin = Instant::now();
     let joined = Joined::of(mesh, part, &extract);
     report.seconds.extract += begin.elapsed().as_secs_f64();
@@ -146,40 +146,40 @@ struct Joined {
 
 impl Joined {
     fn of(old: &Mesh, part: &TetPart, extract: &Extract) -> Self {
-        let mut stay = Stay::of(old, part, extract);
-        let n_cells = old.cells.len() + extract.came.len();
+        let mut kept = Kept::of(old, part, extract);
+        let n_cells = old.cells.len() + extract.new_tets.len();
         let mut joined = Self {
             cells: Cells::new(),
             cell_to_old: Vec::with_capacity(n_cells),
             tet_to_cell: Vec::with_capacity(extract.mesh.tets.len()),
             new_triangles: Vec::new(),
             new_lines: Vec::new(),
-            removed_triangles: std::mem::take(&mut stay.removed_triangles),
+            removed_triangles: std::mem::take(&mut kept.removed_triangles),
         };
         let mut faces = old.cells.polyhedron_faces().iter();
-        for (cell, kind, vertices) in old.cells.iter().filter(|(cell, _, _)| !stay.is_removed[cell.index()]) {
+        for (cell, kind, vertices) in old.cells.iter().filter(|(cell, _, _)| !kept.is_removed[cell.index()]) {
             if kind == CellKind::TETRA {
                 joined.tet_to_cell.push(CellId::new(joined.cells.len()));
             }
             joined.cell_to_old.push(cell);
-            let vertices = vertices.iter().map(|&v| stay.vertex(v));
+            let vertices = vertices.iter().map(|&v| kept.vertex(v));
             if kind == CellKind::POLYHEDRON {
                 joined
                     .cells
-                    .push_polyhedron(vertices, faces.next().map_or_else(Csr::default, |f| stay.faces(f)));
+                    .push_polyhedron(vertices, faces.next().map_or_else(Csr::default, |f| kept.faces(f)));
             } else {
                 joined.cells.push(kind, vertices);
             }
         }
-        for &i in &stay.new_triangles {
+        for &i in &kept.new_triangles {
             joined.new_triangles.push((CellId::new(joined.cells.len()), i));
-            joined.push_new(CellKind::TRIANGLE, &turned_as_before(i, part, extract));
+            joined.push_new(CellKind::TRIANGLE, &oriented_as_before(i, part, extract));
         }
-        for tet in &extract.mesh.tets[extract.mesh.tets.len() - extract.came.len()..] {
+        for tet in &extract.mesh.tets[extract.mesh.tets.len() - extract.new_tets.len()..] {
             joined.tet_to_cell.push(CellId::new(joined.cells.len()));
             joined.push_new(CellKind::TETRA, tet);
         }
-        for &i in &stay.new_lines {
+        for &i in &kept.new_lines {
             joined.new_lines.push((CellId::new(joined.cells.len()), i));
             joined.push_new(CellKind::LINE, &line_as_before(i, part, extract));
         }
@@ -190,7 +190,7 @@ impl Joined {
     /// region; for a new triangle or line the old one that it is a part of.
     fn label_sources(&self, part: &TetPart, extract: &Extract) -> Vec<CellId> {
         let mut sources = self.cell_to_old.clone();
-        let removed = extract.gone_tets.iter().map(|t| t.index());
+        let removed = extract.removed_tets.iter().map(|t| t.index());
         let of_region: BTreeMap<i32, CellId> =
             removed.map(|t| (part.mesh.regions[t], part.tet_to_cell[t])).collect();
         for (t, cell) in self.tet_to_cell.iter().enumerate() {
@@ -214,7 +214,7 @@ impl Joined {
 }
 
 /// What is left of the old mesh, and how it is renumbered.
-struct Stay {
+struct Kept {
     is_removed: Vec<bool>,
     old_to_vertex: Vec<u32>,
     removed_triangles: Vec<usize>,
@@ -222,11 +222,11 @@ struct Stay {
     new_lines: Vec<usize>,
 }
 
-impl Stay {
+impl Kept {
     fn of(old: &Mesh, part: &TetPart, extract: &Extract) -> Self {
         let mut is_removed = vec![false; old.cells.len()];
-        extract.gone_tets.iter().for_each(|t| is_removed[part.tet_to_cell[t.index()].index()] = true);
-        let mut stay = Self {
+        extract.removed_tets.iter().for_each(|t| is_removed[part.tet_to_cell[t.index()].index()] = true);
+        let mut kept = Self {
             is_removed,
             old_to_vertex: extract.old_to_vertex(old.points.len()),
             removed_triangles: Vec::new(),
@@ -234,14 +234,14 @@ impl Stay {
             new_lines: Vec::new(),
         };
         let (before, after) = (&part.mesh, &extract.mesh);
-        (stay.removed_triangles, stay.new_triangles) =
-            stay.compared([&before.triangles, &after.triangles], &extract.triangle_to_old);
+        (kept.removed_triangles, kept.new_triangles) =
+            kept.compared([&before.triangles, &after.triangles], &extract.triangle_to_old);
         let removed_lines;
-        (removed_lines, stay.new_lines) = stay.compared([&before.lines, &after.lines], &extract.line_to_old);
-        let triangles = stay.removed_triangles.iter().map(|&t| part.triangle_to_cell[t]);
+        (removed_lines, kept.new_lines) = kept.compared([&before.lines, &after.lines], &extract.line_to_old);
+        let triangles = kept.removed_triangles.iter().map(|&t| part.triangle_to_cell[t]);
         let lines = removed_lines.iter().map(|&line| part.line_to_cell[line]);
-        triangles.chain(lines).for_each(|cell| stay.is_removed[cell.index()] = true);
-        stay
+        triangles.chain(lines).for_each(|cell| kept.is_removed[cell.index()] = true);
+        kept
     }
 
     /// The old cells of a kind that were removed, and the new ones that were inserted, by index. Cells with
@@ -275,7 +275,7 @@ impl Stay {
 }
 
 /// The vertices of a new triangle, ordered so that it faces the same way as the old one that it is a part of.
-fn turned_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 3] {
+fn oriented_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 3] {
     let [a, b, c] = extract.mesh.triangles[i];
     let before = part.mesh.triangles[extract.triangle_to_old[i] as usize];
     let is = area_vector([a, b, c].map(|v| extract.mesh.points[v.index()]));
@@ -311,12 +311,12 @@ fn history(
     let new_tet = |t: usize| (joined.tet_to_cell[t], after.tets[t], after.regions[t]);
     let old_triangle = |&t: &usize| (part.triangle_to_cell[t], before.triangles[t], before.patches[t]);
     let new_triangle = |&(cell, t): &(CellId, usize)| (cell, after.triangles[t], after.patches[t]);
-    let n_kept = after.tets.len() - extract.came.len();
+    let n_kept = after.tets.len() - extract.new_tets.len();
     let traced = trace(
         &LocalChange {
             old_points: &old.points,
             new_points: &after.points,
-            removed_tets: &labelled(extract.gone_tets.iter().map(|t| old_tet(t.index()))),
+            removed_tets: &labelled(extract.removed_tets.iter().map(|t| old_tet(t.index()))),
             new_tets: &labelled((n_kept..after.tets.len()).map(new_tet)),
             removed_triangles: &labelled(joined.removed_triangles.iter().map(old_triangle)),
             new_triangles: &labelled(joined.new_triangles.iter().map(new_triangle)),

@@ -45,7 +45,7 @@ use crate::moving::wall::Wall;
 
 /// The number of parts of a step, and the fraction of an edge's length by which the corrections at its ends
 /// may differ: tried one after the other, until the wall is sound.
-const TRIES: [(usize, f64); 3] = [(1, 0.5), (4, 0.25), (8, 0.0)];
+const ATTEMPTS: [(usize, f64); 3] = [(1, 0.5), (4, 0.25), (8, 0.0)];
 
 /// The largest number of rounds of stopping, pushing back and holding back. Two or three are typical.
 const ROUNDS: usize = 8;
@@ -61,14 +61,14 @@ const UPRIGHT: f64 = 0.01;
 #[derive(Clone, Debug)]
 pub(super) struct Hold {
     /// In reverse order: the last of the walls that give way comes first.
-    walls: Vec<Yielding>,
+    walls: Vec<YieldingWall>,
     /// Displacement of each node from its first position, as the last step left it.
     pub(super) last: Vec<Point>,
 }
 
 /// A wall that gives way to others.
 #[derive(Clone, Debug)]
-struct Yielding {
+struct YieldingWall {
     /// Index of this wall among the watched patches.
     wall: usize,
     triangles: Vec<[VertexId; 3]>,
@@ -124,10 +124,13 @@ impl Hold {
     ) -> Result<Self> {
         let least = RESOLUTION * largest_coordinate(places);
         if !(distance > least && distance.is_finite()) {
-            return Err(Error::options(format!("walls are to be kept {distance} apart"))
-                .remedy(format!("give a distance above {least:e}: coordinates resolve no less")));
+            return Err(Error::options(format!(
+                "the distance between walls is too small, or not finite: {distance}"
+            ))
+            .remedy(format!("give a distance above {least:e}, the resolution of the coordinates")));
         }
-        let walls = (1..bodies.len()).rev().map(|k| Yielding::new(distance, places, k - 1, bodies, threads));
+        let walls =
+            (1..bodies.len()).rev().map(|k| YieldingWall::new(distance, places, k - 1, bodies, threads));
         Ok(Self { walls: walls.collect(), last: vec![[0.0; 3]; places.len()] })
     }
 
@@ -161,7 +164,7 @@ impl Hold {
     }
 }
 
-impl Yielding {
+impl YieldingWall {
     /// Sets up the wall with this index, which gives way to all after it.
     fn new(
         distance: f64,
@@ -186,7 +189,7 @@ impl Yielding {
         if is_still && self.nodes.iter().all(|v| from[v.index()] == at[v.index()]) {
             return true;
         }
-        let found = TRIES.iter().find_map(|&(n, slope)| self.advance(from, at, n, slope, threads));
+        let found = ATTEMPTS.iter().find_map(|&(n, slope)| self.advance(from, at, n, slope, threads));
         let is_found = found.is_some();
         let end = found.unwrap_or_else(|| self.carried(from, at, threads));
         self.nodes.iter().for_each(|v| at[v.index()] = end[v.index()]);
@@ -245,7 +248,7 @@ impl Yielding {
         threads: &Threads,
     ) -> Option<Vec<Point>> {
         let round = Round::new(&self.elements, &self.nodes, start, wanted, &mut self.obstacle, threads);
-        let mut at = round.aims(wanted);
+        let mut at = round.targets(wanted);
         let mut n_near = 0;
         for _ in 0..ROUNDS {
             self.slopes.limit(&mut at, wanted, slope);
@@ -257,7 +260,7 @@ impl Yielding {
                 return None;
             }
             if !is_stopped && pushed == Pushed::Nothing {
-                return (round.has_seen(&at) && self.is_upright(&at, wanted)).then_some(at);
+                return (round.covers(&at) && self.is_upright(&at, wanted)).then_some(at);
             }
         }
         None

@@ -24,7 +24,7 @@ const HITS: f64 = 0.02;
 
 /// Number of sweeps that remove from a motion the components into the obstacle: needed where several things
 /// stop a node.
-const CORNER: usize = 8;
+const CORNER_SWEEPS: usize = 8;
 
 /// The largest number of searches for elements that are too near, and of sweeps over them after each search.
 const PUSHES: [usize; 2] = [8, 8];
@@ -58,7 +58,7 @@ pub(super) enum Pushed {
 
 /// Which nodes of an element slide.
 #[derive(Clone, Copy, Debug)]
-enum Who {
+enum SlidingNodes {
     /// The nodes that span its nearest point.
     Nearest,
     /// All nodes: a triangle that was stopped slides as a whole.
@@ -98,16 +98,16 @@ impl<'a> Round<'a> {
     }
 
     /// Whether no node has moved beyond the region that was searched.
-    pub(super) fn has_seen(&self, at: &[Point]) -> bool {
+    pub(super) fn covers(&self, at: &[Point]) -> bool {
         self.nodes.iter().all(|v| distance(self.start[v.index()], at[v.index()]) <= self.farthest)
     }
 
     /// Where nodes should go: to their wanted places, except that nodes which stand on the obstacle at the
     /// start slide along it.
-    pub(super) fn aims(&self, wanted: &[Point]) -> Vec<Point> {
+    pub(super) fn targets(&self, wanted: &[Point]) -> Vec<Point> {
         let all: Vec<(usize, f64)> = (0..self.elements.len()).map(|i| (i, 0.0)).collect();
         let mut at = wanted.to_vec();
-        self.slide(&mut at, &all, wanted, |element| (element.least * (1.0 + STANDS), Who::Nearest));
+        self.slide(&mut at, &all, wanted, |element| (element.least * (1.0 + STANDS), SlidingNodes::Nearest));
         at
     }
 
@@ -122,7 +122,7 @@ impl<'a> Round<'a> {
         for &(v, time) in &self.first_of_nodes(&hits) {
             at[v.index()] = lerp(self.start[v.index()], to[v.index()], time);
         }
-        self.slide(at, &hits, &to, |element| (SLACK * element.least * (1.0 + HITS), Who::All));
+        self.slide(at, &hits, &to, |element| (SLACK * element.least * (1.0 + HITS), SlidingNodes::All));
         true
     }
 
@@ -156,7 +156,7 @@ impl<'a> Round<'a> {
         at: &mut [Point],
         hits: &[(usize, f64)],
         to: &[Point],
-        reach: impl Fn(&Element) -> (f64, Who) + Sync,
+        reach: impl Fn(&Element) -> (f64, SlidingNodes) + Sync,
     ) {
         let found = self.threads.map(hits.len(), |k| {
             let (i, time) = hits[k];
@@ -186,7 +186,7 @@ impl<'a> Round<'a> {
         &self,
         element: &Element,
         here: [Point; 3],
-        (reach, who): (f64, Who),
+        (reach, who): (f64, SlidingNodes),
     ) -> Vec<(VertexId, Point)> {
         let mut all = Vec::new();
         for t in self.around(here, reach) {
@@ -194,8 +194,10 @@ impl<'a> Round<'a> {
             let Some((closest, way)) = closest.and_then(|c| Some((c, c.direction()?))) else { continue };
             let away = scale(way, -1.0);
             match who {
-                Who::Nearest => all.extend(shares(element.corners, closest.on_a).map(|(v, _)| (v, away))),
-                Who::All => all.extend(element.corners.map(|v| (v, away))),
+                SlidingNodes::Nearest => {
+                    all.extend(shares(element.corners, closest.on_a).map(|(v, _)| (v, away)))
+                }
+                SlidingNodes::All => all.extend(element.corners.map(|v| (v, away))),
             }
         }
         all
@@ -279,7 +281,7 @@ impl<'a> Round<'a> {
 /// than into them. `None` if it moves away from them.
 fn along(way: Point, normals: &[Point]) -> Option<Point> {
     let mut along = way;
-    for _ in 0..CORNER {
+    for _ in 0..CORNER_SWEEPS {
         for normal in normals {
             along = sub(along, scale(*normal, dot(along, *normal).min(0.0)));
         }

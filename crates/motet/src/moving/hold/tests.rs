@@ -293,8 +293,8 @@ fn what_goes_round_in_steps_goes_round() {
         }
     };
     for (step, at) in (1..).zip(scene.steps(0.2, 24, round)) {
-        let asked = scene.places.iter().zip(&scene.of).map(|(&p, &k)| round(step, k, p));
-        assert!(asked.zip(&at).all(|(p, q)| norm(sub(p, *q)) < 1e-14), "step {step}");
+        let requested = scene.places.iter().zip(&scene.of).map(|(&p, &k)| round(step, k, p));
+        assert!(requested.zip(&at).all(|(p, q)| norm(sub(p, *q)) < 1e-14), "step {step}");
     }
 }
 
@@ -322,7 +322,7 @@ fn what_is_pressed_on_for_long_stays_and_what_comes_back_is_where_it_was() {
 }
 
 #[test]
-fn walls_without_room_are_told_and_so_is_how_far_a_node_was_stopped() {
+fn walls_without_room_are_reported_and_so_is_how_far_a_node_was_stopped() {
     let threads = Threads::single();
     let scene = Scene::of(vec![
         ball(4, [0.0; 3], 1.0),

@@ -13,7 +13,7 @@ pub(super) struct Candidate {
     best: Change,
     score: Option<Score>,
     operation: Operation,
-    came: Vec<TetId>,
+    inserted: Vec<TetId>,
     /// The worst quality from which a change may leave more bad tets than it found.
     worth_more_bad: f64,
 }
@@ -89,8 +89,8 @@ impl Candidate {
     pub(super) fn commit(&mut self, complex: &mut Complex) -> Option<(Operation, &[TetId])> {
         self.score?;
         let checked = complex.check(&self.best).ok()?;
-        complex.commit(checked, &mut self.came);
-        Some((self.operation, &self.came))
+        complex.commit(checked, &mut self.inserted);
+        Some((self.operation, &self.inserted))
     }
 }
 

@@ -12,7 +12,7 @@ use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
 use crate::kernel::{Change, Hold};
 use crate::ops::{collapse, defect};
-use crate::remesh::given::Given;
+use crate::remesh::input_mesh::InputMesh;
 use crate::remesh::repair::Repair;
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{SHORT, SizeField, Sizes};
@@ -46,9 +46,9 @@ pub(in crate::remesh) struct Density {
 
 impl Density {
     /// The density with these sizes at the vertices of the given mesh.
-    pub(in crate::remesh) fn new(sizes: &[f64], given: &Arc<Given>, n_free: usize) -> Self {
+    pub(in crate::remesh) fn new(sizes: &[f64], input: &Arc<InputMesh>, n_free: usize) -> Self {
         let sizes = Sizes::Vertices(sizes.to_vec());
-        Self { field: SizeField::new(&sizes, || given.clone(), LONG), n_free }
+        Self { field: SizeField::new(&sizes, || input.clone(), LONG), n_free }
     }
 }
 

@@ -8,12 +8,12 @@ use crate::remesh::repair::Repair;
 use crate::remesh::report::Operation;
 
 /// How many rounds of splits in a row may end without progress.
-const MOST_IN_VAIN: usize = 5;
+const MAX_FAILED_ROUNDS: usize = 5;
 
 /// A round makes progress if the number of bad tets falls to this fraction or below.
 const PROGRESS: f64 = 0.95;
 /// No more edges are split once the number of tets has grown by this factor.
-const MOST_GROWTH: usize = 3;
+const MAX_GROWTH: usize = 3;
 
 impl Repair {
     /// Divides tets that nothing else repairs: splits the longest edge in the neighbourhood of each tet in
@@ -21,26 +21,26 @@ impl Repair {
     /// do not lead to fewer are undone. Meant for flat tets between two sheets of the surface, and for tets
     /// on needles of the surface, which are too long for where they are.
     pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
-        let n_bad = |repair: &Self, left: &[TetId]| left.len() + repair.complex.n_spared();
+        let n_bad = |repair: &Self, left: &[TetId]| left.len() + repair.complex.n_exempt();
         let mut n_least = n_bad(self, &left);
         let mut best = (left.clone(), self.complex.mark(), self.operations);
-        let mut n_in_vain = 0;
-        let most_tets = MOST_GROWTH * self.complex.n_tets();
-        while !left.is_empty() && n_in_vain < MOST_IN_VAIN && self.complex.n_tets() < most_tets {
+        let mut n_failed = 0;
+        let max_tets = MAX_GROWTH * self.complex.n_tets();
+        while !left.is_empty() && n_failed < MAX_FAILED_ROUNDS && self.complex.n_tets() < max_tets {
             let mut bad = Vec::new();
             for &tet in &left {
                 if self.is_bad(tet) {
                     self.split_longest(tet);
                 }
-                bad.append(&mut self.came_bad);
+                bad.append(&mut self.inserted_bad);
             }
             bad.extend(left.iter().copied().filter(|&t| self.is_bad(t)));
             left = self.run(bad, rounds)?;
-            n_in_vain += 1;
+            n_failed += 1;
             let n = n_bad(self, &left);
             if n < n_least {
                 if PROGRESS * (best.0.len() as f64) >= left.len() as f64 {
-                    n_in_vain = 0;
+                    n_failed = 0;
                 }
                 n_least = n;
                 best = (left.clone(), self.complex.mark(), self.operations);
@@ -88,14 +88,14 @@ impl Repair {
         }
         let hold = self.hold_on(edge);
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let mut came = Vec::new();
+        let mut inserted = Vec::new();
         let proposal = &mut self.candidate.proposal;
         let is_fit = split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal)
             && self.surface.as_ref().is_none_or(|s| s.accepts_in_place(proposal));
         if let Some(checked) = self.complex.check_against(proposal, 0.0).ok().filter(|_| is_fit) {
-            self.complex.commit(checked, &mut came);
+            self.complex.commit(checked, &mut inserted);
             self.operations.add(Operation::SplitEdge);
         }
-        self.came_bad.extend(came.into_iter().filter(|&t| self.complex.quality(t) < self.target));
+        self.inserted_bad.extend(inserted.into_iter().filter(|&t| self.complex.quality(t) < self.target));
     }
 }

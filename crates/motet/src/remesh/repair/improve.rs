@@ -16,7 +16,7 @@ use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
 use crate::kernel::{Behind, Change, Complex, Fill, Hold, VertexChange};
 use crate::ops::{Anywhere, Objective, Reach, defect};
-use crate::remesh::given::Pose;
+use crate::remesh::input_mesh::Pose;
 use crate::remesh::repair::tried::Settled;
 use crate::remesh::repair::{Repair, Sizing};
 use crate::remesh::report::Operation;
@@ -24,7 +24,7 @@ use crate::remesh::report::Operation;
 /// A change has to lower the sum of the defects of the tets it touches by this fraction. For the paddle
 /// above, the mean EAS over all steps is never below 0.673 with 0.05 (7.0 % changed per step), 0.678 with
 /// 0.02 (7.7 %), 0.684 with 0.01 (8.1 %), 0.686 with 0.005 (8.2 %), 0.680 with 0.002 (8.4 %).
-const LEAST_GAIN: f64 = 0.005;
+const MIN_GAIN: f64 = 0.005;
 
 /// How often the tets that were changed are examined again.
 const ROUNDS: usize = 6;
@@ -45,7 +45,7 @@ pub(in crate::remesh) struct Aim {
 
 /// The cost of tets, and the gain of changes.
 #[derive(Clone, Copy, Debug)]
-struct Worth<'a> {
+struct CostModel<'a> {
     aim: Aim,
     /// The mean cost over the mesh.
     mean: f64,
@@ -55,7 +55,7 @@ struct Worth<'a> {
     bars: [f64; 2],
 }
 
-impl<'a> Worth<'a> {
+impl<'a> CostModel<'a> {
     fn new((aim, mean): (Aim, f64), pose: Option<&'a Pose>) -> Self {
         Self { aim, mean, pose, bars: [f64::NEG_INFINITY; 2] }
     }
@@ -77,7 +77,7 @@ impl<'a> Worth<'a> {
     fn of_cavity(&self, complex: &Complex, cavity: &[TetId]) -> (f64, f64) {
         let sum: f64 = cavity.iter().map(|&t| self.of_tet(complex, t)).sum();
         let n_touched = cavity.iter().filter(|&&t| complex.is_original(t)).count();
-        let least = LEAST_GAIN * sum + self.aim.cost * n_touched as f64;
+        let least = MIN_GAIN * sum + self.aim.cost * n_touched as f64;
         (least, sum - self.mean * cavity.len() as f64)
     }
 
@@ -115,7 +115,7 @@ impl<'a> Worth<'a> {
 }
 
 /// Minimizes the sum of the costs.
-impl Objective for Worth<'_> {
+impl Objective for CostModel<'_> {
     const NOTHING: f64 = 0.0;
 
     fn limit(&mut self, complex: &Complex, cavity: &[TetId], n_fill: usize) -> f64 {
@@ -153,7 +153,7 @@ struct Found {
 
 /// The working state of one call of [`Repair::improve`].
 #[derive(Debug)]
-struct Course {
+struct Progress {
     /// The aim, and the mean cost over the mesh.
     scale: (Aim, f64),
     found: Found,
@@ -170,16 +170,16 @@ impl Repair {
         }
         let scale = (aim, self.mean_cost(aim));
         let found = Found { best: Best::default(), sizing: self.sizing.take() };
-        let mut course = Course { scale, found, settled: Settled::default(), inserted: Vec::new() };
+        let mut progress = Progress { scale, found, settled: Settled::default(), inserted: Vec::new() };
         for _ in 0..ROUNDS {
-            self.swap_low(&mut zone, &mut course)?;
-            self.move_low(&mut zone, &mut course)?;
-            zone = std::mem::take(&mut course.inserted);
+            self.swap_low(&mut zone, &mut progress)?;
+            self.move_low(&mut zone, &mut progress)?;
+            zone = std::mem::take(&mut progress.inserted);
             if zone.is_empty() {
                 break;
             }
         }
-        self.sizing = course.found.sizing;
+        self.sizing = progress.found.sizing;
         Ok(())
     }
 
@@ -194,8 +194,8 @@ impl Repair {
     }
 
     fn mean_cost(&self, aim: Aim) -> f64 {
-        let worth = Worth::new((aim, 0.0), self.pose.as_ref());
-        let sum: f64 = self.complex.tets().map(|t| worth.of_tet(&self.complex, t)).sum();
+        let model = CostModel::new((aim, 0.0), self.pose.as_ref());
+        let sum: f64 = self.complex.tets().map(|t| model.of_tet(&self.complex, t)).sum();
         sum / self.complex.n_tets().max(1) as f64
     }
 
@@ -204,15 +204,15 @@ impl Repair {
     }
 
     /// Makes the best swap at each low-quality tet of a zone, worst first.
-    fn swap_low(&mut self, zone: &mut Vec<TetId>, course: &mut Course) -> Result<()> {
-        let below = course.scale.0.below;
+    fn swap_low(&mut self, zone: &mut Vec<TetId>, progress: &mut Progress) -> Result<()> {
+        let below = progress.scale.0.below;
         zone.retain(|&t| self.is_low(t, below));
         self.sort(zone);
         for (i, &tet) in zone.iter().enumerate() {
             if self.is_low(tet, below) {
                 self.watch.go_on("improving tets", i, zone.len())?;
-                self.weigh_swaps(tet, course);
-                self.make_best(course);
+                self.weigh_swaps(tet, progress);
+                self.make_best(progress);
             }
         }
         Ok(())
@@ -220,29 +220,30 @@ impl Repair {
 
     /// Moves each vertex of the low-quality tets of a zone, and of inserted ones, once if that improves them,
     /// starting with the worst tet.
-    fn move_low(&mut self, zone: &mut Vec<TetId>, course: &mut Course) -> Result<()> {
-        zone.extend_from_slice(&course.inserted);
-        zone.retain(|&t| self.is_low(t, course.scale.0.below));
+    fn move_low(&mut self, zone: &mut Vec<TetId>, progress: &mut Progress) -> Result<()> {
+        zone.extend_from_slice(&progress.inserted);
+        zone.retain(|&t| self.is_low(t, progress.scale.0.below));
         self.sort(zone);
         let mut is_listed = vec![false; self.complex.n_vertex_slots()];
         let mut vertices: Vec<VertexId> = zone.iter().flat_map(|&t| self.complex.vertices(t)).collect();
         vertices.retain(|v| !std::mem::replace(&mut is_listed[v.index()], true));
-        vertices
-            .retain(|&v| self.complex.hold(v) == Hold::Free && !course.settled.has_vertex(&self.changes, v));
+        vertices.retain(|&v| {
+            self.complex.hold(v) == Hold::Free && !progress.settled.has_vertex(&self.changes, v)
+        });
         for (i, &vertex) in vertices.iter().enumerate() {
             self.watch.go_on("improving tets", i, vertices.len())?;
-            if self.weigh_move(vertex, course) {
-                self.make_best(course);
+            if self.weigh_move(vertex, progress) {
+                self.make_best(progress);
             } else {
-                course.settled.settle_vertex(&self.changes, vertex);
+                progress.settled.settle_vertex(&self.changes, vertex);
             }
         }
         Ok(())
     }
 
     /// Commits the best change found, if there is one and the kernel allows it, and forgets it.
-    fn make_best(&mut self, course: &mut Course) {
-        let Course { scale: (aim, _), found: Found { best, .. }, inserted, .. } = course;
+    fn make_best(&mut self, progress: &mut Progress) {
+        let Progress { scale: (aim, _), found: Found { best, .. }, inserted, .. } = progress;
         let n_before = inserted.len();
         let is_made = best.gain.take().is_some() && self.commit_above(&best.change, aim.floor, inserted);
         if is_made {
@@ -255,8 +256,8 @@ impl Repair {
         }
     }
 
-    fn weigh_swaps(&mut self, tet: TetId, Course { scale, found, settled, .. }: &mut Course) {
-        let mut worth = Worth::new(*scale, self.pose.as_ref());
+    fn weigh_swaps(&mut self, tet: TetId, Progress { scale, found, settled, .. }: &mut Progress) {
+        let mut model = CostModel::new(*scale, self.pose.as_ref());
         let vertices = self.complex.vertices(tet);
         let mut change = std::mem::take(&mut self.candidate.proposal);
         for (place, edge) in EDGES.map(|e| e.map(|i| vertices[i])).into_iter().enumerate() {
@@ -271,8 +272,8 @@ impl Repair {
                     continue;
                 }
             }
-            let is_better = self.edge_removal.propose_for(&self.complex, tet, edge, &mut worth, &mut change)
-                && self.weigh(&mut change, Operation::EdgeRemoval, worth, found);
+            let is_better = self.edge_removal.propose_for(&self.complex, tet, edge, &mut model, &mut change)
+                && self.weigh(&mut change, Operation::EdgeRemoval, model, found);
             if !is_better {
                 settled.settle_edge(&self.changes, &self.complex, self.edge_removal.tets(), edge);
             }
@@ -291,7 +292,7 @@ impl Repair {
             let worst = self.complex.quality(tet).min(self.complex.quality(behind.tet()));
             let bar = worst.min(scale.0.floor).next_down();
             let is_better = self.face_removal.propose(&self.complex, tet, facet, bar, &mut change)
-                && self.weigh(&mut change, Operation::FaceRemoval, worth, found);
+                && self.weigh(&mut change, Operation::FaceRemoval, model, found);
             if !is_better {
                 settled.settle_facet(&self.changes, tet, facet);
                 settled.settle_facet(&self.changes, behind.tet(), behind.facet());
@@ -300,39 +301,45 @@ impl Repair {
         self.candidate.proposal = change;
     }
 
-    fn weigh_move(&mut self, vertex: VertexId, Course { scale, found, .. }: &mut Course) -> bool {
-        let mut worth = Worth::new(*scale, self.pose.as_ref());
+    fn weigh_move(&mut self, vertex: VertexId, Progress { scale, found, .. }: &mut Progress) -> bool {
+        let mut model = CostModel::new(*scale, self.pose.as_ref());
         let pose = self.pose.as_ref().map(|pose| |v: VertexId| pose.point(v));
         let mut change = std::mem::take(&mut self.candidate.proposal);
         self.star.gather(&self.complex, vertex);
         let star = &self.star.tets;
-        worth.set_bars(&self.complex, star);
-        let (least, _) = worth.of_cavity(&self.complex, star);
+        model.set_bars(&self.complex, star);
+        let (least, _) = model.of_cavity(&self.complex, star);
         let is_better = self.relaxation.propose(
             (&self.complex, pose.as_ref()),
             star,
             vertex,
-            Reach { floor: worth.bars[0], gain: least },
+            Reach { floor: model.bars[0], gain: least },
             &Anywhere,
             &mut change,
-        ) && self.weigh(&mut change, Operation::Smoothing, worth, found);
+        ) && self.weigh(&mut change, Operation::Smoothing, model, found);
         self.candidate.proposal = change;
         is_better
     }
 
     /// Takes a change as the best if it gains enough, and more than the best so far; the previous best is
     /// left in `change`. Returns whether the change gains enough.
-    fn weigh(&self, change: &mut Change, operation: Operation, mut worth: Worth, found: &mut Found) -> bool {
+    fn weigh(
+        &self,
+        change: &mut Change,
+        operation: Operation,
+        mut model: CostModel,
+        found: &mut Found,
+    ) -> bool {
         let Found { best, sizing } = found;
-        worth.set_bars(&self.complex, &change.cavity);
-        let (least, before) = worth.of_cavity(&self.complex, &change.cavity);
+        model.set_bars(&self.complex, &change.cavity);
+        let (least, before) = model.of_cavity(&self.complex, &change.cavity);
         let moved = match change.vertex {
             VertexChange::Move(vertex, _) => self.relaxation.place_in_pose().map(|place| (vertex, place)),
             _ => None,
         };
-        let gain = before - worth.of_fill(change, moved);
+        let gain = before - model.of_fill(change, moved);
         let has_kept = || change.cavity.iter().any(|&t| self.is_kept(t));
-        if gain <= least || self.adds_low(change, worth.aim) || has_kept() {
+        if gain <= least || self.adds_low(change, model.aim) || has_kept() {
             return false;
         }
         if best.gain.is_some_and(|known| gain <= known) {

@@ -17,7 +17,7 @@ pub(super) use sizing::Sizing;
 use crate::base::{Result, TetId, VertexId, Watch};
 use crate::kernel::{Complex, Shell, Star};
 use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Relaxation, Smoothing};
-use crate::remesh::given::Pose;
+use crate::remesh::input_mesh::Pose;
 use crate::remesh::left::{forced, is_forced};
 use crate::remesh::options::SurfaceRule;
 use crate::remesh::repair::candidate::Candidate;
@@ -27,7 +27,7 @@ use crate::remesh::report::{Counts, Operation};
 use crate::remesh::surface::{Crease, Surface};
 
 /// How much higher the target is for tets around those that no operation repairs, one attempt after another.
-const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
+const RAISES: [f64; 3] = [0.1, 0.15, 0.2];
 
 /// The targets for the worst tets of [`Repair::best`].
 const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
@@ -86,7 +86,7 @@ pub(super) struct Repair {
     /// The other pose in which tets are to be good, if there is one.
     pub(super) pose: Option<Pose>,
     /// Marks tets of the first mesh that never count as bad, by id; empty if there are none.
-    others: Vec<bool>,
+    never_bad: Vec<bool>,
     /// Marks tets of the first mesh that stay as they are, by id; empty if there are none.
     pub(super) kept: Vec<bool>,
     target: f64,
@@ -100,7 +100,7 @@ pub(super) struct Repair {
     star: Star,
     shells: [Shell; 2],
     /// Bad tets among those inserted.
-    came_bad: Vec<TetId>,
+    inserted_bad: Vec<TetId>,
     changes: Changes,
     /// The repairs that failed in this run.
     tried: Tried,
@@ -113,7 +113,7 @@ impl Repair {
     pub(super) fn new(
         complex: Complex,
         surface: Option<Surface>,
-        others: Vec<bool>,
+        never_bad: Vec<bool>,
         target: f64,
         watch: &Watch,
     ) -> Self {
@@ -123,7 +123,7 @@ impl Repair {
             surface,
             sizing: None,
             pose: None,
-            others,
+            never_bad,
             kept: Vec::new(),
             target,
             n_stages: FIRST_STAGES,
@@ -135,7 +135,7 @@ impl Repair {
             relaxation: Relaxation::default(),
             star: Star::default(),
             shells: Default::default(),
-            came_bad: Vec::new(),
+            inserted_bad: Vec::new(),
             changes: Changes::new(),
             tried: Tried::nothing(),
             is_hopeless: false,
@@ -150,10 +150,10 @@ impl Repair {
     pub(super) fn run(&mut self, mut bad: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
         self.tried = Tried::of(self.target);
         self.is_hopeless = false;
-        let (mut asked, mut before) = (WIDER.iter(), None);
+        let (mut raises, mut before) = (RAISES.iter(), None);
         let mut n_inverted = self.n_inverted(&bad);
         for _ in 0..rounds {
-            let is_on = self.round(&mut bad)?;
+            let progressed = self.round(&mut bad)?;
             if bad.is_empty() {
                 break;
             }
@@ -166,13 +166,13 @@ impl Repair {
             if self.is_hopeless {
                 break;
             }
-            if is_on {
+            if progressed {
                 continue;
             }
             // If thousands are left, the surface causes them, and improving their surroundings does not help.
-            let is_worth =
+            let pays_off =
                 before.is_none_or(|before: usize| before.saturating_sub(bad.len()) >= bad.len() / 100);
-            let Some(more) = asked.next().filter(|_| is_worth) else { break };
+            let Some(more) = raises.next().filter(|_| pays_off) else { break };
             // Tets forced by walls that stay cannot get better, whatever lies around them.
             let (complex, stays, shell) = (&self.complex, self.surface.is_none(), &mut self.shells[0]);
             let is_unforced = |tet: &TetId| !(stays && is_forced(complex, None, *tet, shell));
@@ -184,7 +184,7 @@ impl Repair {
             self.improve_around(&unforced, self.target + more)?;
         }
         self.tried = Tried::nothing();
-        bad.append(&mut self.came_bad);
+        bad.append(&mut self.inserted_bad);
         bad.retain(|&t| self.is_bad(t));
         self.sort(&mut bad);
         Ok(bad)
@@ -211,7 +211,7 @@ impl Repair {
     /// Makes one pass over the bad tets that are left; returns those that remain.
     pub(super) fn pass(&mut self, pass: Pass, left: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
         if let (Some(surface), Pass::Soften(crease)) = (&mut self.surface, pass) {
-            surface.hold_features(&mut self.complex, crease);
+            surface.constrain_features(&mut self.complex, crease);
         }
         let left = if pass == Pass::Divide { left } else { self.run(left, rounds)? };
         if pass == Pass::Again { Ok(left) } else { self.divide(left, rounds) }
@@ -227,14 +227,14 @@ impl Repair {
         pass: impl Fn(&mut Self, Vec<TetId>) -> Result<Vec<TetId>>,
     ) -> Result<Vec<TetId>> {
         let forced = forced(&self.complex, self.surface.as_ref(), left);
-        self.complex.spare(&forced, self.target);
+        self.complex.exempt(&forced, self.target);
         let (start, operations) = (self.complex.mark(), self.operations);
         let unforced = pass(self, left.to_vec())?;
-        if unforced.len() + self.complex.n_spared() > left.len() {
+        if unforced.len() + self.complex.n_exempt() > left.len() {
             self.complex.undo(start);
             self.operations = operations;
         }
-        self.complex.spare_none();
+        self.complex.end_exemptions();
         Ok(self.below(self.target))
     }
 
@@ -247,8 +247,8 @@ impl Repair {
     /// Improves the tets of a zone as far as is possible without a long search. Walls stay, and kept tets do
     /// not count as bad.
     pub(super) fn best_within(&mut self, aim: Aim, zone: Vec<TetId>, rounds: usize) -> Result<()> {
-        let others = union(&self.others, &self.kept);
-        let (others, surface) = (std::mem::replace(&mut self.others, others), self.surface.take());
+        let never_bad = union(&self.never_bad, &self.kept);
+        let (never_bad, surface) = (std::mem::replace(&mut self.never_bad, never_bad), self.surface.take());
         if surface.is_some() {
             self.complex.keep_surface();
         }
@@ -256,16 +256,16 @@ impl Repair {
         if surface.is_some() {
             self.complex.adapt_surface();
         }
-        (self.others, self.surface) = (others, surface);
+        (self.never_bad, self.surface) = (never_bad, surface);
         done
     }
 
     /// Improves the tets of a zone as a whole, then raises the worst of all, then improves what that has
     /// changed without lowering the worst. Raising the worst first would leave a lower mean.
-    fn improve_and_raise(&mut self, aim: Aim, zone: Vec<TetId>, most_left: f64, rounds: usize) -> Result<()> {
+    fn improve_and_raise(&mut self, aim: Aim, zone: Vec<TetId>, max_left: f64, rounds: usize) -> Result<()> {
         self.improve(aim, zone)?;
         let begin = self.changes.now();
-        self.raise_worst(most_left, rounds)?;
+        self.raise_worst(max_left, rounds)?;
         let mut changed = self.below(aim.below);
         changed.retain(|&t| self.complex.vertices(t).iter().any(|&v| !self.changes.none_since(v, begin)));
         self.improve(Aim { floor: self.target, ..aim }, changed)
@@ -273,7 +273,7 @@ impl Repair {
 
     /// Whether so many tets are left that surfaces must force them: trying all operations for each would take
     /// long and help little.
-    pub(super) fn are_many(&self, n_left: usize) -> bool {
+    pub(super) fn are_too_many(&self, n_left: usize) -> bool {
         self.is_more(n_left, MANY)
     }
 
@@ -282,9 +282,9 @@ impl Repair {
         n as f64 > part * self.complex.n_tets() as f64
     }
 
-    /// Repairs up to a target that rises as long as no more than a fraction `most_left` of the tets is left
+    /// Repairs up to a target that rises as long as no more than a fraction `max_left` of the tets is left
     /// below it. The last rise is undone if it leaves more tets below the first target than before.
-    fn raise_worst(&mut self, most_left: f64, rounds: usize) -> Result<()> {
+    fn raise_worst(&mut self, max_left: f64, rounds: usize) -> Result<()> {
         let usual = self.target;
         for target in BEST {
             let n_bad = self.below(usual).len();
@@ -297,7 +297,7 @@ impl Repair {
                 break;
             }
             self.complex.forget();
-            if self.is_more(left.len(), most_left) {
+            if self.is_more(left.len(), max_left) {
                 break;
             }
         }
@@ -340,16 +340,16 @@ impl Repair {
     fn round(&mut self, bad: &mut Vec<TetId>) -> Result<bool> {
         bad.retain(|&t| self.is_bad(t));
         self.sort(bad);
-        let mut is_on = false;
+        let mut progressed = false;
         for (i, &tet) in bad.iter().enumerate() {
             if self.is_bad(tet) {
                 self.watch.go_on("repairing tets", i, bad.len())?;
-                is_on |= self.repair(tet);
+                progressed |= self.repair(tet);
             }
         }
-        bad.append(&mut self.came_bad);
+        bad.append(&mut self.inserted_bad);
         bad.retain(|&t| self.is_bad(t));
-        Ok(is_on)
+        Ok(progressed)
     }
 
     /// Improves the tets that share a vertex with a bad one, up to a higher target.
@@ -363,12 +363,12 @@ impl Repair {
         }
         let usual = std::mem::replace(&mut self.target, target);
         // Here all tets nearby are to reach the target.
-        let others = std::mem::take(&mut self.others);
+        let never_bad = std::mem::take(&mut self.never_bad);
         around.retain(|&t| self.is_bad(t));
         self.round(&mut around)?;
-        (self.target, self.others) = (usual, others);
+        (self.target, self.never_bad) = (usual, never_bad);
         around.retain(|&t| self.is_bad(t));
-        self.came_bad.append(&mut around);
+        self.inserted_bad.append(&mut around);
         Ok(())
     }
 
@@ -385,13 +385,13 @@ impl Repair {
     /// The tets below a quality that may be changed, worst first.
     pub(super) fn below(&self, quality: f64) -> Vec<TetId> {
         let mut below = self.complex.below(quality);
-        below.retain(|&t| !self.complex.is_locked(t) && !self.is_other(t));
+        below.retain(|&t| !self.complex.is_locked(t) && !self.is_never_bad(t));
         self.sort(&mut below);
         below
     }
 
     fn is_bad(&self, tet: TetId) -> bool {
-        let may_be = self.complex.is_alive(tet) && !self.complex.is_locked(tet) && !self.is_other(tet);
+        let may_be = self.complex.is_alive(tet) && !self.complex.is_locked(tet) && !self.is_never_bad(tet);
         may_be && self.complex.quality(tet) < self.target
     }
 
@@ -399,8 +399,8 @@ impl Repair {
         self.complex.is_original(tet) && is_among(&self.kept, tet)
     }
 
-    fn is_other(&self, tet: TetId) -> bool {
-        self.complex.is_original(tet) && is_among(&self.others, tet)
+    fn is_never_bad(&self, tet: TetId) -> bool {
+        self.complex.is_original(tet) && is_among(&self.never_bad, tet)
     }
 
     /// Makes the best change for one bad tet; returns whether there was one.
@@ -421,16 +421,16 @@ impl Repair {
                 break;
             }
         }
-        let Some((operation, came)) = self.candidate.commit(&mut self.complex) else {
+        let Some((operation, inserted)) = self.candidate.commit(&mut self.complex) else {
             if is_last {
                 self.tried.note_failure(&self.changes, tet, self.target);
             }
             return false;
         };
         self.operations.add(operation);
-        self.changes.inserted(&self.complex, came);
+        self.changes.inserted(&self.complex, inserted);
         let (complex, target) = (&self.complex, self.target);
-        self.came_bad.extend(came.iter().copied().filter(|&t| complex.quality(t) < target));
+        self.inserted_bad.extend(inserted.iter().copied().filter(|&t| complex.quality(t) < target));
         true
     }
 

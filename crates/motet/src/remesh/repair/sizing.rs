@@ -12,7 +12,7 @@ use crate::ops::{collapse, split_edge};
 use crate::remesh::lengths::locked_edges;
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
 use crate::remesh::repair::tried::Tried;
-use crate::remesh::repair::{Repair, WIDER};
+use crate::remesh::repair::{RAISES, Repair};
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{LONG, SHORT, SizeField};
 use crate::remesh::surface::Surface;
@@ -39,7 +39,7 @@ pub(in crate::remesh) struct Sizing {
     /// Whether long edges are split; if not, only short ones are collapsed, once.
     pub(in crate::remesh) splits: bool,
     /// No edge is split once the mesh has more than this many tets.
-    pub(in crate::remesh) most_tets: usize,
+    pub(in crate::remesh) max_tets: usize,
 }
 
 /// An edge, its length divided by its size, and a tet that has it or had it.
@@ -82,7 +82,7 @@ impl Repair {
             self.with_sizing(Self::collapse_short)?;
             return self.run(self.below(self.target), rounds);
         }
-        let (mut asked, mut before) = (WIDER.iter(), usize::MAX);
+        let (mut raises, mut before) = (RAISES.iter(), usize::MAX);
         self.tried = Tried::of(self.target);
         self.split_by_levels()?;
         for _ in 0..rounds {
@@ -93,10 +93,10 @@ impl Repair {
             if n_made as f64 > ENOUGH * short.len() as f64 {
                 continue;
             }
-            if asked.len() == 0 && short.len() < before {
-                (asked, before) = (WIDER.iter(), short.len());
+            if raises.len() == 0 && short.len() < before {
+                (raises, before) = (RAISES.iter(), short.len());
             }
-            let Some(more) = asked.next().filter(|_| !short.is_empty()) else { break };
+            let Some(more) = raises.next().filter(|_| !short.is_empty()) else { break };
             let tets: Vec<TetId> = short.iter().map(|edge| edge.tet).collect();
             self.improve_around(&tets, self.target + more)?;
         }
@@ -119,11 +119,11 @@ impl Repair {
         })?;
         let n_levels = (longest / LONG).log2().ceil() as i32;
         for level in (1..n_levels).rev() {
-            self.sizing.iter_mut().for_each(|sizing| sizing.field.long = LONG * 2f64.powi(level));
+            self.sizing.iter_mut().for_each(|sizing| sizing.field.long_limit = LONG * 2f64.powi(level));
             self.with_sizing(Self::split_long)?;
             self.repair_once()?;
         }
-        self.sizing.iter_mut().for_each(|sizing| sizing.field.long = LONG);
+        self.sizing.iter_mut().for_each(|sizing| sizing.field.long_limit = LONG);
         Ok(())
     }
 
@@ -150,21 +150,22 @@ impl Repair {
     /// Splits edges that are too long at their midpoints, longest first, until none is left that may be
     /// split; returns how many were split.
     fn split_long(&mut self, sizing: &mut Sizing) -> Result<usize> {
-        let too_long = sizing.field.long;
+        let too_long = sizing.field.long_limit;
         let mut long = BinaryHeap::from(self.edges(&mut sizing.field, |ratio, _| ratio > too_long));
-        let (mut n_split, mut change, mut came) = (0, Change::default(), Vec::new());
+        let (mut n_split, mut change, mut inserted) = (0, Change::default(), Vec::new());
         while let Some(edge) = long.pop() {
-            if self.complex.n_tets() > sizing.most_tets {
+            if self.complex.n_tets() > sizing.max_tets {
                 break;
             }
             self.watch.go_on("splitting long edges", n_split, n_split + long.len())?;
             // An edge is removed only by its own split.
             let Some(tet) = self.tet_at(edge) else { continue };
-            let Some(middle) = self.split(tet, edge.ends, &mut sizing.field, &mut change, &mut came) else {
+            let Some(middle) = self.split(tet, edge.ends, &mut sizing.field, &mut change, &mut inserted)
+            else {
                 continue;
             };
             n_split += 1;
-            for &tet in &came {
+            for &tet in &inserted {
                 for other in self.complex.vertices(tet).into_iter().filter(|&v| v != middle) {
                     let ends = [middle.min(other), middle.max(other)];
                     let ratio = sizing.field.of_edge(&self.complex, ends);
@@ -247,26 +248,26 @@ impl Repair {
     /// Collapses edges that are too short, shortest first, if that makes no edge too long and no tet that is
     /// bad and worse than the worst that was there; returns how many were collapsed.
     fn collapse_short(&mut self, sizing: &mut Sizing) -> Result<usize> {
-        let (mut n_collapsed, mut came) = (0, Vec::new());
+        let (mut n_collapsed, mut inserted) = (0, Vec::new());
         // Whether a tet at a vertex was inserted since all edges were last tried: elsewhere a refused
         // collapse would be refused again.
-        let mut has_news = vec![true; self.complex.n_vertex_slots()];
+        let mut is_changed = vec![true; self.complex.n_vertex_slots()];
         loop {
             let dense = if sizing.splits { DENSE } else { SHORT };
             let short = self.short_edges(&mut sizing.field, dense);
-            let had_news = std::mem::replace(&mut has_news, vec![false; self.complex.n_vertex_slots()]);
+            let was_changed = std::mem::replace(&mut is_changed, vec![false; self.complex.n_vertex_slots()]);
             let mut n_now = 0;
             for (i, &edge) in short.iter().enumerate() {
-                if !edge.ends.iter().any(|v| had_news[v.index()]) {
+                if !edge.ends.iter().any(|v| was_changed[v.index()]) {
                     continue;
                 }
                 self.watch.go_on("collapsing short edges", i, short.len())?;
                 // An earlier collapse may have removed this edge.
                 let Some(tet) = self.tet_at(edge) else { continue };
-                if self.collapse_to_size(tet, edge.ends, &mut sizing.field, &mut came) {
+                if self.collapse_to_size(tet, edge.ends, &mut sizing.field, &mut inserted) {
                     n_now += 1;
-                    let vertices = came.iter().flat_map(|&t| self.complex.vertices(t));
-                    vertices.for_each(|v| has_news[v.index()] = true);
+                    let vertices = inserted.iter().flat_map(|&t| self.complex.vertices(t));
+                    vertices.for_each(|v| is_changed[v.index()] = true);
                 }
             }
             n_collapsed += n_now;
@@ -282,12 +283,12 @@ impl Repair {
         let is_short =
             |ratio: f64, tet: TetId| ratio < SHORT || ratio < dense && !self.complex.is_original(tet);
         let mut short = self.edges(field, is_short);
-        let may_go = |v: &VertexId| match self.complex.hold(*v) {
+        let is_removable = |v: &VertexId| match self.complex.hold(*v) {
             Hold::Free => true,
             Hold::Surface | Hold::Edge => self.surface.is_some(),
             Hold::Fixed => false,
         };
-        short.retain(|edge| edge.ends.iter().any(may_go));
+        short.retain(|edge| edge.ends.iter().any(is_removable));
         short.sort_unstable();
         short
     }
@@ -298,18 +299,18 @@ impl Repair {
         tet: TetId,
         [a, b]: [VertexId; 2],
         field: &mut SizeField,
-        came: &mut Vec<TetId>,
+        inserted: &mut Vec<TetId>,
     ) -> bool {
         let mut best: Option<(f64, Change)> = None;
-        for [gone, kept] in [[a, b], [b, a]] {
-            if !self.may_go(tet, gone, kept) {
+        for [removed, kept] in [[a, b], [b, a]] {
+            if !self.may_collapse(tet, removed, kept) {
                 continue;
             }
-            self.star.gather(&self.complex, gone);
+            self.star.gather(&self.complex, removed);
             let bar = self.complex.worst_of(&self.star.tets).min(self.target);
             let bar = best.as_ref().map_or(bar.max(0.0), |b| b.0.max(bar)).next_down();
             let mut change = Change::default();
-            if collapse(&self.complex, &self.star.tets, gone, kept, bar, &mut change)
+            if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut change)
                 && field.lengthens_none(&self.complex, &change)
                 && self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, &change))
                 && self.complex.check_against(&change, bar).is_ok()
@@ -319,9 +320,9 @@ impl Repair {
         }
         let Some((worst, change)) = best else { return false };
         let Ok(checked) = self.complex.check_against(&change, worst.next_down()) else { return false };
-        self.complex.commit(checked, came);
+        self.complex.commit(checked, inserted);
         self.operations.add(Operation::Collapse);
-        self.changes.inserted(&self.complex, came);
+        self.changes.inserted(&self.complex, inserted);
         true
     }
 

@@ -117,29 +117,29 @@ impl Repair {
         }
     }
 
-    pub(super) fn collapse(&mut self, tet: TetId, gone: VertexId, kept: VertexId) {
-        if !self.may_go(tet, gone, kept) {
+    pub(super) fn collapse(&mut self, tet: TetId, removed: VertexId, kept: VertexId) {
+        if !self.may_collapse(tet, removed, kept) {
             return;
         }
-        self.star.gather(&self.complex, gone);
+        self.star.gather(&self.complex, removed);
         let bar = self.bar(tet);
-        if collapse(&self.complex, &self.star.tets, gone, kept, bar, &mut self.candidate.proposal) {
+        if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut self.candidate.proposal) {
             self.offer(Operation::Collapse);
         }
     }
 
-    /// Whether the constraint on vertex `gone` lets it be collapsed into `kept`: along the surface, or along
-    /// a feature.
-    pub(super) fn may_go(&mut self, tet: TetId, gone: VertexId, kept: VertexId) -> bool {
-        let hold = self.complex.hold(gone);
+    /// Whether the constraint on vertex `removed` lets it be collapsed into `kept`: along the surface, or
+    /// along a feature.
+    pub(super) fn may_collapse(&mut self, tet: TetId, removed: VertexId, kept: VertexId) -> bool {
+        let hold = self.complex.hold(removed);
         let Some(surface) = self.surface.as_ref().filter(|_| hold != Hold::Free && hold != Hold::Fixed)
         else {
             return hold == Hold::Free;
         };
         let shell = &mut self.shells[0];
-        shell.walk(&self.complex, tet, gone, kept);
-        let is_line = self.complex.line(gone, kept).is_some();
-        let is_feature = |surface: &Surface| !surface.is_smooth(&self.complex, [gone, kept], shell);
+        shell.walk(&self.complex, tet, removed, kept);
+        let is_line = self.complex.line(removed, kept).is_some();
+        let is_feature = |surface: &Surface| !surface.is_smooth(&self.complex, [removed, kept], shell);
         is_line || !shell.walls.is_empty() && (hold == Hold::Surface || is_feature(surface))
     }
 
@@ -193,9 +193,9 @@ impl Repair {
     /// Collapses any edge of a tet, in either direction.
     fn collapse_any(&mut self, tet: TetId) {
         let vertices = self.complex.vertices(tet);
-        for gone in vertices {
-            for kept in vertices.into_iter().filter(|&v| v != gone) {
-                self.collapse(tet, gone, kept);
+        for removed in vertices {
+            for kept in vertices.into_iter().filter(|&v| v != removed) {
+                self.collapse(tet, removed, kept);
             }
         }
     }

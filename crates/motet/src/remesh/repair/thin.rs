@@ -20,16 +20,18 @@ impl Repair {
     /// Collapses each inserted vertex that is close to others, latest first, where that leaves no bad tet.
     /// Returns whether there were any.
     pub(in crate::remesh) fn thin(&mut self) -> Result<bool> {
-        let mut came = Vec::new();
+        let mut inserted = Vec::new();
         let n_slots = self.complex.n_vertex_slots();
         for vertex in (0..n_slots).rev().map(VertexId::new) {
-            self.watch.go_on("taking vertices out", n_slots - vertex.index(), n_slots)?;
-            if self.complex.has_come(vertex) && self.complex.is_used(vertex) && self.closeness(vertex) < CLOSE
+            self.watch.go_on("removing superfluous vertices", n_slots - vertex.index(), n_slots)?;
+            if self.complex.is_inserted(vertex)
+                && self.complex.is_used(vertex)
+                && self.closeness(vertex) < CLOSE
             {
-                self.take_out(vertex, &mut came);
+                self.collapse_into_best(vertex, &mut inserted);
             }
         }
-        Ok(!came.is_empty())
+        Ok(!inserted.is_empty())
     }
 
     /// The mean length of the edges at a vertex, divided by that of the edges around it.
@@ -46,7 +48,7 @@ impl Repair {
     }
 
     /// Collapses a vertex into the neighbour that gives the best tets.
-    fn take_out(&mut self, vertex: VertexId, came: &mut Vec<TetId>) {
+    fn collapse_into_best(&mut self, vertex: VertexId, inserted: &mut Vec<TetId>) {
         self.star.gather(&self.complex, vertex);
         let mut ends: Vec<_> =
             self.star.tets.iter().flat_map(|&t| self.complex.vertices(t).map(|v| (v, t))).collect();
@@ -55,7 +57,7 @@ impl Repair {
         let mut best = Change::default();
         let mut bar = self.target.next_down();
         for (kept, tet) in ends {
-            if kept == vertex || !self.may_go(tet, vertex, kept) {
+            if kept == vertex || !self.may_collapse(tet, vertex, kept) {
                 continue;
             }
             let proposal = &mut self.candidate.proposal;
@@ -71,7 +73,7 @@ impl Repair {
             return;
         }
         if let Ok(checked) = self.complex.check_against(&best, self.target.next_down()) {
-            self.complex.commit(checked, came);
+            self.complex.commit(checked, inserted);
             self.operations.add(Operation::Collapse);
         }
     }

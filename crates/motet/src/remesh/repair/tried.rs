@@ -31,7 +31,7 @@ impl Changes {
     /// Records that tets were inserted.
     pub(super) fn inserted(&mut self, complex: &Complex, tets: &[TetId]) {
         for v in tets.iter().flat_map(|&t| complex.vertices(t)) {
-            *at(&mut self.of_vertex, v.index()) = self.now;
+            *entry(&mut self.of_vertex, v.index()) = self.now;
         }
         self.now += 1;
     }
@@ -69,7 +69,7 @@ impl Tried {
     /// Records that the repair of a tet failed.
     pub(super) fn note_failure(&mut self, changes: &Changes, tet: TetId, target: f64) {
         if target == self.target {
-            *at(&mut self.failed, tet.index()) = changes.now;
+            *entry(&mut self.failed, tet.index()) = changes.now;
         }
     }
 }
@@ -115,19 +115,19 @@ impl Settled {
         for &tet in tets {
             let places = rising(ends.map(|v| complex.place(tet, v)));
             if let Some(edge) = EDGES.iter().position(|edge| *edge == places) {
-                at(&mut self.of_tet, tet.index())[edge] = changes.now;
+                entry(&mut self.of_tet, tet.index())[edge] = changes.now;
             }
         }
     }
 
     /// Records that the removal of a facet failed.
     pub(super) fn settle_facet(&mut self, changes: &Changes, tet: TetId, facet: usize) {
-        at(&mut self.of_tet, tet.index())[EDGES.len() + facet] = changes.now;
+        entry(&mut self.of_tet, tet.index())[EDGES.len() + facet] = changes.now;
     }
 
     /// Records that a vertex could not be moved.
     pub(super) fn settle_vertex(&mut self, changes: &Changes, vertex: VertexId) {
-        *at(&mut self.of_vertex, vertex.index()) = changes.now;
+        *entry(&mut self.of_vertex, vertex.index()) = changes.now;
     }
 
     fn time(&self, tet: TetId, place: usize) -> u32 {
@@ -136,7 +136,7 @@ impl Settled {
 }
 
 /// The entry at an index; the list grows if it is shorter.
-fn at<T: Clone + Default>(times: &mut Vec<T>, i: usize) -> &mut T {
+fn entry<T: Clone + Default>(times: &mut Vec<T>, i: usize) -> &mut T {
     if times.len() <= i {
         times.resize(i + 1, T::default());
     }

@@ -10,15 +10,15 @@ use crate::geometry::vector::{in_range, sub};
 use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
 use crate::motion::{LeavesPlane, Mover, mesh_velocity};
-use crate::moving::contents::go_to;
-use crate::moving::first::{FirstMesh, Returns};
+use crate::moving::contents::move_points;
+use crate::moving::current::{Current, InFirst, Records};
+use crate::moving::first_mesh::{FirstMesh, Returns};
 use crate::moving::hold::{self, Held, Hold};
-use crate::moving::legs::{Reached, Way};
-use crate::moving::now::{InFirst, Known, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
 use crate::moving::sizes::{SizeMap, Sizes};
 use crate::moving::step::{Change, Seconds, Step, Why, WorstTet};
+use crate::moving::step_run::{StepResult, StepRun};
 use crate::moving::wall::Wall;
 use crate::moving::watch::Watch;
 use crate::refine::{self, Criterion, MeshRefinement, Size, Wanted};
@@ -32,7 +32,7 @@ use crate::remesh::Counts;
 pub struct MovingMesh {
     pub(super) options: Options,
     pub(super) wall: Wall,
-    pub(super) now: Now,
+    pub(super) now: Current,
     pub(super) clock: Clock,
     pub(super) changes: VecDeque<(usize, Arc<History>)>,
     /// Changes of steps up to this one are no longer known.
@@ -69,9 +69,9 @@ impl MovingMesh {
         options.check()?;
         let mover = Mover::new(mesh, &options.motion.of(mesh), threads)?;
         let wall = Wall::of(mesh, mover.boundary(), &options)?;
-        let mut known = Known::at_first(mesh, mover.boundary());
-        known.rest = options.returns.then(|| mesh.points.clone());
-        let now = Now::of(mesh.clone(), mover, known, Vec::new(), &wall, threads)?;
+        let mut records = Records::at_first(mesh, mover.boundary());
+        records.rest = options.returns.then(|| mesh.points.clone());
+        let now = Current::of(mesh.clone(), mover, records, Vec::new(), &wall, threads)?;
         let mut moving = Self::of(options, wall, now, Sizes::at_first(mesh), Clock::default(), threads)?;
         moving.remember_first(threads);
         moving.measure_gaps(threads)?;
@@ -81,7 +81,7 @@ impl MovingMesh {
     pub(super) fn of(
         options: Options,
         wall: Wall,
-        now: Now,
+        now: Current,
         sizes: Sizes,
         clock: Clock,
         threads: &Threads,
@@ -107,7 +107,7 @@ impl MovingMesh {
     fn remember_first(&mut self, threads: &Threads) {
         self.returns.first = FirstMesh::of(&self.now, &self.options, threads);
         if self.returns.first.is_some() {
-            self.now.known.in_first = InFirst::same(&self.now.mesh);
+            self.now.records.in_first = InFirst::same(&self.now.mesh);
         }
     }
 
@@ -154,12 +154,12 @@ impl MovingMesh {
         let Self { now, clock, .. } = self;
         let points = &now.mesh.points;
         // A step without duration has no velocity.
-        mesh_velocity(&now.known.before, points, clock.dt).unwrap_or_else(|_| vec![[0.0; 3]; points.len()])
+        mesh_velocity(&now.records.before, points, clock.dt).unwrap_or_else(|_| vec![[0.0; 3]; points.len()])
     }
 
     /// The displacement of each vertex from its first position.
     pub fn displacement(&self) -> Vec<Point> {
-        let pairs = self.now.mesh.points.iter().zip(&self.now.known.first);
+        let pairs = self.now.mesh.points.iter().zip(&self.now.records.first);
         pairs.map(|(&p, &first)| sub(p, first)).collect()
     }
 
@@ -210,15 +210,17 @@ impl MovingMesh {
     fn not_known(&self, step: usize) -> Error {
         let last = self.clock.step;
         match self.forgotten.filter(|_| step <= last) {
-            None => Error::options(format!("step {step} was not made yet: the last one is {last}"))
-                .remedy(format!("ask for a step up to {last}")),
+            None => Error::options(format!("step {step} has not been made yet: the last one is {last}"))
+                .remedy(format!("give a step up to {last}")),
             Some(first) => Error::options(format!(
                 "changes since step {step} are not known, only those since step {first}: \
-                 a state that is loaded does not hold those before it was saved, and only the last {} are remembered",
+                 a state that is loaded does not hold those before it was saved, \
+                 and only the last {} are remembered",
                 self.options.remembered
             ))
             .remedy(format!(
-                "carry arrays before the state is saved, have more changes remembered, or ask for step {first} or a later one"
+                "transfer arrays before the state is saved, increase `remembered`, \
+                 or give step {first} or a later one"
             )),
         }
     }
@@ -244,21 +246,21 @@ impl MovingMesh {
         let held = self.hold.as_mut().map(|hold| hold.stop(&self.wall.places, displacement, threads));
         let holding = begin.elapsed().as_secs_f64();
         let displacement = held.as_ref().map_or(displacement, |held| &held.displacement);
-        let mut way = self.way(displacement, time, threads);
-        let Reached { changed, left, shape, fraction } = way.go(&self.now)?;
-        let Way { points, mut seconds, changes, legs, n_free, .. } = way;
+        let mut run = self.step_run(displacement, time, threads);
+        let StepResult { changed, left, shape, fraction } = run.go(&self.now)?;
+        let StepRun { points, mut seconds, changes, legs, n_free, .. } = run;
         match changed {
             Some(now) => self.now = now,
-            None => self.now.known.before.clone_from(&self.now.mesh.points),
+            None => self.now.records.before.clone_from(&self.now.mesh.points),
         }
         match left {
             Some(left) => self.now.left = left,
-            None => self.now.forget_good(&shape),
+            None => self.now.drop_good(&shape),
         }
-        go_to(&mut self.now.mesh, &points, &self.options.contents);
+        move_points(&mut self.now.mesh, &points, &self.options.contents);
         let is_complete = fraction == 1.0;
         if is_complete && self.options.returns && self.wall.is_at_rest(displacement) {
-            self.now.known.rest = Some(self.now.mesh.points.clone());
+            self.now.records.rest = Some(self.now.mesh.points.clone());
         }
         let reached = if is_complete { time } else { start + (time - start) * fraction };
         self.clock = Clock { step: self.clock.step + 1, time: reached, dt: reached - start, n_free };
@@ -306,9 +308,9 @@ impl MovingMesh {
     /// # Errors
     /// If an array cannot be carried, and if the watch stops the call. Then everything is as before the call.
     pub fn repair(&mut self, threads: &Threads) -> Result<Option<Change>> {
-        let mut way = self.way(&[], self.clock.time, threads);
-        let Reached { changed, left, .. } = way.stay(&self.now, self.clock.step == 0)?;
-        let (changes, n_free) = (way.changes, way.n_free);
+        let mut run = self.step_run(&[], self.clock.time, threads);
+        let StepResult { changed, left, .. } = run.repair_in_place(&self.now, self.clock.step == 0)?;
+        let (changes, n_free) = (run.changes, run.n_free);
         self.clock.n_free = n_free;
         if let Some(left) = left {
             self.now.left = left;
@@ -324,8 +326,8 @@ impl MovingMesh {
         Ok(changes.into_iter().next())
     }
 
-    fn way<'a>(&'a self, displacement: &'a [Point], time: f64, threads: &'a Threads) -> Way<'a> {
-        Way {
+    fn step_run<'a>(&'a self, displacement: &'a [Point], time: f64, threads: &'a Threads) -> StepRun<'a> {
+        StepRun {
             options: &self.options,
             wall: &self.wall,
             returns: &self.returns,
@@ -366,7 +368,7 @@ impl MovingMesh {
     fn divide(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Option<Change>> {
         let gaps = self.gaps_here(threads)?;
         let mut given = self.now.mesh.clone();
-        let mut rules = self.now.put_known(&mut given, &self.now.known.before, &self.options.rules);
+        let mut rules = self.now.put_records(&mut given, &self.now.records.before, &self.options.rules);
         if let Some(gaps) = gaps {
             let sizes: Vec<f64> =
                 gaps.into_iter().map(|gap| gap.clamp(f64::MIN_POSITIVE, NO_LIMIT)).collect();
@@ -392,12 +394,12 @@ impl MovingMesh {
     /// mesh, with its records as arrays.
     pub(super) fn take_over(
         &mut self,
-        came: (&Mesh, Mesh),
+        changed: (&Mesh, Mesh),
         history: History,
         (shape, operations): (&Shape, Counts),
         threads: &Threads,
     ) -> Result<Change> {
-        let now = self.now.next(came, &history, Vec::new(), (&self.wall, &self.options), threads)?;
+        let now = self.now.next(changed, &history, Vec::new(), (&self.wall, &self.options), threads)?;
         let counts = [&self.now, &now].map(|now| now.tets.len());
         let points_before = self.now.mesh.points.clone();
         let (when, history) = ((self.clock.time, Why::Refinement), Arc::new(history));
@@ -406,7 +408,7 @@ impl MovingMesh {
         self.clock.n_free = None;
         self.sizes.now = Arc::new(SizeMap::anew(&self.now, &self.options, threads));
         // The first mesh is no longer the one to restore.
-        (self.returns.first, self.now.known.in_first) = (None, InFirst::default());
+        (self.returns.first, self.now.records.in_first) = (None, InFirst::default());
         self.remember(std::slice::from_ref(&change));
         Ok(change)
     }
@@ -424,20 +426,18 @@ impl MovingMesh {
         let n = self.wall.places.len();
         if displacement.len() != n {
             return Err(Error::input(format!(
-                "{} displacements are given, but {n} vertices are driven",
+                "got {} displacements for {n} driven vertices",
                 displacement.len()
             ))
-            .remedy("give one for each vertex that was driven at first, whatever the mesh has become"));
+            .remedy("give one for each driven vertex of the first mesh, whatever the mesh has become"));
         }
         if let Some(i) = displacement.iter().position(|&d| !in_range(d)) {
-            return Err(
-                Error::input("a displacement that is no finite number").at(format!("driven vertex {i}"))
-            );
+            return Err(Error::input("a displacement is not finite").at(format!("driven vertex {i}")));
         }
         match time > self.clock.time && time.is_finite() {
             true => Ok(()),
             false => Err(Error::options(format!(
-                "the time {time} is not after {}, which was reached",
+                "the time must advance: {time} is not after the current time {}",
                 self.clock.time
             ))),
         }

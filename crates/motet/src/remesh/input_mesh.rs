@@ -13,13 +13,13 @@ use crate::spatial::{Bounds, BoxTree, bounding_box};
 
 /// The tets of a mesh before anything changes, in a search tree.
 #[derive(Debug)]
-pub(super) struct Given {
+pub(super) struct InputMesh {
     tree: BoxTree,
     points: Vec<Point>,
     tets: Vec<[VertexId; 4]>,
 }
 
-impl Given {
+impl InputMesh {
     pub(super) fn new(mesh: &TetMesh) -> Self {
         let boxes: Vec<Bounds> =
             mesh.tets.iter().map(|tet| bounding_box(tet.map(|v| mesh.points[v.index()]))).collect();
@@ -55,9 +55,9 @@ fn swapped([a, b, c, d]: [f64; 4]) -> [f64; 4] {
 /// step. Tets are to be good there, too.
 #[derive(Debug)]
 pub(super) struct Pose {
-    given: Arc<Given>,
+    input: Arc<InputMesh>,
     /// Position in this pose of each vertex of the given mesh.
-    of_given: Vec<Point>,
+    input_points: Vec<Point>,
     /// Position in this pose of each vertex of the mesh as it is now.
     points: Vec<Point>,
     /// EAS of each tet; NaN until it is first requested.
@@ -65,9 +65,9 @@ pub(super) struct Pose {
 }
 
 impl Pose {
-    /// A pose in which each vertex of the given mesh is at `of_given`.
-    pub(super) fn new(given: Arc<Given>, of_given: Vec<Point>) -> Self {
-        Self { given, points: of_given.clone(), of_given, qualities: Vec::new() }
+    /// A pose in which each vertex of the given mesh is at `input_points`.
+    pub(super) fn new(input: Arc<InputMesh>, input_points: Vec<Point>) -> Self {
+        Self { input, points: input_points.clone(), input_points, qualities: Vec::new() }
     }
 
     /// Updates the pose after any number of changes.
@@ -107,13 +107,12 @@ impl Pose {
     /// the given mesh that contains it.
     fn place(&self, complex: &Complex, vertex: VertexId) -> Point {
         let place = complex.point(vertex);
-        if self.given.points().get(vertex.index()) == Some(&place) {
-            return self.of_given[vertex.index()];
+        if self.input.points().get(vertex.index()) == Some(&place) {
+            return self.input_points[vertex.index()];
         }
-        let Some((vertices, weights)) = self.given.at(place) else { return place };
-        vertices
-            .into_iter()
-            .zip(weights)
-            .fold([0.0; 3], |sum, (vertex, weight)| add(sum, scale(self.of_given[vertex.index()], weight)))
+        let Some((vertices, weights)) = self.input.at(place) else { return place };
+        vertices.into_iter().zip(weights).fold([0.0; 3], |sum, (vertex, weight)| {
+            add(sum, scale(self.input_points[vertex.index()], weight))
+        })
     }
 }

@@ -8,7 +8,7 @@ use crate::geometry::vector::{add, sub};
 use crate::mesh::history::{History, Rule, Rules};
 use crate::mesh::{Field, Mesh};
 use crate::motion::Mover;
-use crate::moving::contents::{go_to, hand_over};
+use crate::moving::contents::{move_points, pass_contents};
 use crate::moving::options::Options;
 use crate::moving::shapes::{Shape, Tets};
 use crate::moving::step::{InvertedAtStart, WorstTet};
@@ -16,18 +16,18 @@ use crate::moving::wall::{Drive, NO_NODE, Wall};
 
 /// A bad tet that repair has left is tried again once the ratio of its EAS to what it was then is outside
 /// this range: worse, or better because walls no longer force it.
-const AS_LEFT: RangeInclusive<f64> = 0.5..=1.25;
+const UNCHANGED_RATIO: RangeInclusive<f64> = 0.5..=1.25;
 
 /// The mesh, and everything that is rebuilt when it changes.
 #[derive(Debug)]
-pub(super) struct Now {
+pub(super) struct Current {
     /// The mesh with its points at their current positions, and the user's arrays.
     pub(super) mesh: Mesh,
     pub(super) tets: Tets,
     /// Moves the vertices; its reference is the mesh after the last change.
     pub(super) mover: Mover,
     /// Records of each vertex and cell.
-    pub(super) known: Known,
+    pub(super) records: Records,
     drive: Drive,
     /// Bad tets that repair has left, sorted by cell.
     pub(super) left: Vec<LeftBad>,
@@ -45,7 +45,7 @@ pub(super) struct LeftBad {
 
 /// Records of each vertex and cell besides its position.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Known {
+pub(super) struct Records {
     /// First position of each vertex; for one that was inserted later, interpolated between the vertices that
     /// it came from.
     pub(super) first: Vec<Point>,
@@ -96,7 +96,7 @@ fn of_kept<I: Id>(kept: &[I], before: &[I]) -> Vec<I> {
     kept.iter().map(|old| if *old == I::NONE { I::NONE } else { before[old.place()] }).collect()
 }
 
-impl Known {
+impl Records {
     /// The records of a mesh in its first position.
     pub(super) fn at_first(mesh: &Mesh, driven: &[VertexId]) -> Self {
         let mut node = vec![NO_NODE; mesh.points.len()];
@@ -117,32 +117,32 @@ fn first_eas(mesh: &Mesh) -> Vec<f64> {
     mesh.tet_field("eas", eas).values.to_f64().unwrap_or_default()
 }
 
-impl Now {
+impl Current {
     /// Sets up the motion of a mesh from its current position.
     pub(super) fn new(
         mesh: Mesh,
-        known: Known,
+        records: Records,
         left: Vec<LeftBad>,
         wall: &Wall,
         options: &Options,
         threads: &Threads,
     ) -> Result<Self> {
         let mover = Mover::new(&mesh, &options.motion.of(&mesh), threads)?;
-        Self::of(mesh, mover, known, left, wall, threads)
+        Self::of(mesh, mover, records, left, wall, threads)
     }
 
     /// Builds the state of a mesh with a given mover, whose reference may differ from the current position.
     pub(super) fn of(
         mesh: Mesh,
         mover: Mover,
-        known: Known,
+        records: Records,
         left: Vec<LeftBad>,
         wall: &Wall,
         threads: &Threads,
     ) -> Result<Self> {
-        let drive = wall.drive(mover.boundary(), &known.first, &known.node, threads)?;
+        let drive = wall.drive(mover.boundary(), &records.first, &records.node, threads)?;
         let tets = Tets::of(&mesh);
-        Ok(Self { mesh, tets, mover, known, drive, left })
+        Ok(Self { mesh, tets, mover, records, drive, left })
     }
 
     /// Continues with a mesh derived from `given`: this one, with [its records](Self::put_known) as arrays.
@@ -154,14 +154,14 @@ impl Now {
         (wall, options): (&Wall, &Options),
         threads: &Threads,
     ) -> Result<Self> {
-        hand_over(given, &mut mesh, history, &options.contents);
-        let known = self.known_of(&mut mesh, history)?;
-        Self::new(mesh, known, left, wall, options, threads)
+        pass_contents(given, &mut mesh, history, &options.contents);
+        let records = self.take_records(&mut mesh, history)?;
+        Self::new(mesh, records, left, wall, options, threads)
     }
 
     /// Tets that are flat or inverted at the positions that their vertices had when the last step began.
     pub(super) fn inverted_at_start(&self, threads: &Threads) -> Option<InvertedAtStart> {
-        let shape = self.tets.shape(&self.known.before, 0.0, threads);
+        let shape = self.tets.shape(&self.records.before, 0.0, threads);
         let worst = shape.worst.map(|(cell, eas, place)| WorstTet { eas, cell, place });
         worst.filter(|_| shape.inverted > 0).map(|worst| InvertedAtStart { tets: shape.inverted, worst })
     }
@@ -171,7 +171,8 @@ impl Now {
     pub(super) fn target(&self, displacement: &[Point]) -> Vec<Point> {
         let carried = self.drive.carry(displacement);
         let reference = self.mover.reference();
-        let of = |(v, d): (&VertexId, Point)| sub(add(self.known.first[v.index()], d), reference[v.index()]);
+        let of =
+            |(v, d): (&VertexId, Point)| sub(add(self.records.first[v.index()], d), reference[v.index()]);
         self.mover.boundary().iter().zip(carried).map(of).collect()
     }
 
@@ -185,11 +186,11 @@ impl Now {
     /// Whether repair has left this tet, and it is about as bad as then.
     pub(super) fn is_left(&self, cell: CellId, eas: f64) -> bool {
         let found = self.left.binary_search_by_key(&cell, |left| left.cell);
-        found.is_ok_and(|i| AS_LEFT.contains(&(eas / self.left[i].eas)) || eas == self.left[i].eas)
+        found.is_ok_and(|i| UNCHANGED_RATIO.contains(&(eas / self.left[i].eas)) || eas == self.left[i].eas)
     }
 
     /// Drops the records of left tets that are no longer bad: if they become bad again they are tried again.
-    pub(super) fn forget_good(&mut self, shape: &Shape) {
+    pub(super) fn drop_good(&mut self, shape: &Shape) {
         let mut bad: Vec<CellId> = shape.bad.iter().map(|(cell, _)| *cell).collect();
         bad.sort_unstable();
         self.left.retain(|left| bad.binary_search(&left.cell).is_ok());
@@ -207,16 +208,17 @@ impl Now {
     /// The mesh with its vertices at `points`.
     pub(super) fn moved(&self, points: &[Point], contents: &[String]) -> Mesh {
         let mut mesh = self.mesh.clone();
-        go_to(&mut mesh, points, contents);
+        move_points(&mut mesh, points, contents);
         mesh
     }
 
     /// Adds the records of vertices to a mesh that is about to change, as point arrays, and returns the rules
     /// with those for them. `before` is where the vertices were when the step began.
-    pub(super) fn put_known(&self, mesh: &mut Mesh, before: &[Point], rules: &Rules) -> Rules {
+    pub(super) fn put_records(&self, mesh: &mut Mesh, before: &[Point], rules: &Rules) -> Rules {
         let mut rules = rules.clone();
-        let rest = self.known.rest.as_deref().map(|rest| (REST, rest));
-        for (name, values) in [(FIRST, self.known.first.as_slice()), (BEFORE, before)].into_iter().chain(rest)
+        let rest = self.records.rest.as_deref().map(|rest| (REST, rest));
+        for (name, values) in
+            [(FIRST, self.records.first.as_slice()), (BEFORE, before)].into_iter().chain(rest)
         {
             mesh.set_point_field(Field::vectors(name, values));
             rules.points.insert(name.to_owned(), Rule::Linear);
@@ -228,25 +230,26 @@ impl Now {
     }
 
     /// Takes the records of vertices off a mesh derived from one that [has them as arrays](Self::put_known).
-    pub(super) fn known_of(&self, mesh: &mut Mesh, history: &History) -> Result<Known> {
+    pub(super) fn take_records(&self, mesh: &mut Mesh, history: &History) -> Result<Records> {
         let mut take = |name: &str| -> Result<Field> {
             let place = mesh.point_data.iter().position(|field| field.name == name);
-            let place = place.ok_or_else(|| Error::input(format!("the array {name} was lost on the way")))?;
+            let place = place
+                .ok_or_else(|| Error::input(format!("the array {name} was lost while the mesh changed")))?;
             Ok(mesh.point_data.remove(place))
         };
         let (first, before) = (take(FIRST)?.to_vectors()?, take(BEFORE)?.to_vectors()?);
-        let rest = self.known.rest.as_ref().map(|_| take(REST)?.to_vectors()).transpose()?;
+        let rest = self.records.rest.as_ref().map(|_| take(REST)?.to_vectors()).transpose()?;
         let node = |old: &VertexId| match *old == VertexId::NONE {
             true => NO_NODE,
-            false => self.known.node[old.index()],
+            false => self.records.node[old.index()],
         };
         let eas = |old: &CellId| match *old == CellId::NONE {
             true => f64::NAN,
-            false => self.known.first_eas[old.index()],
+            false => self.records.first_eas[old.index()],
         };
-        Ok(Known {
+        Ok(Records {
             first_eas: history.cells.kept().iter().map(eas).collect(),
-            in_first: self.known.in_first.after(history),
+            in_first: self.records.in_first.after(history),
             first,
             rest,
             before,

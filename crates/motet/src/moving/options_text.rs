@@ -8,20 +8,20 @@ use crate::base::{Error, Result};
 use crate::moving::options::Options;
 
 /// The largest number of differences that are named.
-const MOST: usize = 4;
+const MAX_NAMED: usize = 4;
 
 impl Options {
     /// All options that steps depend on, as JSON. The number of remembered changes is left out.
     ///
     /// # Errors
     /// If they cannot be written as JSON.
-    pub(super) fn described(&self) -> Result<String> {
+    pub(super) fn to_json(&self) -> Result<String> {
         serde_json::to_string(&Self { remembered: 0, ..self.clone() })
             .map_err(|e| Error::options(format!("the options cannot be written as JSON: {e}")))
     }
 }
 
-/// The differences between two [`Options::described`], each with its name, its old and its new value; empty
+/// The differences between two [`Options::to_json`], each with its name, its old and its new value; empty
 /// if there are none.
 pub(super) fn differences(was: &str, is: &str) -> Vec<String> {
     let (was, is) = (values(was), values(is));
@@ -33,9 +33,9 @@ pub(super) fn differences(was: &str, is: &str) -> Vec<String> {
     let mut named: Vec<String> =
         differ.map(|name| format!("{name} was {} and is {}", value(&was, name), value(&is, name))).collect();
     let n = named.len();
-    if n > MOST {
-        named.truncate(MOST);
-        named.push(format!("{} more", n - MOST));
+    if n > MAX_NAMED {
+        named.truncate(MAX_NAMED);
+        named.push(format!("{} more", n - MAX_NAMED));
     }
     named
 }
@@ -63,23 +63,23 @@ fn values(text: &str) -> BTreeMap<String, Value> {
 mod tests {
     use super::*;
 
-    fn described(options: &Options) -> String {
-        options.described().unwrap()
+    fn to_json(options: &Options) -> String {
+        options.to_json().unwrap()
     }
 
     #[test]
     fn what_differs_is_named_and_what_is_remembered_does_not_count() {
         let options = Options::default();
         let same = Options { remembered: 3, ..options.clone() };
-        assert!(differences(&described(&options), &described(&same)).is_empty());
+        assert!(differences(&to_json(&options), &to_json(&same)).is_empty());
         let mut other = Options { floor: 0.1, contents: vec!["dye".into()], ..options.clone() };
         other.motion.smoothing = 7;
-        let message = differences(&described(&options), &described(&other)).join("; ");
+        let message = differences(&to_json(&options), &to_json(&other)).join("; ");
         assert!(message.contains("motion.smoothing was 0 and is 7"), "{message}");
         assert!(message.contains("floor was 0.05 and is 0.1"), "{message}");
         assert!(message.contains("contents") && message.contains("dye"), "{message}");
         let none = Options { repair: None, ..options.clone() };
-        let message = differences(&described(&options), &described(&none)).join("; ");
+        let message = differences(&to_json(&options), &to_json(&none)).join("; ");
         assert!(message.contains("repair"), "{message}");
     }
 }

@@ -3,26 +3,23 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::base::{CellId, Point, Result, Threads, VertexId};
+use crate::base::{CellId, Point, Result, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::{add, norm, scale, sub};
 use crate::mesh::history::Origin;
-use crate::moving::first::Returns;
-use crate::moving::now::{BEFORE, Known, LeftBad, Now};
-use crate::moving::options::Options;
+use crate::moving::current::{BEFORE, Current, LeftBad, Records};
 use crate::moving::shapes::Shape;
-use crate::moving::sizes::SizeMap;
-use crate::moving::step::{Change, Seconds, Why};
-use crate::moving::wall::Wall;
+use crate::moving::step::{Change, Why};
+use crate::moving::step_run::{StepResult, StepRun};
 use crate::remesh::{self, Density, Goal, Improve, MeshOutcome, remesh_mesh};
 
 /// Parts are halved down to this if tets would become flat: repairing more often than that makes no progress.
-const SMALLEST: f64 = 1.0 / 32.0;
+const MIN_PART_IF_FLAT: f64 = 1.0 / 32.0;
 /// Parts are halved down to this if tets would be inverted.
-const LEAST: f64 = 1.0 / 4096.0;
+const MIN_PART_IF_INVERTED: f64 = 1.0 / 4096.0;
 
 /// The largest number of times a repair is repeated with more tets held.
-const MOST_HELD: usize = 8;
+const MAX_REPEATS: usize = 8;
 
 /// No vertex is extrapolated to the next step farther than this fraction of the mean length of its edges.
 const FARTHEST_AHEAD: f64 = 0.5;
@@ -32,40 +29,6 @@ const AS_AT_FIRST: f64 = 0.005;
 
 /// Tets within this many layers of a bad one are near it.
 const RINGS: usize = 2;
-
-/// The progress of one step.
-pub(super) struct Way<'a> {
-    pub(super) options: &'a Options,
-    pub(super) wall: &'a Wall,
-    /// The record of returns so far.
-    pub(super) returns: &'a Returns,
-    /// Requested edge lengths.
-    pub(super) sizes: &'a SizeMap,
-    /// Displacement of each node of the wall from its first position.
-    pub(super) displacement: &'a [Point],
-    /// The times of the start and the end of the step.
-    pub(super) times: [f64; 2],
-    /// How many free vertices the mesh is to have; `None`: as many as it has when it first changes.
-    pub(super) n_free: Option<usize>,
-    pub(super) threads: &'a Threads,
-    /// The new positions of the vertices: scratch space, and the result.
-    pub(super) points: Vec<Point>,
-    pub(super) seconds: Seconds,
-    pub(super) changes: Vec<Change>,
-    pub(super) legs: usize,
-}
-
-/// The result of a step.
-pub(super) struct Reached {
-    /// The new mesh; `None`: the old one, with its vertices at [`Way::points`].
-    pub(super) changed: Option<Now>,
-    /// Bad tets that could not be repaired, if repair was tried last and changed nothing.
-    pub(super) left: Option<Vec<LeftBad>>,
-    /// The shape of the tets.
-    pub(super) shape: Shape,
-    /// The fraction of the step that was completed.
-    pub(super) fraction: f64,
-}
 
 /// How hard repair tries.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -79,42 +42,42 @@ enum Effort {
     All,
 }
 
-impl Way<'_> {
+impl StepRun<'_> {
     /// Makes the step from `start`, which is not changed. If walls have come back, the first mesh may be put
     /// back at the end.
-    pub(super) fn go(&mut self, start: &Now) -> Result<Reached> {
+    pub(super) fn go(&mut self, start: &Current) -> Result<StepResult> {
         let reached = self.moved_and_repaired(start)?;
         if reached.fraction < 1.0 || self.returns.count.is_unsettled {
             return Ok(reached);
         }
         let put_back = match &reached.changed {
-            Some(now) => self.put_back(now, &now.known.before, true)?,
+            Some(now) => self.put_back(now, &now.records.before, true)?,
             None => self.put_back(start, &start.mesh.points, false)?,
         };
         Ok(put_back.map_or(reached, |put_back| self.at_first_mesh(put_back)))
     }
 
-    fn at_first_mesh(&mut self, (now, shape): (Now, Shape)) -> Reached {
+    fn at_first_mesh(&mut self, (now, shape): (Current, Shape)) -> StepResult {
         self.points.clone_from(&now.mesh.points);
-        Reached { changed: Some(now), left: None, shape, fraction: 1.0 }
+        StepResult { changed: Some(now), left: None, shape, fraction: 1.0 }
     }
 
-    fn moved_and_repaired(&mut self, start: &Now) -> Result<Reached> {
-        let (mut changed, mut gone, mut effort) = (None::<Now>, 0.0, Effort::Usual);
+    fn moved_and_repaired(&mut self, start: &Current) -> Result<StepResult> {
+        let (mut changed, mut done, mut effort) = (None::<Current>, 0.0, Effort::Usual);
         loop {
             let watch = self.threads.watch();
             watch.go_on("moving and repairing", self.legs, self.options.motion.limits.substeps)?;
             let now = changed.as_ref().unwrap_or(start);
             let (part, shape) = self.leg(now)?;
             self.legs += 1;
-            gone = if part == 1.0 { 1.0 } else { gone + (1.0 - gone) * part };
+            done = if part == 1.0 { 1.0 } else { done + (1.0 - done) * part };
             let is_stuck = part == 0.0;
             if is_stuck && effort == Effort::All || self.legs >= self.options.motion.limits.substeps {
-                return Ok(Reached { changed, left: None, shape, fraction: gone });
+                return Ok(StepResult { changed, left: None, shape, fraction: done });
             }
             let is_end = part == 1.0;
             // The first mesh of a step is where it was when the step began.
-            let before = changed.as_ref().map_or(&start.mesh.points, |now| &now.known.before);
+            let before = changed.as_ref().map_or(&start.mesh.points, |now| &now.records.before);
             // A mesh that will be replaced anyway is not repaired first.
             if is_end
                 && self.returns.count.is_unsettled
@@ -124,22 +87,22 @@ impl Way<'_> {
             }
             let is_worth_it = shape.bad.iter().any(|&(cell, eas)| !now.is_left(cell, eas));
             if is_end && !(is_worth_it && self.options.repair.is_some()) {
-                return Ok(Reached { changed, left: None, shape, fraction: gone });
+                return Ok(StepResult { changed, left: None, shape, fraction: done });
             }
             effort = if is_stuck { Effort::All } else { Effort::Usual };
-            let time = self.times[0] + (self.times[1] - self.times[0]) * gone;
+            let time = self.times[0] + (self.times[1] - self.times[0]) * done;
             let next = match self.repaired(now, before, &shape, time, effort)? {
                 Repaired::Changed(next) => *next,
                 Repaired::Left(left) if is_end => {
-                    return Ok(Reached { changed, left: Some(left), shape, fraction: gone });
+                    return Ok(StepResult { changed, left: Some(left), shape, fraction: done });
                 }
-                Repaired::Left(left) => self.re_referenced(now, before, left)?,
+                Repaired::Left(left) => self.rebased(now, before, left)?,
             };
             self.points.clone_from(&next.mesh.points);
             if is_end {
-                let (next, shape) = self.tried_again(next, effort, time)?;
+                let (next, shape) = self.improved_around(next, effort, time)?;
                 self.points.clone_from(&next.mesh.points);
-                return Ok(Reached { changed: Some(next), left: None, shape, fraction: gone });
+                return Ok(StepResult { changed: Some(next), left: None, shape, fraction: done });
             }
             changed = Some(next);
         }
@@ -148,13 +111,13 @@ impl Way<'_> {
     /// If repair has left bad tets that no wall forces, everything around them is improved as far as
     /// possible, once: the step ends here, and no tet should be bad at its end. A flap pressed to its wall
     /// had up to 26 such tets of 150,000, in 32 of 480 steps.
-    fn tried_again(&mut self, next: Now, effort: Effort, time: f64) -> Result<(Now, Shape)> {
+    fn improved_around(&mut self, next: Current, effort: Effort, time: f64) -> Result<(Current, Shape)> {
         let shape = self.shape(&next);
         let n_left = shape.bad.len() - next.n_forced(&shape);
         if n_left == 0 || effort != Effort::Usual {
             return Ok((next, shape));
         }
-        let before = next.known.before.clone();
+        let before = next.records.before.clone();
         match self.repaired(&next, &before, &shape, time, Effort::AllAround)? {
             Repaired::Left(_) => Ok((next, shape)),
             Repaired::Changed(better) => {
@@ -165,13 +128,13 @@ impl Way<'_> {
     }
 
     /// Repairs bad tets without moving; `is_first`: before the first step.
-    pub(super) fn stay(&mut self, start: &Now, is_first: bool) -> Result<Reached> {
+    pub(super) fn repair_in_place(&mut self, start: &Current, is_first: bool) -> Result<StepResult> {
         self.points.clone_from(&start.mesh.points);
         let shape = self.shape_at(start);
-        let mut reached = Reached { changed: None, left: None, shape, fraction: 1.0 };
+        let mut reached = StepResult { changed: None, left: None, shape, fraction: 1.0 };
         if self.options.repair.is_some() && !reached.shape.bad.is_empty() {
             let effort = if is_first { Effort::Margin } else { Effort::Usual };
-            match self.repaired(start, &start.known.before, &reached.shape, self.times[0], effort)? {
+            match self.repaired(start, &start.records.before, &reached.shape, self.times[0], effort)? {
                 Repaired::Changed(next) => reached.changed = Some(*next),
                 Repaired::Left(left) => reached.left = Some(left),
             }
@@ -181,7 +144,7 @@ impl Way<'_> {
 
     /// Moves on as far as tets stay well shaped: all the remaining way, or half of it, and so on. Returns the
     /// fraction of the remaining way, and the shape of the tets there.
-    fn leg(&mut self, now: &Now) -> Result<(f64, Shape)> {
+    fn leg(&mut self, now: &Current) -> Result<(f64, Shape)> {
         let (from, to) = (now.here(), now.target(self.displacement));
         let mut part = 1.0;
         loop {
@@ -200,38 +163,23 @@ impl Way<'_> {
                 let shape = self.shape_at(now);
                 let is_flat =
                     |&(cell, eas): &(CellId, f64)| eas < self.options.floor && !now.is_left(cell, eas);
-                if part <= SMALLEST || self.options.repair.is_none() || !shape.bad.iter().any(is_flat) {
+                if part <= MIN_PART_IF_FLAT || self.options.repair.is_none() || !shape.bad.iter().any(is_flat)
+                {
                     return Ok((part, shape));
                 }
             }
             part *= 0.5;
-            if part < LEAST {
+            if part < MIN_PART_IF_INVERTED {
                 self.points.copy_from_slice(&now.mesh.points);
                 return Ok((0.0, self.shape_at(now)));
             }
         }
     }
 
-    /// The shape of the tets with the vertices at [`Self::points`].
-    pub(super) fn shape_at(&mut self, now: &Now) -> Shape {
-        let begin = Instant::now();
-        let shape = now.tets.shape(&self.points, self.options.limit(), self.threads);
-        self.seconds.quality += begin.elapsed().as_secs_f64();
-        shape
-    }
-
-    /// The shape of the tets of a mesh as it is.
-    fn shape(&mut self, now: &Now) -> Shape {
-        let begin = Instant::now();
-        let shape = now.tets.shape(&now.mesh.points, self.options.limit(), self.threads);
-        self.seconds.quality += begin.elapsed().as_secs_f64();
-        shape
-    }
-
     /// The mesh with its bad tets repaired, with the vertices at [`Self::points`].
     fn repaired(
         &mut self,
-        now: &Now,
+        now: &Current,
         before: &[Point],
         shape: &Shape,
         time: f64,
@@ -251,8 +199,8 @@ impl Way<'_> {
             ..usual.clone()
         };
         let mut given = now.moved(&self.points, &options.contents);
-        let rules = now.put_known(&mut given, before, &options.rules);
-        let mut tries_left = if options.valid_at_start { MOST_HELD } else { 0 };
+        let rules = now.put_records(&mut given, before, &options.rules);
+        let mut tries_left = if options.valid_at_start { MAX_REPEATS } else { 0 };
         let outcome = loop {
             let outcome = remesh_mesh(&given, &repair, &rules, self.threads)?;
             let replaced = if tries_left > 0 { replaced_by_inverted(&outcome)? } else { Vec::new() };
@@ -279,7 +227,7 @@ impl Way<'_> {
     }
 
     /// The tets to repair; `None`: all.
-    fn worth_repair(&self, now: &Now, shape: &Shape, effort: Effort) -> Option<Vec<CellId>> {
+    fn worth_repair(&self, now: &Current, shape: &Shape, effort: Effort) -> Option<Vec<CellId>> {
         let limit = self.options.limit();
         let low = || now.tets.shape(&self.points, limit + self.options.margin, self.threads).bad;
         match effort {
@@ -301,7 +249,7 @@ impl Way<'_> {
     /// `before`: where the vertices were when the step began.
     fn improve(
         &self,
-        now: &Now,
+        now: &Current,
         before: &[Point],
         usual: &remesh::Options,
         effort: Effort,
@@ -312,10 +260,10 @@ impl Way<'_> {
         }
         // If walls come back, tets are compared with the first mesh at rest. A mesh that is put back need not
         // be good there.
-        let rest = now.known.rest.as_ref().filter(|_| !self.returns.count.is_unsettled);
+        let rest = now.records.rest.as_ref().filter(|_| !self.returns.count.is_unsettled);
         let places = rest.unwrap_or(&self.points);
         let low = now.tets.shape(places, below, self.threads).bad;
-        let first = &now.known.first_eas;
+        let first = &now.records.first_eas;
         let is_as_at_first = |&(cell, eas): &(CellId, f64)| eas >= first[cell.index()] - AS_AT_FIRST;
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
         let sizes = self.sizes.at_vertices((now, &self.points), self.wall, self.options, self.threads);
@@ -347,11 +295,11 @@ impl Way<'_> {
     }
 
     /// The same mesh, with the positions in [`Self::points`] as its new reference.
-    fn re_referenced(&mut self, now: &Now, before: &[Point], left: Vec<LeftBad>) -> Result<Now> {
+    fn rebased(&mut self, now: &Current, before: &[Point], left: Vec<LeftBad>) -> Result<Current> {
         let begin = Instant::now();
         let mesh = now.moved(&self.points, &self.options.contents);
-        let known = Known { before: before.to_vec(), ..now.known.clone() };
-        let next = Now::new(mesh, known, left, self.wall, self.options, self.threads);
+        let records = Records { before: before.to_vec(), ..now.records.clone() };
+        let next = Current::new(mesh, records, left, self.wall, self.options, self.threads);
         self.seconds.setup += begin.elapsed().as_secs_f64();
         next
     }
@@ -359,7 +307,7 @@ impl Way<'_> {
 
 /// The result of a repair.
 enum Repaired {
-    Changed(Box<Now>),
+    Changed(Box<Current>),
     /// Nothing changed; these tets could not be repaired.
     Left(Vec<LeftBad>),
 }
