@@ -43,7 +43,7 @@ impl Meter {
 
     /// Begins a stage of the verb itself, such as reading a file.
     pub(crate) fn stage(&self, name: &'static str) {
-        self.watch.tell(name, 0, 0);
+        self.watch.report(name, 0, 0);
     }
 
     /// Counts one more step as done.

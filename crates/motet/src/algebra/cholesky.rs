@@ -24,14 +24,18 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// Factorises `matrix`, whose rows lie at `places`; `None` when the factor would take more than `most`
+    /// Factorises `matrix`, whose rows lie at `places`; `None` when the factor would take more than `max_bytes`
     /// bytes, which is known before it is computed.
     ///
     /// # Errors
     /// When the matrix is not positive definite, or there is not enough memory for the factor.
-    pub fn new<B: Block>(matrix: &SparseMatrix<B>, places: &[Vector3], most: u64) -> Result<Option<Self>> {
+    pub fn new<B: Block>(
+        matrix: &SparseMatrix<B>,
+        places: &[Vector3],
+        max_bytes: u64,
+    ) -> Result<Option<Self>> {
         let width = B::WIDTH;
-        let (starts, rows, values) = upper(matrix);
+        let (starts, rows, values) = upper_triangle(matrix);
         let n = starts.len() - 1;
         let order = nested_dissection(matrix, places);
         let forward: Vec<usize> =
@@ -39,24 +43,25 @@ impl Cholesky {
         let mut inverse = vec![0; n];
         forward.iter().enumerate().for_each(|(place, &row)| inverse[row] = place);
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
-        let no_room = |_| Error::input("there is no memory for the factor of a system").remedy("keep none");
+        let out_of_memory =
+            |_| Error::input("there is no memory for the factor of a system").remedy("keep none");
         let symbolic = factorize_symbolic_cholesky(
             pattern,
             Side::Upper,
             SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, n)),
             CholeskySymbolicParams::default(),
         )
-        .map_err(no_room)?;
+        .map_err(out_of_memory)?;
         let length = symbolic.len_val();
-        if length as u64 > most / size_of::<f64>() as u64 {
+        if length as u64 > max_bytes / size_of::<f64>() as u64 {
             return Ok(None);
         }
         let mut factor = Vec::new();
-        factor.try_reserve_exact(length).map_err(|_| no_room(faer::sparse::FaerError::OutOfMemory))?;
+        factor.try_reserve_exact(length).map_err(|_| out_of_memory(faer::sparse::FaerError::OutOfMemory))?;
         factor.resize(length, 0.0);
         let mut stack =
             MemBuffer::try_new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()))
-                .map_err(|_| no_room(faer::sparse::FaerError::OutOfMemory))?;
+                .map_err(|_| out_of_memory(faer::sparse::FaerError::OutOfMemory))?;
         symbolic
             .factorize_numeric_llt(
                 &mut factor,
@@ -103,7 +108,7 @@ impl Cholesky {
 
 /// The upper triangle of a symmetric matrix with its diagonal, scalar by scalar, in compressed columns:
 /// starts, rows, values. It is read from the lower triangle, whose rows are these columns.
-fn upper<B: Block>(matrix: &SparseMatrix<B>) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
+fn upper_triangle<B: Block>(matrix: &SparseMatrix<B>) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
     let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
     for row in 0..matrix.n_rows() {
         let (columns, blocks) = matrix.row(row);

@@ -72,10 +72,15 @@ impl<B: Block> Sgs<B> {
     }
 
     /// The residual that remains after a forward sweep: `-U x`.
-    pub(super) fn left(&self, matrix: &SparseMatrix<B>, x: &[Vector3], threads: &Threads) -> Vec<Vector3> {
+    pub(super) fn remaining_residual(
+        &self,
+        matrix: &SparseMatrix<B>,
+        x: &[Vector3],
+        threads: &Threads,
+    ) -> Vec<Vector3> {
         threads.map(x.len(), |i| {
             let mut sum = [0.0; 3];
-            later(matrix, i, |column, block| block.add_times(x[column], &mut sum));
+            for_each_right_of_diagonal(matrix, i, |column, block| block.add_times(x[column], &mut sum));
             sum.map(|x| -x)
         })
     }
@@ -95,7 +100,7 @@ impl<B: Block> Sgs<B> {
 
 /// Calls `each` with the column and the block of every entry of row `i` right of the diagonal, last first.
 #[inline(always)]
-fn later<B: Block>(matrix: &SparseMatrix<B>, i: usize, mut each: impl FnMut(usize, B)) {
+fn for_each_right_of_diagonal<B: Block>(matrix: &SparseMatrix<B>, i: usize, mut each: impl FnMut(usize, B)) {
     let (columns, blocks) = matrix.row(i);
     for (&column, block) in columns.iter().zip(blocks).rev().take_while(|(column, _)| (**column as usize) > i)
     {
@@ -116,7 +121,7 @@ impl<B: Block> Preconditioner<B> for Sgs<B> {
         self.forward(matrix, residual, out);
         for i in (0..residual.len()).rev() {
             let mut sum = [0.0; 3];
-            later(matrix, i, |column, block| block.add_times(out[column], &mut sum));
+            for_each_right_of_diagonal(matrix, i, |column, block| block.add_times(out[column], &mut sum));
             out[i] = minus(out[i], self.inverses[i].times(sum));
         }
     }
@@ -131,7 +136,7 @@ impl<B: Block> Preconditioner<B> for Sgs<B> {
 /// holds the last iterate.
 pub fn conjugate_gradients<B: Block>(
     matrix: &SparseMatrix<B>,
-    before: &impl Preconditioner<B>,
+    preconditioner: &impl Preconditioner<B>,
     right: &[Vector3],
     x: &mut [Vector3],
     tolerance: Tolerance,
@@ -139,24 +144,24 @@ pub fn conjugate_gradients<B: Block>(
 ) -> Result<Solved> {
     let n = right.len();
     let mut z = vec![[0.0; 3]; n];
-    before.apply(matrix, right, &mut z, threads);
-    let of_right = dot(right, &z);
-    if of_right == 0.0 {
+    preconditioner.apply(matrix, right, &mut z, threads);
+    let right_squared = dot(right, &z);
+    if right_squared == 0.0 {
         x.fill([0.0; 3]);
         return Ok(Solved::default());
     }
-    let of_x = matrix.times(x, threads);
-    let energy = dot(x, &of_x);
+    let matrix_x = matrix.times(x, threads);
+    let energy = dot(x, &matrix_x);
     let share = if energy > 0.0 { dot(x, right) / energy } else { 0.0 };
     x.iter_mut().for_each(|x| *x = x.map(|x| share * x));
     let mut residual: Vec<Vector3> =
-        right.iter().zip(&of_x).map(|(b, ax)| minus(*b, ax.map(|ax| share * ax))).collect();
-    before.apply(matrix, &residual, &mut z, threads);
+        right.iter().zip(&matrix_x).map(|(b, ax)| minus(*b, ax.map(|ax| share * ax))).collect();
+    preconditioner.apply(matrix, &residual, &mut z, threads);
     let mut rz = dot(&residual, &z);
-    let mut along = z.clone();
-    let mut solved = Solved { iterations: 0, residual: (rz / of_right).sqrt() };
+    let mut direction = z.clone();
+    let mut solved = Solved { iterations: 0, residual: (rz / right_squared).sqrt() };
     while solved.residual > tolerance.residual {
-        threads.watch().go_on("solving a system", solved.iterations, 0)?;
+        threads.watch().report_and_check("solving a system", solved.iterations, 0)?;
         if solved.iterations == tolerance.iterations || !solved.residual.is_finite() {
             return Err(Error::input(format!(
                 "{} iterations left a residual of {:.1e} where {:.1e} is asked for",
@@ -164,20 +169,20 @@ pub fn conjugate_gradients<B: Block>(
             ))
             .remedy("ask for less, or begin with a mesh whose cells are less flat"));
         }
-        let of_along = matrix.times(&along, threads);
-        let step = rz / dot(&along, &of_along);
+        let matrix_direction = matrix.times(&direction, threads);
+        let alpha = rz / dot(&direction, &matrix_direction);
         for i in 0..n {
             for k in 0..3 {
-                x[i][k] += step * along[i][k];
-                residual[i][k] -= step * of_along[i][k];
+                x[i][k] += alpha * direction[i][k];
+                residual[i][k] -= alpha * matrix_direction[i][k];
             }
         }
-        before.apply(matrix, &residual, &mut z, threads);
+        preconditioner.apply(matrix, &residual, &mut z, threads);
         let next = dot(&residual, &z);
-        let turn = next / rz;
-        along.iter_mut().zip(&z).for_each(|(p, z)| (0..3).for_each(|k| p[k] = z[k] + turn * p[k]));
+        let beta = next / rz;
+        direction.iter_mut().zip(&z).for_each(|(p, z)| (0..3).for_each(|k| p[k] = z[k] + beta * p[k]));
         rz = next;
-        solved = Solved { iterations: solved.iterations + 1, residual: (rz / of_right).sqrt() };
+        solved = Solved { iterations: solved.iterations + 1, residual: (rz / right_squared).sqrt() };
     }
     Ok(solved)
 }

@@ -88,9 +88,9 @@ impl<B: Block> SparseMatrix<B> {
 
     /// The product `self other`, row by row (Gustavson 1978).
     pub fn product(&self, other: &Self) -> Self {
-        const NONE: usize = usize::MAX;
+        const UNMARKED: usize = usize::MAX;
         let width = other.columns.iter().map(|&c| c as usize + 1).max().unwrap_or(0);
-        let mut place_of = vec![NONE; width];
+        let mut place_of = vec![UNMARKED; width];
         let (mut starts, mut columns, mut blocks) = (vec![0], Vec::new(), Vec::new());
         let mut row_of: Vec<(u32, B)> = Vec::new();
         for row in 0..self.n_rows() {
@@ -100,7 +100,7 @@ impl<B: Block> SparseMatrix<B> {
                 for (&column, other) in ends.iter().zip(second) {
                     let term = block.times_block(*other);
                     let place = &mut place_of[column as usize];
-                    if *place == NONE {
+                    if *place == UNMARKED {
                         *place = row_of.len();
                         row_of.push((column, term));
                     } else {
@@ -110,7 +110,7 @@ impl<B: Block> SparseMatrix<B> {
             }
             row_of.sort_unstable_by_key(|(column, _)| *column);
             for (column, block) in row_of.drain(..) {
-                place_of[column as usize] = NONE;
+                place_of[column as usize] = UNMARKED;
                 columns.push(column);
                 blocks.push(block);
             }

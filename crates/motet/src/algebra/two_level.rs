@@ -13,21 +13,21 @@ use crate::base::{Result, Threads};
 /// Rows per aggregate, approximately. Elastic matrices of meshes of 32,000 and 73,000 vertices were solved in
 /// 0.50 and 1.57 s with 40 rows, 0.35 and 1.41 s with 80, 0.30 and 1.38 s with 160, 0.30 and 1.58 s with 320;
 /// in 0.47 and 2.87 s by sweeps alone.
-const ROWS: usize = 160;
+const ROWS_PER_AGGREGATE: usize = 160;
 /// Approximate limit on the number of aggregates: a factor of more would take longer than it saves.
-const LOTS: usize = 2000;
+const MAX_AGGREGATES: usize = 2000;
 /// Shift of the diagonal of the matrix of the aggregates, relative to its largest diagonal entry.
-const LIFT: f64 = 1e-10;
+const DIAGONAL_SHIFT: f64 = 1e-10;
 /// Maximum size of the factor, in bytes.
-const MOST_BYTES: u64 = 1 << 31;
+const MAX_FACTOR_BYTES: u64 = 1 << 31;
 
 /// A two-level preconditioner.
 #[derive(Debug)]
 pub struct TwoLevel<B> {
     sweeps: Sgs<B>,
     /// Maps unknowns of the aggregates to rows.
-    prolong: SparseMatrix<B>,
-    restrict: SparseMatrix<B>,
+    prolongation: SparseMatrix<B>,
+    restriction: SparseMatrix<B>,
     factor: Cholesky,
 }
 
@@ -39,52 +39,52 @@ impl<B: Block> TwoLevel<B> {
     /// When a block on the diagonal is not positive definite.
     pub fn new(matrix: &SparseMatrix<B>, places: &[Vector3], threads: &Threads) -> Result<Option<Self>> {
         let sweeps = Sgs::new(matrix)?;
-        let lots = Lots::new(matrix, places);
-        let (rigid, centres) = lots.motions::<B>(places);
+        let aggregates = Aggregates::new(matrix, places);
+        let (rigid, centres) = aggregates.motions::<B>(places);
         let inverses = sweeps.inverses();
         let damping = 4.0 / 3.0 / largest_eigenvalue(matrix, inverses, threads);
         // I - damping D^-1 A
-        let mut prolong = matrix.product(&rigid);
-        prolong.change_rows(|row, block| inverses[row].times_block(block).scaled(-damping));
+        let mut prolongation = matrix.product(&rigid);
+        prolongation.change_rows(|row, block| inverses[row].times_block(block).scaled(-damping));
         for row in 0..rigid.n_rows() {
             let (columns, blocks) = rigid.row(row);
-            columns.iter().zip(blocks).for_each(|(&column, block)| prolong.add(row, column, *block));
+            columns.iter().zip(blocks).for_each(|(&column, block)| prolongation.add(row, column, *block));
         }
-        let restrict = prolong.transposed(centres.len());
-        let mut coarse = restrict.product(&matrix.product(&prolong));
+        let restriction = prolongation.transposed(centres.len());
+        let mut coarse = restriction.product(&matrix.product(&prolongation));
         // An aggregate whose rows are collinear does not respond to a rotation about their line.
         let largest = (0..coarse.n_rows()).map(|row| coarse.diagonal(row).entry(0, 0)).fold(0.0, f64::max);
         (0..coarse.n_rows()).for_each(|row| {
-            coarse.add(row, row as u32, B::rigid([0.0; 3]).as_ref()[0].scaled(LIFT * largest))
+            coarse.add(row, row as u32, B::rigid([0.0; 3]).as_ref()[0].scaled(DIAGONAL_SHIFT * largest))
         });
-        let factor = Cholesky::new(&coarse, &centres, MOST_BYTES).ok().flatten();
-        Ok(factor.map(|factor| Self { sweeps, prolong, restrict, factor }))
+        let factor = Cholesky::new(&coarse, &centres, MAX_FACTOR_BYTES).ok().flatten();
+        Ok(factor.map(|factor| Self { sweeps, prolongation, restriction, factor }))
     }
 }
 
 impl<B: Block> Preconditioner<B> for TwoLevel<B> {
     fn apply(&self, matrix: &SparseMatrix<B>, residual: &[Vector3], out: &mut [Vector3], threads: &Threads) {
         self.sweeps.forward(matrix, residual, out);
-        let left = self.sweeps.left(matrix, out, threads);
-        let of_lots = self.factor.solve(&self.restrict.times(&left, threads));
-        let correction = self.prolong.times(&of_lots, threads);
+        let remaining = self.sweeps.remaining_residual(matrix, out, threads);
+        let coarse_solution = self.factor.solve(&self.restriction.times(&remaining, threads));
+        let correction = self.prolongation.times(&coarse_solution, threads);
         out.iter_mut().zip(&correction).for_each(|(x, c)| (0..3).for_each(|k| x[k] += c[k]));
         self.sweeps.backward(matrix, residual, out);
     }
 }
 
 /// Rows grouped into aggregates.
-struct Lots {
+struct Aggregates {
     of_row: Vec<u32>,
     n: usize,
 }
 
-impl Lots {
+impl Aggregates {
     /// Groups rows that the entries of the matrix connect.
     fn new<B: Block>(matrix: &SparseMatrix<B>, places: &[Vector3]) -> Self {
         const NONE: u32 = u32::MAX;
         let n_rows = places.len();
-        let size = ROWS.max(n_rows / LOTS);
+        let size = ROWS_PER_AGGREGATE.max(n_rows / MAX_AGGREGATES);
         let (mut of_row, mut n, mut front) = (vec![NONE; n_rows], 0, VecDeque::new());
         for first in 0..n_rows {
             if of_row[first] != NONE {
@@ -106,10 +106,10 @@ impl Lots {
             // A small remainder between others joins one of them.
             let neighbour = || {
                 let near = rows.iter().flat_map(|&row| matrix.row(row).0);
-                near.map(|&c| of_row[c as usize]).find(|&lot| lot != NONE && lot != n)
+                near.map(|&c| of_row[c as usize]).find(|&aggregate| aggregate != NONE && aggregate != n)
             };
             match neighbour().filter(|_| 4 * rows.len() < size) {
-                Some(lot) => rows.iter().for_each(|&row| of_row[row] = lot),
+                Some(aggregate) => rows.iter().for_each(|&row| of_row[row] = aggregate),
                 None => n += 1,
             }
         }
@@ -120,9 +120,9 @@ impl Lots {
     /// of these unknowns.
     fn motions<B: Block>(&self, places: &[Vector3]) -> (SparseMatrix<B>, Vec<Vector3>) {
         let (mut centres, mut counts) = (vec![[0.0; 3]; self.n], vec![0.0; self.n]);
-        for (&lot, place) in self.of_row.iter().zip(places) {
-            (0..3).for_each(|k| centres[lot as usize][k] += place[k]);
-            counts[lot as usize] += 1.0;
+        for (&aggregate, place) in self.of_row.iter().zip(places) {
+            (0..3).for_each(|k| centres[aggregate as usize][k] += place[k]);
+            counts[aggregate as usize] += 1.0;
         }
         centres.iter_mut().zip(&counts).for_each(|(c, n)| *c = c.map(|x| x / n));
         let from = |row: usize| -> Vector3 {
@@ -131,18 +131,22 @@ impl Lots {
         };
         // Rotations are scaled to be as large as translations.
         let mut radii = vec![0.0; self.n];
-        for (row, &lot) in self.of_row.iter().enumerate() {
-            radii[lot as usize] += from(row).iter().map(|x| x * x).sum::<f64>() / counts[lot as usize];
+        for (row, &aggregate) in self.of_row.iter().enumerate() {
+            radii[aggregate as usize] +=
+                from(row).iter().map(|x| x * x).sum::<f64>() / counts[aggregate as usize];
         }
         let modes = |row: usize| {
             let radius = radii[self.of_row[row] as usize].sqrt();
             B::rigid(from(row).map(|x| if radius > 0.0 { x / radius } else { 0.0 }))
         };
         let width = modes(0).as_ref().len();
-        let columns = |lot: u32| (0..width as u32).map(move |i| lot * width as u32 + i);
-        let mut matrix = SparseMatrix::with_pattern(self.of_row.iter().map(|&lot| columns(lot).collect()));
-        for (row, &lot) in self.of_row.iter().enumerate() {
-            columns(lot).zip(modes(row).as_ref()).for_each(|(column, block)| matrix.add(row, column, *block));
+        let columns = |aggregate: u32| (0..width as u32).map(move |i| aggregate * width as u32 + i);
+        let mut matrix =
+            SparseMatrix::with_pattern(self.of_row.iter().map(|&aggregate| columns(aggregate).collect()));
+        for (row, &aggregate) in self.of_row.iter().enumerate() {
+            columns(aggregate)
+                .zip(modes(row).as_ref())
+                .for_each(|(column, block)| matrix.add(row, column, *block));
         }
         (matrix, centres.iter().flat_map(|c| std::iter::repeat_n(*c, width)).collect())
     }
@@ -205,12 +209,13 @@ mod tests {
         let right: Vec<Vector3> = (0..places.len()).map(|i| [1.0, (i % 7) as f64, -2.0]).collect();
         fn solve<B: Block>(
             (matrix, right): (&SparseMatrix<B>, &[Vector3]),
-            before: &impl Preconditioner<B>,
+            preconditioner: &impl Preconditioner<B>,
             threads: &Threads,
         ) -> (usize, Vec<Vector3>) {
             let tolerance = Tolerance { residual: 1e-10, iterations: 10_000 };
             let mut x = vec![[0.0; 3]; right.len()];
-            let solved = conjugate_gradients(matrix, before, right, &mut x, tolerance, threads).unwrap();
+            let solved =
+                conjugate_gradients(matrix, preconditioner, right, &mut x, tolerance, threads).unwrap();
             (solved.iterations, x)
         }
         let sweeps = Sgs::new(&matrix).unwrap();

@@ -3,7 +3,7 @@
 use std::ops::{Add, Div, Mul, Sub};
 
 /// Four numbers.
-pub(crate) trait Four:
+pub(crate) trait FourLanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// A token that proves that the machine has the instructions.
@@ -17,13 +17,13 @@ pub(crate) trait Four:
     /// The larger of each pair, with the same rules as [`Self::min`].
     fn max(self, other: Self) -> Self;
     /// `yes` where this is positive, else `no`.
-    fn if_positive(self, yes: Self, no: Self) -> Self;
+    fn select_positive(self, yes: Self, no: Self) -> Self;
     /// `self`, or `other` where `self` is not a number.
-    fn or(self, other: Self) -> Self;
+    fn or_if_nan(self, other: Self) -> Self;
     fn stored(self) -> [f64; 4];
 
     #[inline(always)]
-    fn all(machine: Self::Machine, x: f64) -> Self {
+    fn splat(machine: Self::Machine, x: f64) -> Self {
         Self::load(machine, &[x; 4])
     }
 
@@ -34,13 +34,13 @@ pub(crate) trait Four:
     }
 
     #[inline(always)]
-    fn least(self) -> f64 {
+    fn min_lane(self) -> f64 {
         let [a, b, c, d] = self.stored();
         smaller(smaller(a, b), smaller(c, d))
     }
 
     #[inline(always)]
-    fn most(self) -> f64 {
+    fn max_lane(self) -> f64 {
         let [a, b, c, d] = self.stored();
         larger(larger(a, b), larger(c, d))
     }
@@ -58,7 +58,7 @@ fn larger(a: f64, b: f64) -> f64 {
 }
 
 /// Four points or vectors, coordinate by coordinate.
-pub(crate) type Vectors<F> = [F; 3];
+pub(crate) type FourVectors<F> = [F; 3];
 
 /// Four numbers processed one by one.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +71,7 @@ pub(crate) struct Wide(pulp::x86::V3, pulp::f64x4);
 /// The token for [`Wide`], where the machine has the instructions; detected once.
 #[cfg(target_arch = "x86_64")]
 #[inline]
-pub(crate) fn wide() -> Option<pulp::x86::V3> {
+pub(crate) fn wide_machine() -> Option<pulp::x86::V3> {
     static FOUND: std::sync::LazyLock<Option<pulp::x86::V3>> =
         std::sync::LazyLock::new(pulp::x86::V3::try_new);
     *FOUND
@@ -108,7 +108,7 @@ by_each! {
     Div div / div_f64x4;
 }
 
-impl Four for Plain {
+impl FourLanes for Plain {
     type Machine = ();
 
     #[inline(always)]
@@ -145,7 +145,7 @@ impl Four for Plain {
     }
 
     #[inline(always)]
-    fn if_positive(self, yes: Self, no: Self) -> Self {
+    fn select_positive(self, yes: Self, no: Self) -> Self {
         let mut chosen = no;
         for i in 0..4 {
             chosen.0[i] = if self.0[i] > 0.0 { yes.0[i] } else { no.0[i] };
@@ -154,7 +154,7 @@ impl Four for Plain {
     }
 
     #[inline(always)]
-    fn or(mut self, other: Self) -> Self {
+    fn or_if_nan(mut self, other: Self) -> Self {
         for i in 0..4 {
             self.0[i] = if self.0[i].is_nan() { other.0[i] } else { self.0[i] };
         }
@@ -168,7 +168,7 @@ impl Four for Plain {
 }
 
 #[cfg(target_arch = "x86_64")]
-impl Four for Wide {
+impl FourLanes for Wide {
     type Machine = pulp::x86::V3;
 
     #[inline(always)]
@@ -197,13 +197,13 @@ impl Four for Wide {
     }
 
     #[inline(always)]
-    fn if_positive(self, yes: Self, no: Self) -> Self {
+    fn select_positive(self, yes: Self, no: Self) -> Self {
         let is_positive = self.0.cmp_gt_f64x4(self.1, self.0.splat_f64x4(0.0));
         Self(self.0, self.0.select_f64x4(is_positive, yes.1, no.1))
     }
 
     #[inline(always)]
-    fn or(self, other: Self) -> Self {
+    fn or_if_nan(self, other: Self) -> Self {
         let is_number = self.0.cmp_eq_f64x4(self.1, self.1);
         Self(self.0, self.0.select_f64x4(is_number, self.1, other.1))
     }
@@ -216,16 +216,16 @@ impl Four for Wide {
 }
 
 #[inline(always)]
-pub(crate) fn sub<F: Four>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+pub(crate) fn sub<F: FourLanes>(a: FourVectors<F>, b: FourVectors<F>) -> FourVectors<F> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[inline(always)]
-pub(crate) fn dot<F: Four>(a: Vectors<F>, b: Vectors<F>) -> F {
+pub(crate) fn dot<F: FourLanes>(a: FourVectors<F>, b: FourVectors<F>) -> F {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[inline(always)]
-pub(crate) fn cross<F: Four>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+pub(crate) fn cross<F: FourLanes>(a: FourVectors<F>, b: FourVectors<F>) -> FourVectors<F> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

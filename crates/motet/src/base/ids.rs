@@ -4,7 +4,7 @@ use std::fmt;
 
 /// The ids in rising order: a key for an edge or a facet that is the same from either side.
 #[inline]
-pub(crate) fn rising<T: Ord, const N: usize>(mut ids: [T; N]) -> [T; N] {
+pub(crate) fn sorted_ids<T: Ord, const N: usize>(mut ids: [T; N]) -> [T; N] {
     ids.sort_unstable();
     ids
 }
@@ -17,7 +17,7 @@ pub fn rising_list<T: Ord + Clone>(ids: &[T]) -> Vec<T> {
 }
 
 /// Whether two triangles with the same vertices have the same orientation.
-pub(crate) fn runs_alike<T: PartialEq + Copy>(first: [T; 3], second: [T; 3]) -> bool {
+pub(crate) fn same_orientation<T: PartialEq + Copy>(first: [T; 3], second: [T; 3]) -> bool {
     let [a, b, c] = first;
     [[a, b, c], [b, c, a], [c, a, b]].contains(&second)
 }

@@ -6,22 +6,22 @@ pub(crate) mod four;
 mod ids;
 
 mod lanewise;
-mod mixed;
 mod percent;
 mod reasons;
 mod sets;
+mod splitmix;
 mod threads;
 mod watch;
 
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result, printable};
 pub use ids::{CellId, Id, TetId, VertexId, rising_list};
-pub(crate) use ids::{rising, runs_alike};
+pub(crate) use ids::{same_orientation, sorted_ids};
 pub(crate) use lanewise::lanewise;
-pub(crate) use mixed::mixed;
 pub use percent::percent;
 pub use reasons::reasons;
-pub(crate) use sets::Sets;
+pub(crate) use sets::DisjointSets;
+pub(crate) use splitmix::splitmix64;
 pub use threads::Threads;
 pub use watch::{Progress, Watch};
 

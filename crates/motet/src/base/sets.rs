@@ -3,11 +3,11 @@
 use crate::base::VertexId;
 
 /// Disjoint sets of the numbers below `n` (union-find, Tarjan 1975), each represented by its smallest member.
-pub(crate) struct Sets {
+pub(crate) struct DisjointSets {
     parents: Vec<u32>,
 }
 
-impl Sets {
+impl DisjointSets {
     pub(crate) fn new(n: usize) -> Self {
         Self { parents: (0..n as u32).collect() }
     }

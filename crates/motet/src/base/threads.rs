@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::base::{Error, Result, Watch};
 
 /// The least number of items per thread: fewer are done sooner than they are distributed.
-const SMALLEST_PART: usize = 4096;
+const MIN_PART: usize = 4096;
 
 /// A pool of threads that belongs to the caller. Results do not depend on its size.
 #[derive(Debug, Default)]
@@ -59,9 +59,7 @@ impl Threads {
     pub fn map<T: Send>(&self, n: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
         match &self.pool {
             None => (0..n).map(of).collect(),
-            Some(pool) => {
-                pool.install(|| (0..n).into_par_iter().with_min_len(SMALLEST_PART).map(of).collect())
-            }
+            Some(pool) => pool.install(|| (0..n).into_par_iter().with_min_len(MIN_PART).map(of).collect()),
         }
     }
 

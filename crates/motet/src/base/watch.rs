@@ -17,8 +17,8 @@ pub struct Progress {
     pub of: usize,
 }
 
-/// A line between a call and whoever started it: the call reports its progress and checks from time to time
-/// whether to stop; the other side reads the progress and may stop the call. Clones share one line. The
+/// A channel between a call and whoever started it: the call reports its progress and checks from time to time
+/// whether to stop; the other side reads the progress and may stop the call. Clones share one channel. The
 /// default watch is connected to nobody and costs nothing.
 ///
 /// ```
@@ -32,10 +32,10 @@ pub struct Progress {
 /// assert_eq!(ended.unwrap_err().kind(), motet::ErrorKind::Stopped);
 /// ```
 #[derive(Clone, Debug, Default)]
-pub struct Watch(Option<Arc<Line>>);
+pub struct Watch(Option<Arc<Channel>>);
 
 #[derive(Debug, Default)]
-struct Line {
+struct Channel {
     progress: Mutex<Progress>,
     is_stopped: AtomicBool,
 }
@@ -49,30 +49,30 @@ impl Watch {
     /// Stops the running call soon: it fails with [`ErrorKind::Stopped`] and leaves its input unchanged,
     /// unless the call is documented otherwise.
     pub fn stop(&self) {
-        if let Some(line) = &self.0 {
-            line.is_stopped.store(true, Ordering::Relaxed);
+        if let Some(channel) = &self.0 {
+            channel.is_stopped.store(true, Ordering::Relaxed);
         }
     }
 
     /// The progress last reported.
     pub fn progress(&self) -> Progress {
-        self.0.as_ref().map_or_else(Progress::default, |line| {
-            *line.progress.lock().unwrap_or_else(PoisonError::into_inner)
+        self.0.as_ref().map_or_else(Progress::default, |channel| {
+            *channel.progress.lock().unwrap_or_else(PoisonError::into_inner)
         })
     }
 
     /// Reports progress; see [`Progress`]. It takes some 20 ns where somebody watches. Programs that call the
     /// library report their own work, such as reading files, in the same way.
-    pub fn tell(&self, stage: &'static str, done: usize, of: usize) {
-        if let Some(line) = &self.0 {
-            *line.progress.lock().unwrap_or_else(PoisonError::into_inner) = Progress { stage, done, of };
+    pub fn report(&self, stage: &'static str, done: usize, of: usize) {
+        if let Some(channel) = &self.0 {
+            *channel.progress.lock().unwrap_or_else(PoisonError::into_inner) = Progress { stage, done, of };
         }
     }
 
     /// Reports progress, and fails where a stop was requested.
-    pub(crate) fn go_on(&self, stage: &'static str, done: usize, of: usize) -> Result<()> {
-        self.tell(stage, done, of);
-        if self.0.as_ref().is_some_and(|line| line.is_stopped.load(Ordering::Relaxed)) {
+    pub(crate) fn report_and_check(&self, stage: &'static str, done: usize, of: usize) -> Result<()> {
+        self.report(stage, done, of);
+        if self.0.as_ref().is_some_and(|channel| channel.is_stopped.load(Ordering::Relaxed)) {
             return Err(Error::new(ErrorKind::Stopped, format!("stopped while {stage}, on request")));
         }
         Ok(())

@@ -10,7 +10,7 @@ use super::results::{BodyGaps, Gaps, Nearest, Warned};
 use super::room::{self, Within};
 use super::side::Side;
 use super::surface_graph::SurfaceGraph;
-use crate::base::{Error, Point, Result, Sets, Threads, VertexId};
+use crate::base::{DisjointSets, Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::distance;
 use crate::mesh;
 
@@ -257,7 +257,7 @@ impl Contact {
 /// The joined id of every point: vertices repeated by seams of a body share one.
 fn joined(points: &[Point], bodies: &[Body], threads: &Threads) -> Vec<VertexId> {
     let all = threads.each(bodies.iter().collect(), |body| mesh::seams(points, &body.triangles));
-    let mut sets = Sets::new(points.len());
+    let mut sets = DisjointSets::new(points.len());
     all.iter().flatten().for_each(|[v, first]| sets.join(v.0, first.0));
     sets.roots().into_iter().map(VertexId).collect()
 }

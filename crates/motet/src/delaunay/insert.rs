@@ -27,7 +27,7 @@ pub(super) fn triangulate(points: &[Point], filtered: bool, watch: &Watch) -> Re
     let mut fill = Fill::new(points.len(), least);
     let (n, mut hint, arch) = (points.len() as u32, 0, Arch::new());
     for from in (5..n).step_by(RUN as usize) {
-        watch.go_on("triangulating points", from as usize, points.len())?;
+        watch.report_and_check("triangulating points", from as usize, points.len())?;
         let vertices = from..n.min(from.saturating_add(RUN));
         hint =
             arch.dispatch(Insertion { store: &mut store, points, sure, fill: &mut fill, vertices, hint })?;

@@ -7,7 +7,7 @@
 //! coordinates, so the order, and with it every tie, depends only on the set of points, not on how the caller
 //! numbered them.
 
-use crate::base::{Point, Threads, mixed};
+use crate::base::{Point, Threads, splitmix64};
 use crate::spatial::hilbert::{Curve, KEY_BITS, bounding_cube};
 
 /// The first round has about this many points.
@@ -55,7 +55,7 @@ fn keys(points: &[Point], threads: &Threads, last_round: u32) -> Vec<Keyed> {
 /// A hash of the coordinates, equal for equal points (`-0.0 == 0.0`).
 #[inline]
 fn hash(p: Point) -> u64 {
-    p.iter().fold(0x9e37_79b9_7f4a_7c15, |h, &x| mixed(h ^ (x + 0.0).to_bits()))
+    p.iter().fold(0x9e37_79b9_7f4a_7c15, |h, &x| splitmix64(h ^ (x + 0.0).to_bits()))
 }
 
 /// Sorts by key, stably: least significant digit first, ten bits per pass.

@@ -5,7 +5,7 @@
 //! unknown fewer (Seidel 1991, *Small-dimensional linear programming and convex hulls made easy*). The
 //! expected time is linear in the number of half-spaces.
 
-use crate::base::{Point, mixed};
+use crate::base::{Point, splitmix64};
 
 /// The number of unknowns of the program: three coordinates, then the depth.
 const N: usize = 4;
@@ -74,7 +74,7 @@ pub(crate) fn deepest(half_spaces: impl Iterator<Item = (Point, f64)>) -> (Point
 /// input.
 fn shuffle(constraints: &mut [Constraint]) {
     for i in (1..constraints.len()).rev() {
-        constraints.swap(i, mixed(i as u64) as usize % (i + 1));
+        constraints.swap(i, splitmix64(i as u64) as usize % (i + 1));
     }
 }
 

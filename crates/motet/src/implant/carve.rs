@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::devices::Devices;
 use super::options::Options;
 use super::place::format_point;
-use crate::base::{Error, Result, Threads, VertexId, rising};
+use crate::base::{Error, Result, Threads, VertexId, sorted_ids};
 use crate::contact::inside;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::{EDGES, FACETS, centroid, volume};
@@ -72,10 +72,10 @@ impl Carved {
     /// Removes what is left within reach at the edges of these faces as well. Returns whether there was
     /// anything.
     pub(super) fn remove_around(&mut self, host: &TetMesh, faces: &[[VertexId; 3]]) -> bool {
-        let sides = |[a, b, c]: &[VertexId; 3]| [[*a, *b], [*b, *c], [*c, *a]].map(rising);
+        let sides = |[a, b, c]: &[VertexId; 3]| [[*a, *b], [*b, *c], [*c, *a]].map(sorted_ids);
         let edges: HashSet<[VertexId; 2]> = faces.iter().flat_map(sides).collect();
         let is_at =
-            |tet: &[VertexId; 4]| EDGES.iter().any(|&[i, j]| edges.contains(&rising([tet[i], tet[j]])));
+            |tet: &[VertexId; 4]| EDGES.iter().any(|&[i, j]| edges.contains(&sorted_ids([tet[i], tet[j]])));
         let is_lost =
             |t: &usize| self.fates[*t] != Fate::Removed && self.is_in_reach[*t] && is_at(&host.tets[*t]);
         let lost: Vec<usize> = (0..host.tets.len()).filter(is_lost).collect();

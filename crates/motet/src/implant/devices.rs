@@ -1,7 +1,7 @@
 //! All devices as one set of triangles, and the tets that they keep.
 
 use super::options::{Device, Inside};
-use crate::base::{Csr, Error, Point, Result, Threads, VertexId, rising};
+use crate::base::{Csr, Error, Point, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::volume;
 use crate::geometry::triangle::area;
 use crate::mesh::{Surface, TetMesh, TetPart, firsts_at_place};
@@ -87,9 +87,9 @@ impl Devices {
     /// Adds each triangle once, as the first device has it.
     fn share(&mut self, triangles: &[[VertexId; 3]], of: &[u32]) {
         let mut order: Vec<usize> = (0..triangles.len()).collect();
-        order.sort_by_key(|&t| (rising(triangles[t]), t));
+        order.sort_by_key(|&t| (sorted_ids(triangles[t]), t));
         let mut groups: Vec<&[usize]> =
-            order.chunk_by(|&x, &y| rising(triangles[x]) == rising(triangles[y])).collect();
+            order.chunk_by(|&x, &y| sorted_ids(triangles[x]) == sorted_ids(triangles[y])).collect();
         groups.sort_unstable_by_key(|same| same[0]);
         for same in groups {
             self.triangles.push(triangles[same[0]]);

@@ -13,7 +13,7 @@ use super::devices::Devices;
 use super::options::{Inside, Outside};
 use super::parts::{Parts, common_edges};
 use super::place::{check_inside, format_point};
-use crate::base::{Error, Point, Result, Threads, VertexId, rising, runs_alike};
+use crate::base::{Error, Point, Result, Threads, VertexId, same_orientation, sorted_ids};
 use crate::geometry::triangle::centroid;
 use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::mesh::{TetMesh, cone_volume};
@@ -167,16 +167,18 @@ impl Frame {
     ) -> Result<Vec<Wall>> {
         let is_in = sorted.are_inside(cut, &boundary(host), threads);
         let twins: HashMap<[VertexId; 3], ([VertexId; 3], u32)> =
-            faces.pieces.iter().map(|piece| (rising(piece.0), *piece)).collect();
+            faces.pieces.iter().map(|piece| (sorted_ids(piece.0), *piece)).collect();
         let n = devices.names.len();
         let (mut has_inside, mut walls) = (vec![false; n], Vec::new());
         self.positions.volumes = vec![0.0; n];
         let mut positions = vec![None; devices.triangles.len()];
         for (&(vertices, t), &part) in sorted.pieces.iter().zip(&sorted.parts) {
-            let twin = twins.get(&rising(vertices));
+            let twin = twins.get(&sorted_ids(vertices));
             // On the boundary, a device lies inside where it faces the same way as the wall.
             let is_inside = match twin {
-                Some(&(face, f)) => carved.faces[f as usize].front.is_some() || runs_alike(vertices, face),
+                Some(&(face, f)) => {
+                    carved.faces[f as usize].front.is_some() || same_orientation(vertices, face)
+                }
                 None => is_in[part],
             };
             let is_fixed = self.is_fixed(vertices);
@@ -229,10 +231,10 @@ impl Frame {
         walls: &mut Vec<Wall>,
     ) {
         let with_device: HashSet<[VertexId; 3]> =
-            walls.iter().filter(|wall| wall.face.is_some()).map(|wall| rising(wall.vertices)).collect();
+            walls.iter().filter(|wall| wall.face.is_some()).map(|wall| sorted_ids(wall.vertices)).collect();
         let mut is_dropped = vec![false; carved.faces.len()];
         for (&(vertices, f), &part) in sorted.pieces.iter().zip(&sorted.parts) {
-            if with_device.contains(&rising(vertices)) {
+            if with_device.contains(&sorted_ids(vertices)) {
                 is_dropped[f as usize] = true;
                 continue;
             }
@@ -256,17 +258,17 @@ impl Frame {
     /// Refuses to divide or remove faces and edges of cells of other kinds, which stay as they are.
     fn check_others(&self, host: &TetMesh, carved: &Carved, cut: &Cut, walls: &[Wall]) -> Result<()> {
         let vertices: HashSet<VertexId> = host.fixed_vertices.iter().copied().collect();
-        let edges: HashSet<[VertexId; 2]> = host.fixed_edges.iter().map(|edge| rising(*edge)).collect();
+        let edges: HashSet<[VertexId; 2]> = host.fixed_edges.iter().map(|edge| sorted_ids(*edge)).collect();
         if vertices.is_empty() && edges.is_empty() {
             return Ok(());
         }
         let of_faces = || walls.iter().filter(|wall| wall.face.is_some()).map(|wall| wall.vertices);
-        let whole: HashSet<[VertexId; 3]> = of_faces().map(rising).collect();
-        let sides = |[a, b, c]: [VertexId; 3]| [[a, b], [b, c], [c, a]].map(rising);
+        let whole: HashSet<[VertexId; 3]> = of_faces().map(sorted_ids).collect();
+        let sides = |[a, b, c]: [VertexId; 3]| [[a, b], [b, c], [c, a]].map(sorted_ids);
         let known: HashSet<[VertexId; 2]> = of_faces().flat_map(sides).collect();
         let is_lost = |face: &&Face| {
             let is_held = face.front.is_none() && face.vertices.iter().all(|v| vertices.contains(v));
-            is_held && !whole.contains(&rising(face.vertices))
+            is_held && !whole.contains(&sorted_ids(face.vertices))
                 || sides(face.vertices).iter().any(|edge| edges.contains(edge) && !known.contains(edge))
         };
         let Some(lost) = carved.faces.iter().find(is_lost) else { return Ok(()) };

@@ -11,7 +11,7 @@ use super::lattice::lattice;
 use super::options::{Inside, Options};
 use super::owner::{Owner, Patch};
 use super::place::check_left;
-use crate::base::{Point, Result, Threads, VertexId, rising};
+use crate::base::{Point, Result, Threads, VertexId, sorted_ids};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
 use crate::mesh::{TetMesh, firsts_at_place};
 
@@ -118,7 +118,7 @@ impl Gap {
             }
         }
         let patches: HashMap<[VertexId; 3], i32> =
-            host.triangles.iter().map(|t| rising(*t)).zip(host.patches.iter().copied()).collect();
+            host.triangles.iter().map(|t| sorted_ids(*t)).zip(host.patches.iter().copied()).collect();
         let is_solid = |owner: Owner| match owner {
             Owner::Device(k) => devices.insides[k as usize] != Inside::Hollow,
             owner => is_wanted(owner),
@@ -126,7 +126,7 @@ impl Gap {
         for (t, wall) in frame.walls.iter().enumerate() {
             let first = wall.device.map(|t| devices.of_triangle.list(t as usize)[0]);
             let of_face = || {
-                let face = wall.face.map(|f| rising(carved.faces[f as usize].vertices));
+                let face = wall.face.map(|f| sorted_ids(carved.faces[f as usize].vertices));
                 face.and_then(|face| patches.get(&face))
                     .map_or(Patch::Unlabelled, |patch| Patch::Host(*patch))
             };
@@ -152,7 +152,7 @@ fn is_divided(frame: &Frame, filled: &Constrained, t: usize) -> bool {
     if wall.device.is_some() || parts.len() == 1 {
         return false;
     }
-    let sides = |[a, b, c]: [VertexId; 3]| [[a, b], [b, c], [c, a]].map(rising);
+    let sides = |[a, b, c]: [VertexId; 3]| [[a, b], [b, c], [c, a]].map(sorted_ids);
     let is_held =
         |edge: &[VertexId; 2]| !edge.iter().any(|v| frame.loose.contains(&frame.to_result[v.index()]));
     let is_whole = |edge: &[VertexId; 2]| parts.iter().any(|part| sides(*part).contains(edge));

@@ -17,7 +17,7 @@ use super::report::{DeviceReport, Fit, Report};
 use super::resurface::resurface;
 use super::starts;
 use super::zone::Draft;
-use crate::base::{CellId, Error, Result, Threads, VertexId, rising};
+use crate::base::{CellId, Error, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::triangle::centroid;
 use crate::mesh::check::{Defect, check};
 use crate::mesh::history::{History, Rules};
@@ -145,7 +145,7 @@ fn carve_and_fill(
     let mut carved = Carved::new(&part.mesh, devices, &nearest, options, threads);
     let mut divided = Vec::new();
     for _ in 0..=RETRIES {
-        threads.watch().go_on("making space for devices", 0, 0)?;
+        threads.watch().report_and_check("making space for devices", 0, 0)?;
         carved.check_overlaps(&part.mesh, threads)?;
         report.seconds.carve += lap();
         let filled = Gap::fill(&part.mesh, devices, &carved, options, threads)?;
@@ -193,8 +193,9 @@ fn certify(
 ) {
     report.tets = mesh.cells.tets().count();
     let whole = joined.volumes(devices);
-    let is_there: HashSet<[VertexId; 3]> = draft.triangles.iter().map(|(t, _)| rising(*t)).collect();
-    let is_kept = |t: usize| is_there.contains(&rising(joined.triangles[t].map(|v| gap.names[v.index()])));
+    let is_there: HashSet<[VertexId; 3]> = draft.triangles.iter().map(|(t, _)| sorted_ids(*t)).collect();
+    let is_kept =
+        |t: usize| is_there.contains(&sorted_ids(joined.triangles[t].map(|v| gap.names[v.index()])));
     report.volume_expected = volume_of(host);
     for (k, device) in devices.iter().enumerate() {
         let own = joined.triangles_of(k);

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::layout::{Layout, Numbering, Pieces};
 use super::owner::{Owner, Patch};
-use crate::base::{CellId, Id, Point, Result, Threads, VertexId, rising};
+use crate::base::{CellId, Id, Point, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::{at, centroid, closest};
 use crate::geometry::vector::distance;
 use crate::mesh::Mesh;
@@ -60,11 +60,11 @@ pub(super) fn history(
         Labelled { cell: tet.cell, vertices: [a, b, c], label: OF_TETS }
     };
     let mut facets: Vec<Labelled<3>> = removed.iter().map(facet).collect();
-    let dropped: HashSet<[VertexId; 3]> = gap.dropped.iter().map(|face| rising(face.vertices)).collect();
+    let dropped: HashSet<[VertexId; 3]> = gap.dropped.iter().map(|face| sorted_ids(face.vertices)).collect();
     for ((&cell, &vertices), &label) in
         part.triangle_to_cell.iter().zip(&part.mesh.triangles).zip(&part.mesh.patches)
     {
-        if dropped.contains(&rising(vertices)) {
+        if dropped.contains(&sorted_ids(vertices)) {
             facets.push(Labelled { cell, vertices, label });
         }
     }

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::cut::Cut;
-use crate::base::{Point, Sets, Threads, VertexId, rising};
+use crate::base::{DisjointSets, Point, Threads, VertexId, sorted_ids};
 use crate::contact::inside;
 use crate::geometry::triangle::{area, centroid};
 
@@ -22,7 +22,7 @@ pub(super) struct Parts<'a> {
 pub(super) fn common_edges(cut: &Cut) -> BTreeSet<[VertexId; 2]> {
     let edges = |s: usize| {
         let vertices = cut.pieces[s].iter().map(|(t, _)| *t);
-        vertices.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).map(rising)
+        vertices.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).map(sorted_ids)
     };
     // Edges of the devices whose ends are both of the other surface as well.
     let of_faces: BTreeSet<VertexId> = cut.pieces[1].iter().flat_map(|(t, _)| *t).collect();
@@ -39,9 +39,11 @@ impl<'a> Parts<'a> {
     pub(super) fn new(cut: &'a Cut, s: usize, on_both: &BTreeSet<[VertexId; 2]>) -> Self {
         let pieces = &cut.pieces[s];
         let mut first_at: HashMap<[VertexId; 2], u32> = HashMap::new();
-        let mut sets = Sets::new(pieces.len());
+        let mut sets = DisjointSets::new(pieces.len());
         for (i, &([a, b, c], _)) in (0u32..).zip(pieces) {
-            for edge in [[a, b], [b, c], [c, a]].map(rising).iter().filter(|edge| !on_both.contains(*edge)) {
+            for edge in
+                [[a, b], [b, c], [c, a]].map(sorted_ids).iter().filter(|edge| !on_both.contains(*edge))
+            {
                 sets.join(*first_at.entry(*edge).or_insert(i), i);
             }
         }

@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashSet};
 use super::carve::{Carved, Fate};
 use super::gap::Gap;
 use super::owner::{Owner, Patch};
-use crate::base::{CellId, Id, Point, Result, Threads, VertexId, rising};
+use crate::base::{CellId, Id, Point, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
@@ -176,9 +176,10 @@ impl Zone {
         let patches: Vec<Patch> = patches.into_iter().collect();
         let of_host = i32::try_from(patches.len()).unwrap_or(i32::MAX);
         let number = |patch: &Patch| patches.binary_search(patch).map_or(of_host, |i| i as i32);
-        let dropped: HashSet<[VertexId; 3]> = gap.dropped.iter().map(|face| rising(face.vertices)).collect();
+        let dropped: HashSet<[VertexId; 3]> =
+            gap.dropped.iter().map(|face| sorted_ids(face.vertices)).collect();
         let of = |v: VertexId| Some(self.result_to_zone[v.index()]).filter(|v| *v != VertexId::NONE);
-        let staying = host.triangles.iter().filter(|t| !dropped.contains(&rising(**t)));
+        let staying = host.triangles.iter().filter(|t| !dropped.contains(&sorted_ids(**t)));
         let all = staying.map(|t| (*t, of_host, None));
         let all = all.chain(gap.triangles.iter().map(|new| (new.0, number(&new.1), Some(*new))));
         let mut known = Vec::new();
@@ -220,7 +221,7 @@ impl Zone {
             let [a, b, c] = FACETS[i].map(|k| tets[t.index()][k]);
             vertices.extend([a, b, c].into_iter().filter(|v| !is_loose(*v)));
             if ![a, b, c].into_iter().any(is_loose) {
-                edges.extend([[a, b], [b, c], [c, a]].map(rising));
+                edges.extend([[a, b], [b, c], [c, a]].map(sorted_ids));
             }
         });
         self.mesh.fixed_edges.extend(edges);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::{CellId, Point, VertexId, rising};
+use crate::base::{CellId, Point, VertexId, sorted_ids};
 use crate::mesh::triangulate::triangulate;
 use crate::mesh::{Boundary, CellKind, Labels, Mesh, cone_volume};
 
@@ -49,7 +49,7 @@ impl Surface {
     /// as here, for example outward on a [boundary](Self::boundary_of); `None` if one has no counterpart
     /// here.
     pub fn turned(&self, triangles: &[[VertexId; 3]]) -> Option<Vec<[VertexId; 3]>> {
-        let key = |t: &[VertexId; 3]| rising(*t);
+        let key = |t: &[VertexId; 3]| sorted_ids(*t);
         let mut own = self.triangles.clone();
         own.sort_by_key(key);
         let turned = |t| own.binary_search_by_key(&key(t), key).ok().map(|place| own[place]);

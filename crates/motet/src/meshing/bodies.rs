@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::fill::Options;
 use super::surfaces::Surfaces;
-use crate::base::{Error, Point, Result, VertexId, rising, runs_alike};
+use crate::base::{Error, Point, Result, VertexId, same_orientation, sorted_ids};
 use crate::delaunay::Constrained;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::{FACETS, holds, volume};
@@ -146,12 +146,13 @@ fn voids(tets: &Constrained, surfaces: &Surfaces, triangles: &[[VertexId; 3]]) -
         .zip(&surfaces.surface_of)
         .filter(|(_, s)| surfaces.roles[**s as usize] == Role::Boundary)
     {
-        *faces.entry(rising(*t)).or_default() += if runs_alike(*t, rising(*t)) { 1 } else { -1 };
+        *faces.entry(sorted_ids(*t)).or_default() +=
+            if same_orientation(*t, sorted_ids(*t)) { 1 } else { -1 };
     }
     let inward = |i: usize| {
         let t = triangles[i];
-        let n = faces.get(&rising(t)).copied().unwrap_or(0);
-        if runs_alike(t, rising(t)) { n } else { -n }
+        let n = faces.get(&sorted_ids(t)).copied().unwrap_or(0);
+        if same_orientation(t, sorted_ids(t)) { n } else { -n }
     };
     let beyond = beyond(&tets.triangle_to_bodies);
     let mut winding: BTreeMap<Side, i32> = BTreeMap::from([(None, 0)]);
@@ -249,7 +250,7 @@ fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
 
 /// The triangle that a facet is a part of, if it separates bodies.
 fn wall(tets: &Constrained, facet: [VertexId; 3]) -> Option<usize> {
-    let is_part = |part: &[VertexId; 3]| rising(*part) == rising(facet);
+    let is_part = |part: &[VertexId; 3]| sorted_ids(*part) == sorted_ids(facet);
     let mut parting = tets.triangle_to_bodies.iter().enumerate().filter(|(_, sides)| sides[0] != sides[1]);
     parting.find(|(i, _)| tets.triangle_to_facets.list(*i).iter().any(is_part)).map(|(i, _)| i)
 }
@@ -295,12 +296,16 @@ impl EnclosingSurfaces {
     /// Finds them by walking from the outside: crossing a triangle enters or leaves its surfaces.
     fn find(tets: &Constrained, surfaces: &Surfaces, triangles: &[[VertexId; 3]]) -> Self {
         let is_boundary = |s: &u32| surfaces.roles[*s as usize] == Role::Boundary;
-        let mut of_triangle: Vec<([VertexId; 3], u32)> =
-            surfaces.triangles.iter().map(|t| rising(*t)).zip(surfaces.surface_of.iter().copied()).collect();
+        let mut of_triangle: Vec<([VertexId; 3], u32)> = surfaces
+            .triangles
+            .iter()
+            .map(|t| sorted_ids(*t))
+            .zip(surfaces.surface_of.iter().copied())
+            .collect();
         of_triangle.retain(|(_, s)| is_boundary(s));
         of_triangle.sort_unstable();
         let crossed = |i: usize| {
-            let key = rising(triangles[i]);
+            let key = sorted_ids(triangles[i]);
             let first = of_triangle.partition_point(|(t, _)| *t < key);
             of_triangle[first..].iter().take_while(move |(t, _)| *t == key).map(|(_, s)| *s)
         };

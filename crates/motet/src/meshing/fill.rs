@@ -230,7 +230,7 @@ pub fn fill(
     let points = points_inside(&joined, options.sizes.as_ref(), at_corners, threads)?;
     let n_points = joined.points.len() + points.len();
     let mut tets = fill_tets(&joined, points, options, threads)?;
-    threads.watch().go_on("finding regions", 0, 0)?;
+    threads.watch().report_and_check("finding regions", 0, 0)?;
     let arranged = bodies::arrange(&mut tets, surfaces, &triangles, options)?;
     let mut report = report(&joined, &tets, n_points);
     let (mut mesh, _) = mesh(&joined, &tets);
@@ -335,7 +335,7 @@ fn points_inside(
     at_corners: Vec<[f64; 3]>,
     threads: &Threads,
 ) -> Result<Vec<Point>> {
-    threads.watch().go_on("choosing points inside", 0, 0)?;
+    threads.watch().report_and_check("choosing points inside", 0, 0)?;
     let (points, triangles) = (&surfaces.points, &surfaces.triangles);
     match sizes {
         None => Ok(Vec::new()),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::compact::{compact, used_vertices};
-use crate::base::{Error, Point, Result, Threads, VertexId, rising};
+use crate::base::{Error, Point, Result, Threads, VertexId, sorted_ids};
 use crate::mesh::{Mesh, Surface, firsts_at_place};
 use crate::preflight::{self, Preflight, Repaired, Repairs, Role, renamed};
 
@@ -82,7 +82,7 @@ impl Surfaces {
     fn keep_firsts(&mut self, of: impl Fn(&Self, usize) -> (u32, u32)) {
         let key = |t: usize| {
             let (group, member) = of(self, t);
-            (group, rising(self.triangles[t]), member)
+            (group, sorted_ids(self.triangles[t]), member)
         };
         let mut order: Vec<_> = (0..self.triangles.len()).map(|t| (key(t), t)).collect();
         order.sort_unstable();

@@ -167,7 +167,11 @@ impl Mover {
         let mut left = 1.0;
         certificate.complete = false;
         while certificate.substeps < self.limits.substeps {
-            threads.watch().go_on("moving in parts", certificate.substeps, self.limits.substeps)?;
+            threads.watch().report_and_check(
+                "moving in parts",
+                certificate.substeps,
+                self.limits.substeps,
+            )?;
             let mut leg = timed(&mut seconds.graph, || Leg::new(self, &state, target, threads))?;
             let mut part = leg.longest(self.limits.keep_volume, out, threads, seconds)?;
             if part * left < self.limits.smallest {

@@ -77,7 +77,7 @@ pub fn choose<I: Iterator<Item = Result<Vec<Point>>>>(
     let mut refusal = None;
     let n_methods = ladder.len();
     for (k, method) in ladder.into_iter().enumerate() {
-        threads.watch().go_on("trying methods", k, n_methods)?;
+        threads.watch().report_and_check("trying methods", k, n_methods)?;
         let begin = Instant::now();
         let mut tried =
             Tried { method: method.name(), kept: false, frames: 0, worst: None, refused: None, seconds: 0.0 };

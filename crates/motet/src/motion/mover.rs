@@ -171,7 +171,7 @@ impl Mover {
             state: None,
             setup,
         };
-        threads.watch().go_on("setting a motion up", 0, 0)?;
+        threads.watch().report_and_check("setting a motion up", 0, 0)?;
         match mover.method {
             Method::Delaunay | Method::Bodies(_) | Method::Guided => {
                 mover.hang_reference(&is_used, threads)?;

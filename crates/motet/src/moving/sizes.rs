@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use crate::base::{Point, Sets, Threads, VertexId};
+use crate::base::{DisjointSets, Point, Threads, VertexId};
 use crate::geometry::rigid::Rigid;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::distance_squared;
@@ -96,7 +96,7 @@ impl Region {
 
 impl Parts {
     fn of(map: &SizeMap, wall: &Wall, threads: &Threads) -> Self {
-        let mut sets = Sets::new(wall.places.len());
+        let mut sets = DisjointSets::new(wall.places.len());
         sets.join_all(wall.triangles.iter().map(|t| t.as_slice()));
         let of_node = sets.roots();
         let tree = NearestTriangle::new(&wall.places, &wall.triangles, threads);
@@ -157,7 +157,7 @@ fn pulled_back(now: &Current, points: &[Point], options: &Options, threads: &Thr
     let has_area = |t: &[VertexId; 3]| area_vector(t.map(|v| points[v.index()])) != [0.0; 3];
     let mut triangles = wall_triangles(&now.mesh, options);
     triangles.retain(|t| t.iter().all(|v| is_driven[v.index()]) && has_area(t));
-    let mut sets = Sets::new(points.len());
+    let mut sets = DisjointSets::new(points.len());
     sets.join_all(triangles.iter().map(|t| t.as_slice()));
     let roots = sets.roots();
     let mut node = vec![NO_NODE; points.len()];

@@ -66,7 +66,7 @@ impl StepRun<'_> {
         let (mut changed, mut done, mut effort) = (None::<Current>, 0.0, Effort::Usual);
         loop {
             let watch = self.threads.watch();
-            watch.go_on("moving and repairing", self.legs, self.options.motion.limits.substeps)?;
+            watch.report_and_check("moving and repairing", self.legs, self.options.motion.limits.substeps)?;
             let now = changed.as_ref().unwrap_or(start);
             let (part, shape) = self.leg(now)?;
             self.legs += 1;

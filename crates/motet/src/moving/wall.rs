@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::base::{Error, Point, Result, Threads, VertexId, rising};
+use crate::base::{Error, Point, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::vector::norm;
 use crate::mesh::{Mesh, Surface, bounds, largest_extent};
 use crate::motion::{FacetSet, SurfaceCarrier};
@@ -40,10 +40,10 @@ impl Wall {
         let triangles: Vec<_> = wall_triangles(mesh, options).iter().filter_map(nodes).collect();
         let held = options.watch.as_ref().filter(|watch| watch.hold.is_some());
         let mut body = vec![NO_BODY; if held.is_some() { triangles.len() } else { 0 }];
-        let place: HashMap<_, _> = triangles.iter().map(|t| rising(*t)).zip(0..).collect();
+        let place: HashMap<_, _> = triangles.iter().map(|t| sorted_ids(*t)).zip(0..).collect();
         for (k, held) in (0..).zip(held.map_or(Ok(Vec::new()), |watch| watch.bodies(mesh))?) {
             for triangle in &held.triangles {
-                let place = nodes(triangle).and_then(|t| place.get(&rising(t)).copied());
+                let place = nodes(triangle).and_then(|t| place.get(&sorted_ids(t)).copied());
                 body[place.ok_or_else(|| not_driven(&held.name))?] = k;
             }
         }

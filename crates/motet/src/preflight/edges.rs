@@ -3,7 +3,7 @@
 use super::fault::{Fault, FaultKind};
 use super::sides::{Side, edges};
 use super::surfaces::{Role, Surfaces};
-use crate::base::{Sets, VertexId};
+use crate::base::{DisjointSets, VertexId};
 
 pub(super) fn faults(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
     let mut faults = Vec::new();
@@ -26,7 +26,7 @@ pub(super) fn faults(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
 /// Vertices around which the triangles of a surface, connected where they share an edge, form more than one
 /// fan.
 fn pinched(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
-    let mut fans = Sets::new(3 * surfaces.triangles.len());
+    let mut fans = DisjointSets::new(3 * surfaces.triangles.len());
     for same in edges(sides) {
         let first = same[0].corners();
         for side in &same[1..] {

@@ -4,7 +4,7 @@
 use super::sides::{edges, sorted_sides};
 use super::single::Duplicates;
 use super::surfaces::{Role, Surfaces};
-use crate::base::{Point, Sets, VertexId};
+use crate::base::{DisjointSets, Point, VertexId};
 
 /// For each surface, the joined surface that it is part of: its own number or a lower one. Only
 /// boundaries are joined, since a membrane may end anywhere.
@@ -14,7 +14,7 @@ pub(crate) fn joined_surfaces(
     surface_of: &[u32],
     roles: &[Role],
 ) -> Vec<u32> {
-    let mut sets = Sets::new(roles.len());
+    let mut sets = DisjointSets::new(roles.len());
     if roles.len() > 1 {
         let surfaces = Surfaces::new(points, triangles, surface_of, roles);
         let duplicates = Duplicates::new(&surfaces);

@@ -7,7 +7,7 @@ use super::enclosed::volume_sign;
 use super::fault::{Fault, FaultKind};
 use super::sides::{Side, edges};
 use super::surfaces::Surfaces;
-use crate::base::{Sets, VertexId};
+use crate::base::{DisjointSets, VertexId};
 
 /// The triangles that have sides, part by part.
 pub(super) struct Parts {
@@ -22,7 +22,7 @@ impl Parts {
     /// Finds the parts. An edge of more than two triangles joins none of them, since it is not clear which
     /// belong together.
     pub(super) fn new(n_triangles: usize, sides: &[Side]) -> Self {
-        let mut sets = Sets::new(n_triangles);
+        let mut sets = DisjointSets::new(n_triangles);
         for same in edges(sides) {
             if let [x, y] = same {
                 sets.join(x.triangle, y.triangle);

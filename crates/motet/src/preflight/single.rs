@@ -2,7 +2,7 @@
 
 use super::fault::{Fault, FaultKind};
 use super::surfaces::Surfaces;
-use crate::base::{Csr, Threads, VertexId, rising};
+use crate::base::{Csr, Threads, VertexId, sorted_ids};
 use crate::geometry::predicates::collinear;
 use crate::geometry::vector::in_range;
 
@@ -51,7 +51,7 @@ impl Duplicates {
     pub(super) fn new(surfaces: &Surfaces) -> Self {
         let mut keyed: Vec<([VertexId; 3], u32, u32)> = surfaces
             .ids()
-            .map(|t| (rising(surfaces.triangles[t as usize]), surfaces.surface(t), t))
+            .map(|t| (sorted_ids(surfaces.triangles[t as usize]), surfaces.surface(t), t))
             .filter(|([a, b, c], ..)| a != b && b != c)
             .collect();
         keyed.sort_unstable();

@@ -184,7 +184,7 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         for generation in 0.. {
             let Some(active) = self.active(generation) else { break };
             let most = if active.iter().any(Criterion::lasts) { 0 } else { wanted.most_generations() };
-            self.threads.watch().go_on("refining", generation as usize, most as usize)?;
+            self.threads.watch().report_and_check("refining", generation as usize, most as usize)?;
             let wishes = self.wishes(&active)?;
             let (n_wished, marks) = (marked(&wishes[0]).len(), marked(&wishes[1]));
             if generation == 0 && n_wished == 0 && !wanted.coarsens() {
@@ -246,7 +246,7 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         let says_how_far = !self.wanted.criteria.is_empty() || !self.wanted.coarsen_where.is_empty();
         let n_levels = if says_how_far { u32::MAX } else { self.wanted.generations.unwrap_or(1).max(1) };
         for _ in 0..n_levels {
-            self.threads.watch().go_on("taking divisions back", 0, 0)?;
+            self.threads.watch().report_and_check("taking divisions back", 0, 0)?;
             let removable = self.removable(&self.refinement.part())?;
             let before = self.refinement.mesh().cells.len();
             let begin = Instant::now();

@@ -147,12 +147,12 @@ fn foot_is_inside(tet: [Point; 4], vertex: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::mixed;
+    use crate::base::splitmix64;
     use crate::geometry::quality::eas;
 
     /// The next pseudo-random number in [-1, 1).
     fn next(state: &mut u64) -> f64 {
-        let number = mixed(*state);
+        let number = splitmix64(*state);
         *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         (number >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }

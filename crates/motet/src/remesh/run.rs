@@ -52,7 +52,7 @@ pub(super) fn remesh_keeping(
     let min_eas = options.limit();
     let mut report = Report { min_eas, ..Report::default() };
     let max_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
-    threads.watch().go_on("joining tets", 0, 0)?;
+    threads.watch().report_and_check("joining tets", 0, 0)?;
     let mut complex = Complex::new(mesh)?;
     hold(&mut complex, mesh, &options.held, required, options.surface != SurfaceRule::Keep);
     report.seconds.join = clock.lap();

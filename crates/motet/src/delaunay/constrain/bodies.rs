@@ -3,7 +3,7 @@
 use super::flats::Flats;
 use super::tets::Tets;
 use super::unmade::{Part, Unmade};
-use crate::base::{Csr, Error, TetId, VertexId, runs_alike};
+use crate::base::{Csr, Error, TetId, VertexId, same_orientation};
 use crate::kernel::HalfFacet;
 use crate::spatial::OUTSIDE;
 
@@ -79,7 +79,7 @@ impl Bodies {
 
 /// Whether the tet of a facet lies in front of it, the facet having the orientation of `part`.
 fn faces(tets: &Tets, half: HalfFacet, part: [VertexId; 3]) -> bool {
-    runs_alike(part, tets.inward(half))
+    same_orientation(part, tets.inward(half))
 }
 
 fn lost(triangle: u32) -> Unmade {

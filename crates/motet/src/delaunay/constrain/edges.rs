@@ -17,7 +17,7 @@ use super::swap::{Swap, Wanted};
 use super::tets::Tets;
 use super::unmade::{Order, Part, Unmade};
 use super::way::{Way, meets};
-use crate::base::{TetId, VertexId, rising};
+use crate::base::{TetId, VertexId, sorted_ids};
 use crate::kernel::HalfFacet;
 
 /// An edge that meets at most this many facets may have twice that number of swaps without gain before it
@@ -103,7 +103,7 @@ impl<'a> Edges<'a> {
         let mut queue = VecDeque::from(missing);
         let mut n_made = 0;
         while let Some(piece) = queue.pop_front() {
-            order.watch.go_on("making edges of the surface", n_made, n_made + queue.len())?;
+            order.watch.report_and_check("making edges of the surface", n_made, n_made + queue.len())?;
             n_made += 1;
             let mut spare = None;
             while self.way.find(self.tets, self.sites, piece) {
@@ -140,7 +140,7 @@ impl<'a> Edges<'a> {
                 has_swapped = true;
                 continue;
             }
-            for edge in [[p, q], [q, r], [r, p]].map(rising) {
+            for edge in [[p, q], [q, r], [r, p]].map(sorted_ids) {
                 if self.tried.contains(&edge) {
                     continue;
                 }

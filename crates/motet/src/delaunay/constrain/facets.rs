@@ -16,7 +16,7 @@ use super::split::Kept;
 use super::tets::Tets;
 use super::unmade::{Order, Part, Unmade};
 use super::wrap::Wrap;
-use crate::base::{Csr, Error, TetId, VertexId, rising};
+use crate::base::{Csr, Error, TetId, VertexId, sorted_ids};
 use crate::kernel::HalfFacet;
 
 /// Makes every flat facet a set of facets of tets; returns them, oriented like the first triangle of each
@@ -36,7 +36,7 @@ pub(super) fn recover(
     let mut in_line: Vec<usize> = (0..flats.triangles.len()).collect();
     in_line.sort_by_key(|&i| order.rank(|part| flats.has(i, part)));
     for (n_made, i) in in_line.into_iter().enumerate() {
-        order.watch.go_on("making facets of the surface", n_made, all_parts.len())?;
+        order.watch.report_and_check("making facets of the surface", n_made, all_parts.len())?;
         let flat = flats.triangles.list(i);
         let first = triangles[flat[0] as usize];
         let all = flat.iter().map(|&i| triangles[i as usize]);
@@ -53,7 +53,7 @@ pub(super) fn recover(
             _ => work.recover(tets, sites, (first, &own), missing),
         };
         done.map_err(|_: Stuck| stuck(sites, flat[0], first))?;
-        work.walls.extend(own.iter().copied().map(rising));
+        work.walls.extend(own.iter().copied().map(sorted_ids));
         all_parts[i] = own;
     }
     let mut parts = Csr::default();
@@ -83,7 +83,7 @@ impl Kept for Walls<'_> {
     }
 
     fn has_facet(&self, face: [VertexId; 3]) -> bool {
-        self.walls.contains(&rising(face))
+        self.walls.contains(&sorted_ids(face))
     }
 }
 
@@ -204,7 +204,7 @@ impl Work {
         group: &[[VertexId; 3]],
         rim: ([VertexId; 2], VertexId),
     ) -> Result<(), Stuck> {
-        self.cut.find(tets, sites, plane, rim, |face| self.walls.contains(&rising(face)))?;
+        self.cut.find(tets, sites, plane, rim, |face| self.walls.contains(&sorted_ids(face)))?;
         let old: Vec<_> = self.cut.tets.iter().map(|&tet| tets.vertices(tet)).collect();
         let at: Vec<_> = group.as_flattened().iter().map(|&v| (v, tets.at(v))).collect();
         self.cut.tets.iter().for_each(|&tet| tets.remove(tet));
@@ -216,7 +216,7 @@ impl Work {
             // Not every vertex of the group need belong to an old tet.
             at.into_iter().for_each(|(vertex, tet)| tets.set_at(vertex, tet));
             let outer = shells.iter().flatten().filter(|face| !face.outer.is_none());
-            tets.put(&old, outer.map(|face| (rising(face.vertices), face.outer)).collect());
+            tets.put(&old, outer.map(|face| (sorted_ids(face.vertices), face.outer)).collect());
         }
         self.cut.shells = shells;
         filled

@@ -7,7 +7,7 @@
 use super::keep::{Exchange, Keep};
 use super::recone::Side;
 use super::tets::Tets;
-use crate::base::{Point, TetId, VertexId, rising};
+use crate::base::{Point, TetId, VertexId, sorted_ids};
 use crate::geometry::tet::{EDGES, volume};
 use crate::geometry::triangle::area;
 use crate::geometry::vector::{add, distance, scale};
@@ -58,9 +58,9 @@ impl Keep<'_> {
         for half in star.iter().flat_map(|&tet| Tets::facets(tet)) {
             let face = self.tets.inward(half);
             if let Some(flat) = self.wall(half).filter(|_| face.contains(&a) && face.contains(&b))
-                && !old.contains(&rising(face))
+                && !old.contains(&sorted_ids(face))
             {
-                old.push(rising(face));
+                old.push(sorted_ids(face));
                 base.push((flat, self.plane(flat).turned(face)));
             }
         }

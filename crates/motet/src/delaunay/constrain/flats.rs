@@ -15,7 +15,7 @@ use super::levels::Levels;
 use super::plane::Plane;
 use super::sites::Sites;
 use super::unmade::Part;
-use crate::base::{Csr, Point, Sets, VertexId, rising};
+use crate::base::{Csr, DisjointSets, Point, VertexId, sorted_ids};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{cross, dot, norm, sub};
 
@@ -51,7 +51,7 @@ impl Flats {
     /// Joins triangles that share an edge with no third one, as `levels` allows.
     pub(super) fn find(sites: &Sites, triangles: &[[VertexId; 3]], levels: &Levels) -> Self {
         let edges = by_edge(triangles);
-        let mut flats = Sets::new(triangles.len());
+        let mut flats = DisjointSets::new(triangles.len());
         for (edge, [i, j]) in edges.chunk_by(|a, b| a.0 == b.0).filter_map(pair) {
             let is_one = match [i, j].map(|t| levels.of(t)) {
                 [Merge::Exact, Merge::Exact] => {
@@ -99,7 +99,7 @@ type Pair = ([VertexId; 2], [u32; 2]);
 fn by_edge(triangles: &[[VertexId; 3]]) -> Vec<([VertexId; 2], u32)> {
     let mut edges: Vec<([VertexId; 2], u32)> = Vec::with_capacity(3 * triangles.len());
     for (i, &[a, b, c]) in triangles.iter().enumerate() {
-        edges.extend([[a, b], [b, c], [c, a]].map(|e| (rising(e), i as u32)));
+        edges.extend([[a, b], [b, c], [c, a]].map(|e| (sorted_ids(e), i as u32)));
     }
     edges.sort_unstable();
     edges

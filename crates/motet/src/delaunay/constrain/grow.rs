@@ -11,7 +11,7 @@ use hashbrown::{HashMap, HashSet};
 use super::keep::Keep;
 use super::recone::{Side, is_seen, makes_flat};
 use super::tets::Tets;
-use crate::base::{Point, VertexId, rising};
+use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::vector::{add, scale};
 
 /// The largest number of tets in one cavity.
@@ -95,7 +95,7 @@ impl Keep<'_> {
         let mut edges: HashMap<[VertexId; 2], u32> = HashMap::new();
         for [a, b, c] in side.faces() {
             for edge in [[a, b], [b, c], [c, a]] {
-                *edges.entry(rising(edge)).or_default() += 1;
+                *edges.entry(sorted_ids(edge)).or_default() += 1;
             }
         }
         let around: HashSet<VertexId> = edges.keys().flatten().copied().collect();

@@ -4,7 +4,7 @@
 
 use super::sites::Sites;
 use super::tets::Tets;
-use crate::base::{TetId, VertexId, rising};
+use crate::base::{TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::kernel::HalfFacet;
 
@@ -66,7 +66,7 @@ impl Insertion {
         self.touched.clear();
         for &tet in &self.cavity {
             let v = tets.vertices(tet);
-            self.touched.extend(EDGES.map(|[i, j]| rising([v[i], v[j]])));
+            self.touched.extend(EDGES.map(|[i, j]| sorted_ids([v[i], v[j]])));
         }
         self.touched.sort_unstable();
         self.touched.dedup();

@@ -17,7 +17,7 @@ use super::recone::Side;
 use super::segments::Segments;
 use super::sites::{Place, SegmentId, Sites};
 use super::tets::Tets;
-use crate::base::{Csr, Point, Result, TetId, VertexId, Watch, rising};
+use crate::base::{Csr, Point, Result, TetId, VertexId, Watch, sorted_ids};
 use crate::kernel::HalfFacet;
 
 /// A point inside is removed when the least share of the tets without it exceeds this, or the present one.
@@ -61,7 +61,7 @@ impl<'a> Keep<'a> {
         parts: &Csr<[VertexId; 3]>,
     ) -> Self {
         let of_flat = |(flat, list): (usize, &[[VertexId; 3]])| {
-            list.iter().map(|&part| (rising(part), flat as u32)).collect::<Vec<_>>()
+            list.iter().map(|&part| (sorted_ids(part), flat as u32)).collect::<Vec<_>>()
         };
         let walls = parts.iter().enumerate().flat_map(of_flat).collect();
         Self {
@@ -97,7 +97,7 @@ impl<'a> Keep<'a> {
             in_triangles.retain(|&vertex| self.free(vertex, None).is_none());
             let n_chains = chains.len();
             for (i, (segment, points)) in chains.iter_mut().enumerate() {
-                watch.go_on("moving points off edges", i, n_chains)?;
+                watch.report_and_check("moving points off edges", i, n_chains)?;
                 self.free_all(segments.ends(SegmentId(*segment)), points);
             }
             chains.retain(|(_, points)| !points.is_empty());
@@ -170,7 +170,7 @@ impl<'a> Keep<'a> {
         for (list, flat) in lists.iter_mut().zip(self.flats.triangles.iter()) {
             let first = self.triangles[flat[0] as usize];
             list.sort_unstable();
-            if *list == [rising(first)] {
+            if *list == [sorted_ids(first)] {
                 *list = vec![first];
             } else {
                 let plane = Plane::new(self.sites, first);
@@ -192,7 +192,7 @@ impl<'a> Keep<'a> {
             base.extend(self.joined(vertex, ends, &fans[i..i + n])?);
             i += n;
         }
-        let old: Vec<_> = fans.iter().map(|f| rising(f.1)).collect();
+        let old: Vec<_> = fans.iter().map(|f| sorted_ids(f.1)).collect();
         let is_around = |tets: &Tets, half: HalfFacet| tets.vertices(half.tet())[half.facet()] == vertex;
         if star.is_empty() {
             return None;
@@ -210,7 +210,7 @@ impl<'a> Keep<'a> {
                 if face.contains(&vertex)
                     && let Some(flat) = self.wall(half)
                 {
-                    fans.push((flat, rising(face)));
+                    fans.push((flat, sorted_ids(face)));
                 }
             }
         }
@@ -225,7 +225,7 @@ impl<'a> Keep<'a> {
     /// The flat facet to which a facet of a tet belongs. Tets outside may overlap, so facets with the same
     /// vertices may lie between other tets; these do not count.
     pub(super) fn wall(&self, half: HalfFacet) -> Option<u32> {
-        let flat = *self.walls.get(&rising(self.tets.inward(half)))?;
+        let flat = *self.walls.get(&sorted_ids(self.tets.inward(half)))?;
         let other = self.tets.across(half);
         let behind = if other.is_none() { 0 } else { self.bodies.of_slot[other.tet().index()] };
         let bodies = [self.bodies.of_slot[half.tet().index()], behind];
@@ -305,7 +305,7 @@ impl<'a> Keep<'a> {
                     if is_around(self.tets, half) {
                         side.shell.push((other, face));
                     } else if let Some(flat) = self.wall(half) {
-                        if !old.contains(&rising(face)) {
+                        if !old.contains(&sorted_ids(face)) {
                             return None;
                         }
                         seen.push((flat, self.plane(flat).turned(face) == face));
@@ -354,7 +354,7 @@ impl<'a> Keep<'a> {
             let made = self.make(side, vertex);
             came.extend(is_inside.then_some(vertex));
             let bare = side.base.iter().zip(&made[side.shell.len()..]);
-            on_base.extend(bare.map(|(&face, &tet)| (rising(face), HalfFacet::new(tet, 3))));
+            on_base.extend(bare.map(|(&face, &tet)| (sorted_ids(face), HalfFacet::new(tet, 3))));
         }
         on_base.sort_unstable();
         for pair in on_base.chunk_by(|a, b| a.0 == b.0) {
@@ -365,7 +365,7 @@ impl<'a> Keep<'a> {
         for face in old {
             self.walls.remove(face);
         }
-        self.walls.extend(base.iter().map(|&(flat, face)| (rising(face), flat)));
+        self.walls.extend(base.iter().map(|&(flat, face)| (sorted_ids(face), flat)));
         came.into_iter().for_each(|vertex| self.settle(vertex));
         Some(())
     }

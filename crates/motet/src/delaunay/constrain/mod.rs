@@ -62,7 +62,7 @@ use hashbrown::HashSet;
 
 use super::Triangulation;
 use super::input::{self, Scaled};
-use crate::base::{Csr, Error, Point, Result, TetId, Threads, VertexId, rising};
+use crate::base::{Csr, Error, Point, Result, TetId, Threads, VertexId, sorted_ids};
 use crate::geometry::rounding;
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, distance, scale};
@@ -322,9 +322,10 @@ impl Filled {
         let mut failed: Vec<u32> =
             all.flat_map(|flat| self.flats.triangles.list(flat).iter().copied()).collect();
         let edges: HashSet<[VertexId; 2]> =
-            self.flat_tets().flat_map(|v| EDGES.map(|[i, j]| rising([v[i], v[j]]))).collect();
-        let is_at_flat_tet =
-            |[a, b, c]: [VertexId; 3]| [[a, b], [b, c], [c, a]].iter().any(|e| edges.contains(&rising(*e)));
+            self.flat_tets().flat_map(|v| EDGES.map(|[i, j]| sorted_ids([v[i], v[j]]))).collect();
+        let is_at_flat_tet = |[a, b, c]: [VertexId; 3]| {
+            [[a, b], [b, c], [c, a]].iter().any(|e| edges.contains(&sorted_ids(*e)))
+        };
         failed.extend((0..triangles.len() as u32).filter(|&i| is_at_flat_tet(triangles[i as usize])));
         failed
     }

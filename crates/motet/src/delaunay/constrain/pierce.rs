@@ -12,7 +12,7 @@ use super::sites::Sites;
 use super::split::{Kept, Split, faces_around, positive_part, round_between};
 use super::swap::{Swap, Wanted};
 use super::tets::Tets;
-use crate::base::{TetId, VertexId, rising};
+use crate::base::{TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 
 /// The largest number of points put in one flat facet.
@@ -205,7 +205,7 @@ impl Pierce {
             let v = tets.vertices(tet);
             let sides = v.map(|v| self.side(sites, v));
             for [i, j] in EDGES.into_iter().filter(|&[i, j]| sides[i] * sides[j] < 0) {
-                self.piercing.push((tet, rising([v[i], v[j]])));
+                self.piercing.push((tet, sorted_ids([v[i], v[j]])));
             }
             for half in Tets::facets(tet) {
                 let of = [0, 1, 2, 3].map(|i| if i == half.facet() { 0 } else { sides[i] });
@@ -307,7 +307,7 @@ impl Pierce {
                 return None;
             }
         }
-        let mut seen: Vec<_> = facets.iter().copied().map(rising).collect();
+        let mut seen: Vec<_> = facets.iter().copied().map(sorted_ids).collect();
         seen.sort_unstable();
         seen.dedup();
         (seen.len() == facets.len()).then_some(facets)

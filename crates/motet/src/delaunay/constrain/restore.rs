@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use super::keep::{Exchange, Keep};
 use super::plane::Net;
 use super::tets::Tets;
-use crate::base::{Point, VertexId, rising};
+use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::kernel::HalfFacet;
 
@@ -65,7 +65,7 @@ impl Keep<'_> {
     fn flip(&mut self, flat: u32, [a, b]: [VertexId; 2], [p, q]: [VertexId; 2]) -> Option<()> {
         let mut star = self.star(a);
         star.retain(|&tet| self.tets.vertices(tet).contains(&b));
-        let old = [rising([a, b, p]), rising([b, a, q])];
+        let old = [sorted_ids([a, b, p]), sorted_ids([b, a, q])];
         let base = [(flat, [p, a, q]), (flat, [q, b, p])];
         let exchange = Exchange { old: &old, base: &base };
         if self.hand_over(&star, [a, b, p, q], exchange).is_some() {

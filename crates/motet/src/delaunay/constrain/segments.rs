@@ -23,7 +23,7 @@ use super::share::Share;
 use super::sites::{OnSegment, Place, SegmentId, Sites};
 use super::tets::Tets;
 use super::unmade::{Part, Unmade};
-use crate::base::{Csr, Error, TetId, VertexId, Watch, rising};
+use crate::base::{Csr, Error, TetId, VertexId, Watch, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{distance, dot, sub};
 
@@ -64,7 +64,7 @@ impl Segments {
 
     /// The segment between two vertices of the surface.
     pub(super) fn find(&self, edge: [VertexId; 2]) -> Option<SegmentId> {
-        self.ends.binary_search(&rising(edge)).ok().map(|s| SegmentId(s as u32))
+        self.ends.binary_search(&sorted_ids(edge)).ok().map(|s| SegmentId(s as u32))
     }
 
     /// Whether an edge is a piece of a segment.
@@ -74,7 +74,7 @@ impl Segments {
 
     /// The segment to which a piece belongs.
     pub(super) fn of_piece(&self, piece: [VertexId; 2]) -> SegmentId {
-        self.pieces[&rising(piece)]
+        self.pieces[&sorted_ids(piece)]
     }
 
     /// The position on a segment of one of its vertices, in [0, 1].
@@ -98,9 +98,9 @@ impl Segments {
     /// Puts a vertex between the ends of a piece; returns the two new pieces.
     pub(super) fn divide(&mut self, piece: [VertexId; 2], vertex: VertexId) -> [[VertexId; 2]; 2] {
         let segment = self.of_piece(piece);
-        self.pieces.remove(&rising(piece));
+        self.pieces.remove(&sorted_ids(piece));
         piece.map(|end| {
-            let half = rising([end, vertex]);
+            let half = sorted_ids([end, vertex]);
             self.pieces.insert(half, segment);
             half
         })
@@ -129,7 +129,7 @@ impl Segments {
         let (mut insertion, mut star) = (Insertion::default(), Vec::new());
         let mut n_made = 0;
         while let Some(piece) = queue.pop_front() {
-            watch.go_on("making edges of the surface", n_made, n_made + queue.len())?;
+            watch.report_and_check("making edges of the surface", n_made, n_made + queue.len())?;
             n_made += 1;
             let Some(&segment) = self.pieces.get(&piece) else { continue };
             if tets.find_edge(piece, &mut star).is_some() {
@@ -171,7 +171,7 @@ impl Segments {
         let mut found = vec![false; self.ends.len()];
         for (_, v) in tets.iter() {
             for [i, j] in EDGES {
-                let [a, b] = rising([v[i], v[j]]);
+                let [a, b] = sorted_ids([v[i], v[j]]);
                 if a.index() < n_rows {
                     let row = starts[a.index()] as usize..starts[a.index() + 1] as usize;
                     let place = row.clone().find(|&s| self.ends[s][1] == b);

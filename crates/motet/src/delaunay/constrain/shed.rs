@@ -11,7 +11,7 @@ use hashbrown::HashSet;
 use super::keep::{Exchange, Keep};
 use super::plane::Net;
 use super::tets::Tets;
-use crate::base::{TetId, VertexId, rising};
+use crate::base::{TetId, VertexId, sorted_ids};
 use crate::kernel::HalfFacet;
 
 impl Keep<'_> {
@@ -38,8 +38,8 @@ impl Keep<'_> {
             return;
         }
         flat_tets.iter().for_each(|tet| self.bodies.of_slot[tet.index()] = 0);
-        list.iter().for_each(|&face| _ = self.walls.remove(&rising(face)));
-        self.walls.extend(sheet.into_iter().map(|face| (rising(face), flat)));
+        list.iter().for_each(|&face| _ = self.walls.remove(&sorted_ids(face)));
+        self.walls.extend(sheet.into_iter().map(|face| (sorted_ids(face), flat)));
     }
 
     /// Finds the tets inside whose vertices are all in `own` and that are connected with the facets of
@@ -70,7 +70,7 @@ impl Keep<'_> {
             for half in Tets::facets(tet) {
                 let (face, other) = (self.tets.inward(half), self.tets.across(half));
                 if let Some(flat) = self.wall(half) {
-                    if flat != self.walls[&rising(list[0])] {
+                    if flat != self.walls[&sorted_ids(list[0])] {
                         return None;
                     }
                 } else if !is_flat(self, other.tet()) {
@@ -95,7 +95,7 @@ impl Keep<'_> {
         let has_all = |keep: &Self, tet: TetId| corners.iter().all(|v| keep.tets.vertices(tet).contains(v));
         let tet = star.iter().copied().find(|&tet| has_all(self, tet))?;
         let halves = Tets::facets(tet);
-        let walls = halves.map(|half| (rising(self.tets.inward(half)), self.wall(half)));
+        let walls = halves.map(|half| (sorted_ids(self.tets.inward(half)), self.wall(half)));
         let is_right = walls.iter().all(|(face, wall)| wall.is_some() == old.contains(face));
         let body = self.bodies.of_slot[tet.index()];
         let [front, behind] = self.bodies.sides[base[0].0 as usize];
@@ -113,7 +113,7 @@ impl Keep<'_> {
             self.bodies.of_slot[tet.index()] = other;
         }
         old.iter().for_each(|face| _ = self.walls.remove(face));
-        self.walls.extend(base.iter().map(|&(flat, face)| (rising(face), flat)));
+        self.walls.extend(base.iter().map(|&(flat, face)| (sorted_ids(face), flat)));
         Some(())
     }
 }

@@ -3,7 +3,7 @@
 
 use super::sites::Sites;
 use super::tets::Tets;
-use crate::base::{TetId, VertexId, rising};
+use crate::base::{TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::kernel::HalfFacet;
 
@@ -109,7 +109,7 @@ impl Split {
 
     fn loses_nothing(&self, tets: &Tets, kept: &impl Kept) -> bool {
         let mut around: Vec<[VertexId; 2]> =
-            self.shell.iter().flat_map(|&(_, [a, b, c])| [[a, b], [b, c], [c, a]].map(rising)).collect();
+            self.shell.iter().flat_map(|&(_, [a, b, c])| [[a, b], [b, c], [c, a]].map(sorted_ids)).collect();
         around.sort_unstable();
         around.dedup();
         let mut corners: Vec<VertexId> = around.as_flattened().to_vec();
@@ -118,7 +118,7 @@ impl Split {
         self.cavity.iter().map(|&tet| tets.vertices(tet)).all(|v| {
             v.iter().all(|v| corners.binary_search(v).is_ok())
                 && EDGES.iter().all(|&[i, j]| {
-                    let edge = rising([v[i], v[j]]);
+                    let edge = sorted_ids([v[i], v[j]]);
                     around.binary_search(&edge).is_ok() || !kept.has_edge(edge)
                 })
         })

@@ -2,7 +2,7 @@
 //! side.
 
 use super::super::Triangulation;
-use crate::base::{TetId, VertexId, rising};
+use crate::base::{TetId, VertexId, sorted_ids};
 use crate::geometry::tet::FACETS;
 use crate::kernel::HalfFacet;
 use crate::spatial::OUTSIDE;
@@ -138,7 +138,7 @@ impl Tets {
         seams.clear();
         let mut made = Vec::new();
         for (outer, [a, b, c]) in faces {
-            let edges = [[b, c], [c, a], [a, b]].map(rising);
+            let edges = [[b, c], [c, a], [a, b]].map(sorted_ids);
             if let Some(i) = [a, b, c].iter().position(|&v| v == apex) {
                 seams.push((edges[i], outer));
                 continue;
@@ -161,7 +161,7 @@ impl Tets {
         for half in old.iter().flat_map(|&tet| Self::facets(tet)) {
             let other = self.across(half);
             if other.is_none() || !self.is_marked(other.tet()) {
-                faces.push((rising(self.inward(half)), other));
+                faces.push((sorted_ids(self.inward(half)), other));
             }
         }
         old.iter().for_each(|&tet| self.remove(tet));
@@ -172,7 +172,7 @@ impl Tets {
     pub(super) fn put(&mut self, new: &[[VertexId; 4]], mut faces: Vec<([VertexId; 3], HalfFacet)>) {
         for &vertices in new {
             let tet = self.add(vertices);
-            faces.extend(Self::facets(tet).map(|half| (rising(self.inward(half)), half)));
+            faces.extend(Self::facets(tet).map(|half| (sorted_ids(self.inward(half)), half)));
         }
         faces.sort_unstable();
         for pair in faces.chunk_by(|a, b| a.0 == b.0) {

@@ -15,9 +15,9 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI};
 use pulp::NullaryFnOnce;
 
 use crate::base::Point;
-use crate::base::four::{Four, Plain, Vectors, cross, dot, sub};
+use crate::base::four::{FourLanes, FourVectors, Plain, cross, dot, sub};
 #[cfg(target_arch = "x86_64")]
-use crate::base::four::{Wide, wide};
+use crate::base::four::{Wide, wide_machine};
 use crate::geometry::quality::cotangents::angle;
 use crate::geometry::quality::dihedral::REGULAR;
 use crate::geometry::quality::scaled::Scaled;
@@ -41,19 +41,19 @@ pub(super) fn skew(tet: &Scaled, volume_6: f64) -> f64 {
     }
     let points = tet.points;
     #[cfg(target_arch = "x86_64")]
-    if let Some(machine) = wide() {
+    if let Some(machine) = wide_machine() {
         return machine.vectorize(Skew::<Wide> { machine, points, volume_6 });
     }
     Skew::<Plain> { machine: (), points, volume_6 }.call()
 }
 
-struct Skew<F: Four> {
+struct Skew<F: FourLanes> {
     machine: F::Machine,
     points: [Point; 4],
     volume_6: f64,
 }
 
-impl<F: Four> NullaryFnOnce for Skew<F> {
+impl<F: FourLanes> NullaryFnOnce for Skew<F> {
     type Output = f64;
 
     #[inline(always)]
@@ -64,7 +64,7 @@ impl<F: Four> NullaryFnOnce for Skew<F> {
 
 /// The skew, computed in four lanes; see the top of the file.
 #[inline(always)]
-fn by_four<F: Four>(machine: F::Machine, [a, b, c, d]: [Point; 4], volume_6: f64) -> f64 {
+fn by_four<F: FourLanes>(machine: F::Machine, [a, b, c, d]: [Point; 4], volume_6: f64) -> f64 {
     let from = vectors::<F>(machine, [b, a, a, a]);
     let one = sub(vectors::<F>(machine, [c, d, b, c]), from);
     let another = sub(vectors::<F>(machine, [d, c, d, b]), from);
@@ -76,8 +76,8 @@ fn by_four<F: Four>(machine: F::Machine, [a, b, c, d]: [Point; 4], volume_6: f64
     let q = dot(another, third) * F::load(machine, &[1.0, -1.0, 1.0, -1.0]);
     let r = dot(one, another);
     let sine = dot(normals, normals);
-    let low = ratio::<F>(machine, signed_square(p.min(q).min(r)), sine).least();
-    let high = ratio::<F>(machine, signed_square(p.max(q).max(r)), sine).most();
+    let low = ratio::<F>(machine, signed_square(p.min(q).min(r)), sine).min_lane();
+    let high = ratio::<F>(machine, signed_square(p.max(q).max(r)), sine).max_lane();
 
     // The dihedral angles at one side of each facet, then those at the third sides.
     let stored = [normals[0].stored(), normals[1].stored(), normals[2].stored()];
@@ -85,12 +85,12 @@ fn by_four<F: Four>(machine: F::Machine, [a, b, c, d]: [Point; 4], volume_6: f64
     let at_one = ratio::<F>(machine, signed_square(at_one), dot(one, one));
     let at_third = cosine::<F>(machine, &stored, [0, 0, 0, 0], [1, 1, 2, 3]);
     let at_third = ratio::<F>(machine, signed_square(at_third), dot(third, third));
-    let squares = [at_one.min(at_third).least(), at_one.max(at_third).most(), low, high];
+    let squares = [at_one.min(at_third).min_lane(), at_one.max(at_third).max_lane(), low, high];
     worst::<F>(machine, squares, volume_6.abs())
 }
 
 #[inline(always)]
-fn vectors<F: Four>(machine: F::Machine, [a, b, c, d]: [Point; 4]) -> Vectors<F> {
+fn vectors<F: FourLanes>(machine: F::Machine, [a, b, c, d]: [Point; 4]) -> FourVectors<F> {
     [
         F::load(machine, &[a[0], b[0], c[0], d[0]]),
         F::load(machine, &[a[1], b[1], c[1], d[1]]),
@@ -100,7 +100,11 @@ fn vectors<F: Four>(machine: F::Machine, [a, b, c, d]: [Point; 4]) -> Vectors<F>
 
 /// Gathers four vectors by their indices.
 #[inline(always)]
-fn picked<F: Four>(machine: F::Machine, [x, y, z]: &[[f64; 4]; 3], [i, j, k, l]: [usize; 4]) -> Vectors<F> {
+fn picked<F: FourLanes>(
+    machine: F::Machine,
+    [x, y, z]: &[[f64; 4]; 3],
+    [i, j, k, l]: [usize; 4],
+) -> FourVectors<F> {
     [
         F::load(machine, &[x[i], x[j], x[k], x[l]]),
         F::load(machine, &[y[i], y[j], y[k], y[l]]),
@@ -110,21 +114,26 @@ fn picked<F: Four>(machine: F::Machine, [x, y, z]: &[[f64; 4]; 3], [i, j, k, l]:
 
 /// Cosines, up to a positive factor, of the dihedral angles between facets with these normals.
 #[inline(always)]
-fn cosine<F: Four>(machine: F::Machine, normals: &[[f64; 4]; 3], left: [usize; 4], right: [usize; 4]) -> F {
-    F::all(machine, 0.0) - dot(picked::<F>(machine, normals, left), picked::<F>(machine, normals, right))
+fn cosine<F: FourLanes>(
+    machine: F::Machine,
+    normals: &[[f64; 4]; 3],
+    left: [usize; 4],
+    right: [usize; 4],
+) -> F {
+    F::splat(machine, 0.0) - dot(picked::<F>(machine, normals, left), picked::<F>(machine, normals, right))
 }
 
 /// Cotangent from cosine and sine, both up to one positive factor. 0/0, an angle at something without extent,
 /// counts as angle 0.
 #[inline(always)]
-fn ratio<F: Four>(machine: F::Machine, cosine: F, sine: F) -> F {
-    (cosine / sine).or(F::all(machine, f64::INFINITY))
+fn ratio<F: FourLanes>(machine: F::Machine, cosine: F, sine: F) -> F {
+    (cosine / sine).or_if_nan(F::splat(machine, f64::INFINITY))
 }
 
 /// The largest skew, from the extreme values of `cot |cot|`: the least and largest of the dihedral angles
 /// (times the square of `size`, six times the volume), then those of the face angles.
 #[inline(always)]
-fn worst<F: Four>(machine: F::Machine, squares: [f64; 4], size: f64) -> f64 {
+fn worst<F: FourLanes>(machine: F::Machine, squares: [f64; 4], size: f64) -> f64 {
     const REGULARS: [f64; 4] = [REGULAR, REGULAR, FRAC_PI_3, FRAC_PI_3];
     const REACHES: [f64; 4] = [PI - REGULAR, 0.0 - REGULAR, PI - FRAC_PI_3, 0.0 - FRAC_PI_3];
     const PER_REACH: [f64; 4] = [1.0 / REACHES[0], 1.0 / REACHES[1], 1.0 / REACHES[2], 1.0 / REACHES[3]];
@@ -149,14 +158,14 @@ fn worst<F: Four>(machine: F::Machine, squares: [f64; 4], size: f64) -> f64 {
 
 /// `x |x|`: has the order of x, and saves square roots until the extremes are known.
 #[inline(always)]
-fn signed_square<F: Four>(x: F) -> F {
+fn signed_square<F: FourLanes>(x: F) -> F {
     x * x.abs()
 }
 
 #[inline(always)]
-fn signed_root<F: Four>(machine: F::Machine, x: F) -> F {
+fn signed_root<F: FourLanes>(machine: F::Machine, x: F) -> F {
     let root = x.abs().sqrt();
-    x.if_positive(root, F::all(machine, 0.0) - root)
+    x.select_positive(root, F::splat(machine, 0.0) - root)
 }
 
 /// More than the effect on a skew of the error of [`rough_angle`], 0.004.
@@ -165,13 +174,13 @@ const ROUGHNESS: f64 = 0.005;
 /// The angles with these cotangents, accurate to 0.004: `atan x` is about `x (pi / 4 + 0.273 (1 - |x|))` in
 /// [-1, 1] (Rajan, Wang, Inkol, Joyal 2006).
 #[inline(always)]
-fn rough_angle<F: Four>(machine: F::Machine, cotangent: F) -> F {
-    let (zero, one) = (F::all(machine, 0.0), F::all(machine, 1.0));
+fn rough_angle<F: FourLanes>(machine: F::Machine, cotangent: F) -> F {
+    let (zero, one) = (F::splat(machine, 0.0), F::splat(machine, 1.0));
     let outside = cotangent.abs() - one;
-    let x = outside.if_positive(one / cotangent, cotangent);
-    let arc = x * (F::all(machine, FRAC_PI_4) + F::all(machine, 0.273) * (one - x.abs()));
-    let of_negative = (zero - cotangent).if_positive(F::all(machine, PI), zero);
-    outside.if_positive(of_negative + arc, F::all(machine, FRAC_PI_2) - arc)
+    let x = outside.select_positive(one / cotangent, cotangent);
+    let arc = x * (F::splat(machine, FRAC_PI_4) + F::splat(machine, 0.273) * (one - x.abs()));
+    let of_negative = (zero - cotangent).select_positive(F::splat(machine, PI), zero);
+    outside.select_positive(of_negative + arc, F::splat(machine, FRAC_PI_2) - arc)
 }
 
 #[cfg(test)]
@@ -180,7 +189,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn is_roughly(angle: f64) -> bool {
-        let cotangent = Plain::all((), angle.cos() / angle.sin());
+        let cotangent = Plain::splat((), angle.cos() / angle.sin());
         rough_angle::<Plain>((), cotangent).stored().iter().all(|rough| (rough - angle).abs() < 0.004)
     }
 
@@ -227,7 +236,7 @@ mod tests {
             let volume_6 = Scaled::new(tet).volume_6();
             prop_assert!((equiangle_skew(tet) - by_definition(tet)).abs() < 1e-9 || volume_6 == 0.0);
             #[cfg(target_arch = "x86_64")]
-            if let (Some(machine), true) = (wide(), volume_6 != 0.0) {
+            if let (Some(machine), true) = (wide_machine(), volume_6 != 0.0) {
                 let one_by_one = by_four::<Plain>((), tet, volume_6);
                 let at_once = machine.vectorize(Skew::<Wide> { machine, points: tet, volume_6 });
                 prop_assert_eq!(one_by_one.to_bits(), at_once.to_bits());

@@ -1,6 +1,6 @@
 //! The orientation that a surface is meant to have: outward as a whole, cavities inward, neighbours alike.
 
-use crate::base::{Csr, Point, Result, Sets, Threads, VertexId, rising, runs_alike};
+use crate::base::{Csr, DisjointSets, Point, Result, Threads, VertexId, same_orientation, sorted_ids};
 use crate::contact::is_closed;
 use crate::geometry::triangle::{area, centroid};
 use crate::geometry::vector::{add, scale};
@@ -59,10 +59,10 @@ fn parts(surface: &Surface, given: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) 
     let n = surface.triangles.len();
     let mut sides: Vec<([VertexId; 2], u32)> = (0..)
         .zip(&surface.triangles)
-        .flat_map(|(t, &[a, b, c])| [[a, b], [b, c], [c, a]].map(|side| (rising(side), t)))
+        .flat_map(|(t, &[a, b, c])| [[a, b], [b, c], [c, a]].map(|side| (sorted_ids(side), t)))
         .collect();
     sides.sort_unstable();
-    let mut sets = Sets::new(n);
+    let mut sets = DisjointSets::new(n);
     for same in sides.chunk_by(|x, y| x.0 == y.0) {
         if let [x, y] = same {
             sets.join(x.1, y.1);
@@ -77,7 +77,8 @@ fn parts(surface: &Surface, given: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) 
             open.extend_from_slice(triangles);
             continue;
         }
-        let n_turned = triangles.iter().filter(|&&t| !runs_alike(given[t], surface.triangles[t])).count();
+        let n_turned =
+            triangles.iter().filter(|&&t| !same_orientation(given[t], surface.triangles[t])).count();
         closed.push(Part {
             triangles: triangles.to_vec(),
             bounds: bounding_box(corners.as_flattened().iter().map(|v| surface.points[v.index()])),

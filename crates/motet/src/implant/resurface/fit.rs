@@ -2,7 +2,7 @@
 
 use super::old::OriginalSurface;
 use super::skin::Skin;
-use crate::base::{Point, Threads, VertexId, rising};
+use crate::base::{Point, Threads, VertexId, sorted_ids};
 use crate::geometry::triangle::{area_vector, centroid};
 use crate::geometry::vector::{add, norm, scale};
 use crate::implant::report::Fit;
@@ -65,7 +65,7 @@ fn far(found: Option<Closest>) -> f64 {
 /// The ends of every edge, each edge once, in ascending order.
 fn edges(triangles: &[[VertexId; 3]]) -> Vec<[VertexId; 2]> {
     let mut edges: Vec<_> =
-        triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]].map(rising)).collect();
+        triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]].map(sorted_ids)).collect();
     edges.sort_unstable();
     edges.dedup();
     edges

@@ -84,7 +84,7 @@ pub(super) fn resurface(
     }
     let mut best: Option<(Skin, Fit)> = None;
     for k in 0..TRIES {
-        threads.watch().go_on("building a new surface", k, TRIES)?;
+        threads.watch().report_and_check("building a new surface", k, TRIES)?;
         let lattice = Cubes::near(&old.surface, edge).lattice();
         let skin = Skin::new(lattice, &old, threads);
         let fit = old.fit(&skin, tolerance, threads);

@@ -2,7 +2,7 @@
 
 use super::cubes::Lattice;
 use super::facing::{face, volume};
-use crate::base::{Error, Point, Result, Sets, Threads};
+use crate::base::{DisjointSets, Error, Point, Result, Threads};
 use crate::contact::is_closed;
 use crate::geometry::distance::segment_triangle::meet;
 use crate::geometry::tet::{self, EDGES};
@@ -94,7 +94,7 @@ impl OriginalSurface {
         let found = self.nearest.closest_all(&lattice.points, None, threads);
         let radius = |v: usize| found[v].map_or(0.0, |found| found.distance_squared.sqrt());
         let radii: Vec<f64> = (0..n).map(radius).collect();
-        let mut sets = Sets::new(n);
+        let mut sets = DisjointSets::new(n);
         for tet in &lattice.tets {
             for [u, v] in EDGES.map(|edge| edge.map(|k| tet[k].index())) {
                 let length = distance(lattice.points[u], lattice.points[v]);

@@ -2,7 +2,7 @@
 
 use super::cubes::Lattice;
 use super::old::OriginalSurface;
-use crate::base::{Id, Point, Sets, Threads, VertexId, rising};
+use crate::base::{DisjointSets, Id, Point, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::{EDGES, FACETS, volume};
 use crate::geometry::vector::{add, distance, scale, sub};
 use crate::spatial::runs::in_runs;
@@ -87,7 +87,7 @@ fn cuts(
             continue;
         }
         let is_cut = |[i, j]: &&[usize; 2]| of_tet[*i] != of_tet[*j];
-        edges.extend(EDGES.iter().filter(is_cut).map(|&[i, j]| rising([tet[i], tet[j]])));
+        edges.extend(EDGES.iter().filter(is_cut).map(|&[i, j]| sorted_ids([tet[i], tet[j]])));
     }
     edges.sort_unstable();
     edges.dedup();
@@ -180,7 +180,7 @@ fn pinches(triangles: &[[VertexId; 3]]) -> Vec<VertexId> {
     }
     sides.sort_unstable();
     // Corners connected by triangles with a common edge are one fan.
-    let mut fans = Sets::new(3 * triangles.len());
+    let mut fans = DisjointSets::new(3 * triangles.len());
     let mut pinches = Vec::new();
     for same in sides.chunk_by(|x, y| x.0 == y.0) {
         match same {
@@ -215,7 +215,7 @@ impl Cutter<'_> {
     }
 
     fn corner(&self, u: VertexId, v: VertexId) -> VertexId {
-        let i = self.cuts.binary_search_by_key(&rising([u, v]), |cut| cut.ends).unwrap_or_default();
+        let i = self.cuts.binary_search_by_key(&sorted_ids([u, v]), |cut| cut.ends).unwrap_or_default();
         VertexId::new(self.lattice.points.len() + i)
     }
 
@@ -274,7 +274,7 @@ impl Cutter<'_> {
 /// Facets that occur only once.
 fn occurring_once(facets: Vec<[VertexId; 3]>) -> impl Iterator<Item = [VertexId; 3]> {
     let mut keyed: Vec<([VertexId; 3], [VertexId; 3])> =
-        facets.into_iter().map(|facet| (rising(facet), facet)).collect();
+        facets.into_iter().map(|facet| (sorted_ids(facet), facet)).collect();
     keyed.sort_unstable();
     let single: Vec<[VertexId; 3]> =
         keyed.chunk_by(|x, y| x.0 == y.0).filter(|same| same.len() == 1).map(|same| same[0].1).collect();

@@ -1,6 +1,6 @@
 //! Points where zones meet one to one: those that the file declares identical are merged.
 
-use crate::base::{Result, Sets, VertexId};
+use crate::base::{DisjointSets, Result, VertexId};
 use crate::geometry::vector::distance;
 use crate::io::cgns::conditions::{Numbers, is_on_points};
 use crate::io::cgns::node::Node;
@@ -67,7 +67,7 @@ impl Seam {
 pub(super) fn join_points(mesh: &mut Mesh, pairs: &[[u32; 2]]) -> usize {
     let Some([low, high]) = mesh.bounds() else { return pairs.len() };
     let farthest = FARTHEST * distance(low, high);
-    let mut sets = Sets::new(mesh.points.len());
+    let mut sets = DisjointSets::new(mesh.points.len());
     let mut n_apart = 0;
     for &[a, b] in pairs {
         let is_one = distance(mesh.points[a as usize], mesh.points[b as usize]) <= farthest;

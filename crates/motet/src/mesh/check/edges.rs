@@ -1,6 +1,6 @@
 //! Edges and vertices where a surface is open, inconsistently oriented, or not a manifold.
 
-use crate::base::{Sets, VertexId};
+use crate::base::{DisjointSets, VertexId};
 use crate::mesh::Mesh;
 use crate::mesh::check::SurfaceFacets;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
@@ -51,7 +51,7 @@ pub(super) fn defects(mesh: &Mesh, facets: &SurfaceFacets) -> Vec<Defect> {
     let mut non_manifold = Defect::empty(DefectKind::NonManifoldEdge);
     let mut misoriented = Defect::empty(DefectKind::MisorientedEdge);
     // Corners at one vertex are connected if their facets share an edge there.
-    let mut corners = Sets::new(facets.rings.items().len());
+    let mut corners = DisjointSets::new(facets.rings.items().len());
     let sides = sorted_sides(facets);
     for same in sides.chunk_by(|x, y| x.edge == y.edge) {
         let example = || {
@@ -74,7 +74,7 @@ pub(super) fn defects(mesh: &Mesh, facets: &SurfaceFacets) -> Vec<Defect> {
 }
 
 /// Vertices whose corners form more than one connected set.
-fn pinched(mesh: &Mesh, facets: &SurfaceFacets, corners: &mut Sets) -> Defect {
+fn pinched(mesh: &Mesh, facets: &SurfaceFacets, corners: &mut DisjointSets) -> Defect {
     let mut defect = Defect::empty(DefectKind::NonManifoldVertex);
     let mut fan_of = vec![u32::MAX; mesh.points.len()];
     let mut reported = vec![false; mesh.points.len()];

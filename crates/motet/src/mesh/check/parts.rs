@@ -1,6 +1,6 @@
 //! Parts of a mesh that are not connected.
 
-use crate::base::Sets;
+use crate::base::DisjointSets;
 use crate::mesh::Mesh;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 
@@ -10,7 +10,7 @@ pub(super) fn defects(mesh: &Mesh) -> Vec<Defect> {
     let mut defect = Defect::empty(DefectKind::SeparatePart);
     let Some(dim) = mesh.cells.dim() else { return vec![defect] };
     let cells = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(dim));
-    let mut vertices = Sets::new(mesh.points.len());
+    let mut vertices = DisjointSets::new(mesh.points.len());
     vertices.join_all(cells().map(|(_, _, cell)| cell));
     let mut seen = vec![false; mesh.points.len()];
     for (id, _, cell) in cells() {

@@ -2,7 +2,7 @@
 //! patches of the same surfaces.
 
 use super::triangulation::Plane;
-use crate::base::{Point, Sets, VertexId, rising, runs_alike};
+use crate::base::{DisjointSets, Point, VertexId, same_orientation, sorted_ids};
 use crate::delaunay::flat_facets;
 use crate::geometry::rounding;
 use crate::geometry::triangle::area;
@@ -22,12 +22,12 @@ pub(super) struct Sheet {
 impl Sheet {
     pub(super) fn of(surfaces: &Surfaces) -> Self {
         let mut order: Vec<usize> = (0..surfaces.triangles.len()).collect();
-        let key = |t: usize| rising(surfaces.triangles[t]);
+        let key = |t: usize| sorted_ids(surfaces.triangles[t]);
         order.sort_by_key(|&t| (key(t), t));
         let mut groups: Vec<&[usize]> = order.chunk_by(|&s, &t| key(s) == key(t)).collect();
         groups.sort_by_key(|group| group[0]);
         let label = |first: usize, t: usize| {
-            let is_alike = runs_alike(surfaces.triangles[first], surfaces.triangles[t]);
+            let is_alike = same_orientation(surfaces.triangles[first], surfaces.triangles[t]);
             (surfaces.surface_of[t], surfaces.patches[t], is_alike)
         };
         Self {
@@ -86,10 +86,10 @@ fn roots(points: &[Point], sheet: &Sheet) -> Vec<usize> {
     let flat = flat_facets(points, triangles, rounding::of(points));
     let mut edges: Vec<([VertexId; 2], bool, u32)> = Vec::with_capacity(3 * triangles.len());
     for (i, &[a, b, c]) in (0..).zip(triangles) {
-        edges.extend([[a, b], [b, c], [c, a]].map(|[p, q]| (rising([p, q]), p < q, i)));
+        edges.extend([[a, b], [b, c], [c, a]].map(|[p, q]| (sorted_ids([p, q]), p < q, i)));
     }
     edges.sort_unstable();
-    let mut sets = Sets::new(triangles.len());
+    let mut sets = DisjointSets::new(triangles.len());
     for run in edges.chunk_by(|x, y| x.0 == y.0) {
         let &[(_, one, i), (_, other, j)] = run else { continue };
         let [s, t] = [i, j].map(|t| t as usize);

@@ -44,7 +44,7 @@ pub struct Divided {
 /// When there would be far too many triangles.
 pub(super) fn divide(surfaces: &Surfaces, size: f64, threads: &Threads) -> Result<(Surfaces, Divided)> {
     let watch = threads.watch();
-    watch.go_on("dividing the surface", 0, 0)?;
+    watch.report_and_check("dividing the surface", 0, 0)?;
     interior::check(&surfaces.points, size)?;
     let expected = expected(surfaces, size);
     if expected > MAX_TRIANGLES {

@@ -48,7 +48,7 @@ impl Ord for Candidate {
 pub(super) fn divide_creases(triangulation: &mut Triangulation, size: f64, watch: &Watch) -> Result<()> {
     let creases = triangulation.creases();
     for (i, &[a, b]) in creases.iter().enumerate() {
-        watch.go_on("dividing the surface", i, creases.len())?;
+        watch.report_and_check("dividing the surface", i, creases.len())?;
         let [p, q] = [triangulation.point(a), triangulation.point(b)];
         let n = (distance(p, q) / size).round() as usize;
         // By bisection, so that few triangles see each point.
@@ -81,7 +81,7 @@ pub(super) fn refine(triangulation: &mut Triangulation, size: f64, most: usize, 
             continue;
         }
         n_tried += 1;
-        watch.go_on("dividing the surface", n_tried, n_tried + heap.len())?;
+        watch.report_and_check("dividing the surface", n_tried, n_tried + heap.len())?;
         if n_made >= most {
             break;
         }

@@ -7,7 +7,7 @@
 
 use hashbrown::HashMap;
 
-use crate::base::{Point, VertexId, rising};
+use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::predicates::{insphere, orient3d};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{distance, dot, sub, unit};
@@ -90,7 +90,7 @@ impl Triangulation {
         };
         let mut edges: Vec<([VertexId; 2], u32)> = Vec::with_capacity(3 * triangles.len());
         for (i, &[a, b, c]) in triangles.iter().enumerate() {
-            edges.extend([[a, b], [b, c], [c, a]].map(|edge| (rising(edge), triangulation.facet_of[i])));
+            edges.extend([[a, b], [b, c], [c, a]].map(|edge| (sorted_ids(edge), triangulation.facet_of[i])));
         }
         edges.sort_unstable();
         for run in edges.chunk_by(|x, y| x.0 == y.0) {
@@ -114,7 +114,7 @@ impl Triangulation {
     }
 
     pub(super) fn is_crease(&self, edge: [VertexId; 2]) -> bool {
-        self.creases.contains_key(&rising(edge))
+        self.creases.contains_key(&sorted_ids(edge))
     }
 
     /// All creases, in ascending order.
@@ -179,7 +179,7 @@ impl Triangulation {
         for &[a, b] in cavity.rim.iter().filter(|edge| self.is_crease(**edge)) {
             let [p, q] = [a, b].map(|v| sub(self.point(v), point));
             if dot(p, q) < 0.0 {
-                return Err(Blocked::By(rising([a, b])));
+                return Err(Blocked::By(sorted_ids([a, b])));
             }
         }
         let facet = self.facet_of[near as usize];
@@ -194,7 +194,7 @@ impl Triangulation {
         edge: [VertexId; 2],
         point: Point,
     ) -> Option<(VertexId, Vec<TriangleId>)> {
-        let [a, b] = rising(edge);
+        let [a, b] = sorted_ids(edge);
         let facets = self.creases.get(&[a, b])?.clone();
         let mut cavities = Vec::new();
         for &facet in &facets {
@@ -207,7 +207,7 @@ impl Triangulation {
         let new = self.push(point);
         self.creases.remove(&[a, b]);
         for end in [a, b] {
-            self.creases.insert(rising([end, new]), facets.clone());
+            self.creases.insert(sorted_ids([end, new]), facets.clone());
         }
         let mut inserted = Vec::new();
         for (facet, cavity) in cavities {
@@ -263,7 +263,7 @@ impl Triangulation {
                     return Ok(Cavity { triangles, rim: rim.into_iter().map(|(edge, _)| edge).collect() });
                 }
                 Some((edge, _)) if on.is_none() && self.is_crease(*edge) => {
-                    return Err(Blocked::By(rising(*edge)));
+                    return Err(Blocked::By(sorted_ids(*edge)));
                 }
                 Some((_, triangle)) if *triangle != first => refused.push(*triangle),
                 Some(_) => return Err(Blocked::NoSpace),

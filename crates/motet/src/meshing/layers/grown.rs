@@ -78,7 +78,7 @@ impl<'a> GrownLayers<'a> {
     /// Makes layers thinner until there are no tangles.
     fn settle(&mut self, threads: &Threads) -> Result<()> {
         loop {
-            threads.watch().go_on("fitting layers", self.rounds, 0)?;
+            threads.watch().report_and_check("fitting layers", self.rounds, 0)?;
             let blamed = tangles(&self.skin, &self.columns(), &self.core, &self.rims, threads);
             if blamed.is_empty() {
                 return Ok(());

@@ -1,6 +1,6 @@
 //! Finds the triangle beyond each edge of each triangle.
 
-use crate::base::{VertexId, rising};
+use crate::base::{VertexId, sorted_ids};
 
 /// No triangle lies beyond an edge, or more than one.
 pub(super) const NONE: u32 = u32::MAX;
@@ -10,7 +10,9 @@ pub(super) const NONE: u32 = u32::MAX;
 pub(super) fn neighbors(triangles: &[[VertexId; 3]]) -> Vec<[u32; 3]> {
     let mut sides: Vec<([VertexId; 2], u32, usize)> = (0..)
         .zip(triangles)
-        .flat_map(|(t, triangle)| (0..3).map(move |k| (rising([triangle[k], triangle[(k + 1) % 3]]), t, k)))
+        .flat_map(|(t, triangle)| {
+            (0..3).map(move |k| (sorted_ids([triangle[k], triangle[(k + 1) % 3]]), t, k))
+        })
         .collect();
     sides.sort_unstable();
     let mut behind = vec![[NONE; 3]; triangles.len()];

@@ -22,7 +22,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::base::{Csr, Point, VertexId, rising};
+use crate::base::{Csr, Point, VertexId, sorted_ids};
 use crate::geometry::distance::point_triangle;
 use crate::geometry::tet::{EDGES, FACETS};
 use crate::geometry::vector::distance;
@@ -116,11 +116,11 @@ impl<'a> Walls<'a> {
             let [a, b, c] = facet.map(|v| owner[v.index()]);
             a != NOBODY && a == b && b == c
         };
-        let of_tet = |tet: &[VertexId; 4]| FACETS.map(|facet| rising(facet.map(|i| tet[i])));
+        let of_tet = |tet: &[VertexId; 4]| FACETS.map(|facet| sorted_ids(facet.map(|i| tet[i])));
         let mut facets: Vec<_> = tets.iter().flat_map(of_tet).filter(is_of_one).collect();
         facets.sort_unstable();
         facets.dedup();
-        let ends = |tet: &[VertexId; 4]| EDGES.map(|edge| rising(edge.map(|i| tet[i])));
+        let ends = |tet: &[VertexId; 4]| EDGES.map(|edge| sorted_ids(edge.map(|i| tet[i])));
         let mut edges: Vec<[VertexId; 2]> = tets.iter().flat_map(ends).collect();
         edges.sort_unstable();
         edges.dedup();

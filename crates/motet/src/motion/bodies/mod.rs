@@ -20,8 +20,8 @@ use pulp::NullaryFnOnce;
 
 #[cfg(target_arch = "x86_64")]
 use crate::base::four::Wide;
-use crate::base::four::{Four, Plain};
-use crate::base::{Error, Point, Result, Sets, Threads, VertexId};
+use crate::base::four::{FourLanes, Plain};
+use crate::base::{DisjointSets, Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{add, distance, norm, sub};
 use crate::mesh::{Boundary, Mesh, bounds};
 use crate::motion::bodies::fields::Fields;
@@ -129,7 +129,7 @@ impl Bodies {
 }
 
 /// Moves consecutive vertices, beginning with `first`, along with the bodies.
-struct Carry<'a, F: Four> {
+struct Carry<'a, F: FourLanes> {
     machine: F::Machine,
     motions: &'a [Rigid],
     fields: &'a Fields,
@@ -138,7 +138,7 @@ struct Carry<'a, F: Four> {
     out: &'a mut [Point],
 }
 
-impl<F: Four> NullaryFnOnce for Carry<'_, F> {
+impl<F: FourLanes> NullaryFnOnce for Carry<'_, F> {
     type Output = ();
 
     /// Four vertices at a time, the last group filled up by repeating a vertex: this takes 0.35 of the time
@@ -217,7 +217,7 @@ pub(crate) fn vertices(
 }
 
 fn inner_parts(mesh: &Mesh, boundary: &Boundary, is_moved: &[bool]) -> Result<Vec<Vec<VertexId>>> {
-    let mut sets = Sets::new(is_moved.len());
+    let mut sets = DisjointSets::new(is_moved.len());
     sets.join_all(boundary.facets.iter());
     // Where only the boundary is moved, no interior facet is a wall.
     let n_moved = is_moved.iter().filter(|moved| **moved).count();

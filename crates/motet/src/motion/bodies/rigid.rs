@@ -1,7 +1,7 @@
 //! The rigid motion that best fits the motion of some vertices.
 
 use crate::base::Point;
-use crate::base::four::{Four, Vectors, cross, sub as sub4};
+use crate::base::four::{FourLanes, FourVectors, cross, sub as sub4};
 use crate::geometry;
 use crate::geometry::vector::sub;
 
@@ -38,15 +38,15 @@ impl Rigid {
 
     /// The displacements of four points with these shares of translation and rotation.
     #[inline(always)]
-    pub(super) fn change<F: Four>(
+    pub(super) fn change<F: FourLanes>(
         &self,
         machine: F::Machine,
-        p: Vectors<F>,
+        p: FourVectors<F>,
         [shift, turn]: [[f64; 4]; 2],
-    ) -> Vectors<F> {
-        let all = |x: f64| F::all(machine, x);
+    ) -> FourVectors<F> {
+        let splat = |x: f64| F::splat(machine, x);
         let by = F::load(machine, &shift);
-        let shifted = [all(self.shift[0]) * by, all(self.shift[1]) * by, all(self.shift[2]) * by];
+        let shifted = [splat(self.shift[0]) * by, splat(self.shift[1]) * by, splat(self.shift[2]) * by];
         if self.parts.is_empty() {
             return shifted;
         }
@@ -59,15 +59,16 @@ impl Rigid {
         }
         let (sine, cosine) = (F::load(machine, &sines), F::load(machine, &cosines));
         // The rest of the angle is below pi / 1024: the truncation error of the series is below 1e-17.
-        let rest = F::load(machine, &rests) * all(self.half_angle / PARTS as f64);
+        let rest = F::load(machine, &rests) * splat(self.half_angle / PARTS as f64);
         let square = rest * rest;
-        let small_sine = rest * (all(1.0) - square * all(1.0 / 6.0) * (all(1.0) - square * all(0.05)));
-        let small_cosine = all(1.0) - all(0.5) * square * (all(1.0) - square * all(1.0 / 12.0));
+        let small_sine =
+            rest * (splat(1.0) - square * splat(1.0 / 6.0) * (splat(1.0) - square * splat(0.05)));
+        let small_cosine = splat(1.0) - splat(0.5) * square * (splat(1.0) - square * splat(1.0 / 12.0));
         let (sine, cosine) =
             (sine * small_cosine + cosine * small_sine, cosine * small_cosine - sine * small_sine);
-        let splat = |p: Point| [all(p[0]), all(p[1]), all(p[2])];
-        let axis = splat(self.axis);
-        let across = cross(axis, sub4(p, splat(self.centre)));
+        let splat_point = |p: Point| [splat(p[0]), splat(p[1]), splat(p[2])];
+        let axis = splat_point(self.axis);
+        let across = cross(axis, sub4(p, splat_point(self.centre)));
         let back = cross(axis, across);
         // sin a = 2 sin a/2 cos a/2, 1 - cos a = 2 sin^2 a/2
         let twice = sine + sine;
@@ -89,7 +90,7 @@ mod tests {
     }
 
     fn change(rigid: &Rigid, p: Point, [shift, turn]: [f64; 2]) -> Point {
-        let four = p.map(|x| Plain::all((), x));
+        let four = p.map(|x| Plain::splat((), x));
         rigid.change((), four, [[shift; 4], [turn; 4]]).map(|x| x.stored()[2])
     }
 

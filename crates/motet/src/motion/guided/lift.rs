@@ -4,7 +4,7 @@ use pulp::NullaryFnOnce;
 
 #[cfg(target_arch = "x86_64")]
 use crate::base::four::Wide;
-use crate::base::four::{Four, Plain};
+use crate::base::four::{FourLanes, Plain};
 use crate::base::{Point, Threads};
 use crate::geometry::vector::{add, scale, sub};
 use crate::motion::guided::GraphTet;
@@ -80,7 +80,7 @@ impl Lift {
 }
 
 /// Moves consecutive vertices, beginning with `first`.
-struct Vertices<'a, F: Four> {
+struct Vertices<'a, F: FourLanes> {
     machine: F::Machine,
     update: &'a Update,
     origin: Point,
@@ -90,7 +90,7 @@ struct Vertices<'a, F: Four> {
     out: &'a mut [Point],
 }
 
-impl<F: Four> NullaryFnOnce for Vertices<'_, F> {
+impl<F: FourLanes> NullaryFnOnce for Vertices<'_, F> {
     type Output = ();
 
     #[inline(always)]
@@ -99,14 +99,14 @@ impl<F: Four> NullaryFnOnce for Vertices<'_, F> {
         let vertices = first..first + out.len();
         let hangs = update.nodes[vertices.clone()].iter().zip(&update.weights[vertices.clone()]);
         for ((out, &from), (&[i, j, k, l], &[w1, w2, w3])) in out.iter_mut().zip(&from[vertices]).zip(hangs) {
-            let all = |x: f64| F::all(machine, x);
-            let weights = [all(1.0 - w1 - w2 - w3), all(w1), all(w2), all(w3)];
+            let splat = |x: f64| F::splat(machine, x);
+            let weights = [splat(1.0 - w1 - w2 - w3), splat(w1), splat(w2), splat(w3)];
             let nodes = [&maps[i as usize], &maps[j as usize], &maps[k as usize], &maps[l as usize]];
             let [x, y, z] = sub(from, origin);
-            let mut sum = all(0.0);
+            let mut sum = splat(0.0);
             for (weight, map) in weights.into_iter().zip(nodes) {
                 let column = |c: usize| F::load(machine, &map[c]);
-                let change = column(0) * all(x) + column(1) * all(y) + column(2) * all(z) + column(3);
+                let change = column(0) * splat(x) + column(1) * splat(y) + column(2) * splat(z) + column(3);
                 sum = sum + weight * change;
             }
             let [x, y, z, _] = sum.stored();

@@ -13,7 +13,7 @@ use pulp::NullaryFnOnce;
 
 #[cfg(target_arch = "x86_64")]
 use crate::base::four::Wide;
-use crate::base::four::{Four, Plain};
+use crate::base::four::{FourLanes, Plain};
 use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas, rough_eas};
 use crate::geometry::vector::{add, norm, scale};
@@ -98,14 +98,14 @@ impl Smoother {
 }
 
 /// Sweeps over the vertices of a list.
-struct Sweeps<'a, F: Four> {
+struct Sweeps<'a, F: FourLanes> {
     machine: F::Machine,
     smoother: &'a Smoother,
     listed: &'a [(VertexId, f64)],
     points: &'a mut [Point],
 }
 
-impl<F: Four> NullaryFnOnce for Sweeps<'_, F> {
+impl<F: FourLanes> NullaryFnOnce for Sweeps<'_, F> {
     type Output = ();
 
     #[inline(always)]
@@ -125,7 +125,7 @@ impl<F: Four> NullaryFnOnce for Sweeps<'_, F> {
 
 /// One step of Newton, shortened until it makes the sum smaller.
 #[inline(always)]
-fn improved<F: Four>(machine: F::Machine, star: &Star, from: Point, freedom: f64) -> Point {
+fn improved<F: FourLanes>(machine: F::Machine, star: &Star, from: Point, freedom: f64) -> Point {
     let (before, way) = star.downhill::<F>(machine, from);
     let length = norm(way);
     if length == 0.0 || !length.is_finite() {

@@ -3,7 +3,7 @@
 
 use crate::algebra::Block;
 use crate::base::Point;
-use crate::base::four::{Four, Vectors, cross, dot, sub};
+use crate::base::four::{FourLanes, FourVectors, cross, dot, sub};
 use crate::geometry::vector::scale;
 
 /// `12 sqrt(3)`: makes the mean ratio of the regular tet 1.
@@ -59,9 +59,9 @@ impl Star {
 
     /// The mean length of the edges at the vertex, each counted once per tet.
     #[inline(always)]
-    pub(super) fn mean_edge<F: Four>(&self, machine: F::Machine, from: Point) -> f64 {
-        let from = splat::<F>(machine, from);
-        let mut sum = F::all(machine, 0.0);
+    pub(super) fn mean_edge<F: FourLanes>(&self, machine: F::Machine, from: Point) -> f64 {
+        let from = splat_point::<F>(machine, from);
+        let mut sum = F::splat(machine, 0.0);
         for (&[p, q, r], count) in self.opposite.iter().zip(&self.counts) {
             let count = F::load(machine, count);
             for p in [p, q, r] {
@@ -74,10 +74,10 @@ impl Star {
 
     /// The value with the vertex at `x`.
     #[inline(always)]
-    pub(super) fn value<F: Four>(&self, machine: F::Machine, x: Point) -> Value {
-        let x = splat::<F>(machine, x);
-        let all = |x: f64| F::all(machine, x);
-        let (mut sum, mut worst) = (all(0.0), all(f64::INFINITY));
+    pub(super) fn value<F: FourLanes>(&self, machine: F::Machine, x: Point) -> Value {
+        let x = splat_point::<F>(machine, x);
+        let splat = |x: f64| F::splat(machine, x);
+        let (mut sum, mut worst) = (splat(0.0), splat(f64::INFINITY));
         for ([p, q, r], count) in self.opposite.iter().zip(&self.counts) {
             let (p, q, r) = (vectors(machine, p), vectors(machine, q), vectors(machine, r));
             let count = F::load(machine, count);
@@ -87,22 +87,22 @@ impl Star {
                 + dot(b, b)
                 + dot(c, c)
                 + (dot(far[0], far[0]) + dot(far[1], far[1]) + dot(far[2], far[2]));
-            let ratio = all(REGULAR) * dot(a, cross(b, c)) / (squares * squares.sqrt());
+            let ratio = splat(REGULAR) * dot(a, cross(b, c)) / (squares * squares.sqrt());
             worst = worst.min(ratio);
             sum = sum + count * barrier(machine, ratio).value;
         }
-        Value { sum: sum.sum(), worst: worst.least() }
+        Value { sum: sum.sum(), worst: worst.min_lane() }
     }
 
     /// The value at `x`, and the step of Newton's method from there.
     #[inline(always)]
-    pub(super) fn downhill<F: Four>(&self, machine: F::Machine, x: Point) -> (Value, Point) {
-        let x = splat::<F>(machine, x);
-        let all = |x: f64| F::all(machine, x);
-        let (mut sum, mut worst) = (all(0.0), all(f64::INFINITY));
-        let mut slopes = [all(0.0); 3];
+    pub(super) fn downhill<F: FourLanes>(&self, machine: F::Machine, x: Point) -> (Value, Point) {
+        let x = splat_point::<F>(machine, x);
+        let splat = |x: f64| F::splat(machine, x);
+        let (mut sum, mut worst) = (splat(0.0), splat(f64::INFINITY));
+        let mut slopes = [splat(0.0); 3];
         // xx, xy, xz, yy, yz, zz
-        let mut bends = [all(0.0); 6];
+        let mut bends = [splat(0.0); 6];
         for ([p, q, r], count) in self.opposite.iter().zip(&self.counts) {
             let (p, q, r) = (vectors(machine, p), vectors(machine, q), vectors(machine, r));
             let count = F::load(machine, count);
@@ -114,21 +114,21 @@ impl Star {
             let of_volume = cross(f, e);
             let squares = dot(a, a) + dot(b, b) + dot(c, c) + dot(e, e) + dot(f, f) + dot(g, g);
             let of_squares = [a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]];
-            let by_volume = all(REGULAR) / (squares * squares.sqrt());
+            let by_volume = splat(REGULAR) / (squares * squares.sqrt());
             let ratio = volume_6 * by_volume;
             let Barrier { value, first, second } = barrier(machine, ratio);
             let (first, second) = (first * count, second * count);
-            let by_squares = all(3.0) * ratio / squares;
+            let by_squares = splat(3.0) * ratio / squares;
             let slope = |i: usize| of_volume[i] * by_volume + of_squares[i] * by_squares;
             let slope = [slope(0), slope(1), slope(2)];
-            let mixed = all(3.0) * by_volume / squares;
-            let twice = all(15.0) * ratio / (squares * squares);
+            let mixed = splat(3.0) * by_volume / squares;
+            let twice = splat(15.0) * ratio / (squares * squares);
             let mut k = 0;
             for i in 0..3 {
                 for j in i..3 {
                     let both = mixed * (of_volume[i] * of_squares[j] + of_squares[i] * of_volume[j])
                         + twice * (of_squares[i] * of_squares[j]);
-                    let both = if i == j { both - all(3.0) * by_squares } else { both };
+                    let both = if i == j { both - splat(3.0) * by_squares } else { both };
                     bends[k] = bends[k] + second * (slope[i] * slope[j]) + first * both;
                     k += 1;
                 }
@@ -139,7 +139,7 @@ impl Star {
         }
         let [xx, xy, xz, yy, yz, zz] = bends.map(F::sum);
         let way = way(slopes.map(F::sum), [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
-        (Value { sum: sum.sum(), worst: worst.least() }, way)
+        (Value { sum: sum.sum(), worst: worst.min_lane() }, way)
     }
 }
 
@@ -151,18 +151,18 @@ struct Barrier<F> {
 }
 
 #[inline(always)]
-fn barrier<F: Four>(machine: F::Machine, r: F) -> Barrier<F> {
-    let all = |x: f64| F::all(machine, x);
-    let half = all(0.5);
-    let square = all(DELTA * DELTA);
+fn barrier<F: FourLanes>(machine: F::Machine, r: F) -> Barrier<F> {
+    let splat = |x: f64| F::splat(machine, x);
+    let half = splat(0.5);
+    let square = splat(DELTA * DELTA);
     let root = (r * r + square).sqrt();
     // For inverted tets `r + root` would cancel.
-    let h = r.if_positive(half * (r + root), half * square / (root - r));
+    let h = r.select_positive(half * (r + root), half * square / (root - r));
     let (slope, bend) = (h / root, half * square / (root * root * root));
     let h2 = h * h;
-    let value = all(1.0) / (h2 * h2);
-    let first = all(-4.0) * value / h;
-    Barrier { value, first: first * slope, second: all(20.0) * value / h2 * (slope * slope) + first * bend }
+    let value = splat(1.0) / (h2 * h2);
+    let first = splat(-4.0) * value / h;
+    Barrier { value, first: first * slope, second: splat(20.0) * value / h2 * (slope * slope) + first * bend }
 }
 
 /// Newton's step where the sum is convex, else a step in each coordinate separately.
@@ -177,12 +177,12 @@ fn way(slope: Point, bend: [[f64; 3]; 3]) -> Point {
 }
 
 #[inline(always)]
-fn splat<F: Four>(machine: F::Machine, p: Point) -> Vectors<F> {
-    [F::all(machine, p[0]), F::all(machine, p[1]), F::all(machine, p[2])]
+fn splat_point<F: FourLanes>(machine: F::Machine, p: Point) -> FourVectors<F> {
+    [F::splat(machine, p[0]), F::splat(machine, p[1]), F::splat(machine, p[2])]
 }
 
 #[inline(always)]
-fn vectors<F: Four>(machine: F::Machine, numbers: &[[f64; 4]; 3]) -> Vectors<F> {
+fn vectors<F: FourLanes>(machine: F::Machine, numbers: &[[f64; 4]; 3]) -> FourVectors<F> {
     let [x, y, z] = numbers;
     [F::load(machine, x), F::load(machine, y), F::load(machine, z)]
 }

@@ -33,7 +33,7 @@ impl<B: Block> Solver<B> {
     ) -> Result<Self> {
         let factor = match factor_bytes {
             0 => None,
-            most => Cholesky::new(&system.inner, places, most)?,
+            max_bytes => Cholesky::new(&system.inner, places, max_bytes)?,
         };
         let way = match factor {
             Some(factor) => Way::Factor(Box::new(factor)),

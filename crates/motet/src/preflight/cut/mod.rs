@@ -19,7 +19,7 @@ mod points;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::base::{Csr, Point, Threads, VertexId, rising};
+use crate::base::{Csr, Point, Threads, VertexId, sorted_ids};
 use crate::geometry::vector::distance;
 use crate::preflight::crossing::crossings_of;
 use crate::preflight::renamed;
@@ -185,7 +185,7 @@ impl Cut {
                 && n_compared.fetch_add(1, Ordering::Relaxed) < max_pairs
                 && (rule.admits)(group(i), group(j))
         };
-        let is_same = |&[i, j]: &[u32; 2]| rising(all[i as usize]) == rising(all[j as usize]);
+        let is_same = |&[i, j]: &[u32; 2]| sorted_ids(all[i as usize]) == sorted_ids(all[j as usize]);
         let crossings = crossings_of(&self.points, [&all, &all], threads, admit);
         let is_allowed = |pair: &[u32; 2]| is_same(pair) || !rule.crossings && self.crosses(*pair, rule.near);
         (n_compared.into_inner() <= max_pairs).then(|| crossings.iter().all(is_allowed))

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use super::Pair;
 use super::common::{Location, PointKey};
 use super::plane::Plane;
-use crate::base::{Point, VertexId, rising};
+use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::segment;
 use crate::geometry::vector::{add, distance, scale, sub};
 
@@ -66,7 +66,7 @@ impl<'a> Points<'a> {
         match on {
             Location::Corner(_) => {}
             Location::Edge(k) => {
-                self.on_edge.entry(rising([vertices[k], vertices[(k + 1) % 3]])).or_default().push(id);
+                self.on_edge.entry(sorted_ids([vertices[k], vertices[(k + 1) % 3]])).or_default().push(id);
             }
             Location::Inside => {
                 self.inside.entry(triangle).or_default().insert(id);
@@ -130,7 +130,7 @@ impl<'a> Points<'a> {
     /// Merges two points if they are at one place. The smaller id stays, so given vertices take precedence
     /// over new ones.
     fn unite(&mut self, v: VertexId, w: VertexId) {
-        let [v, w] = rising([self.id(v), self.id(w)]);
+        let [v, w] = sorted_ids([self.id(v), self.id(w)]);
         if v != w && distance(self.at(v), self.at(w)) <= self.near {
             self.merged_into[w.index()] = v;
         }
@@ -144,7 +144,7 @@ impl<'a> Points<'a> {
         for (i, (numbers, common)) in pairs.iter().enumerate() {
             for number in *numbers {
                 let ends = common.segments.iter().map(|ends| ends.map(|i| self.id_of(common.points[i].key)));
-                segments.entry(number).or_default().extend(ends.filter(|[v, w]| v != w).map(rising));
+                segments.entry(number).or_default().extend(ends.filter(|[v, w]| v != w).map(sorted_ids));
             }
             if common.is_flat {
                 flat.entry(numbers[0]).or_default().push(i);
@@ -156,7 +156,7 @@ impl<'a> Points<'a> {
             for (numbers, common) in flat.get(&t).into_iter().flatten().map(|&i| &pairs[i]) {
                 let shared: BTreeSet<VertexId> = common.points.iter().map(|p| self.id_of(p.key)).collect();
                 let edges = pieces[&numbers[1]].iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-                own.extend(edges.filter(|edge| edge.iter().all(|v| shared.contains(v))).map(rising));
+                own.extend(edges.filter(|edge| edge.iter().all(|v| shared.contains(v))).map(sorted_ids));
             }
             pieces.insert(t, self.triangle(t, &own)?);
         }
@@ -179,7 +179,7 @@ impl<'a> Points<'a> {
         let mut on_edges: [Vec<usize>; 3] = Default::default();
         for (k, places) in on_edges.iter_mut().enumerate() {
             let [from, to] = [given[k], given[(k + 1) % 3]];
-            let Some(list) = self.on_edge.get(&rising([from, to])) else { continue };
+            let Some(list) = self.on_edge.get(&sorted_ids([from, to])) else { continue };
             let mut list = list.clone();
             if from > to {
                 list.reverse();

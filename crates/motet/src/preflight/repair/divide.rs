@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::report::{Repair, RepairKind};
 use super::work::{Origin, Piece, Work};
-use crate::base::{Point, Sets, Threads, VertexId, rising, runs_alike};
+use crate::base::{DisjointSets, Point, Threads, VertexId, same_orientation, sorted_ids};
 use crate::geometry::triangle::{self, centroid};
 use crate::geometry::vector::{add, distance, in_range, scale, sub};
 use crate::geometry::{rounding, segment};
@@ -77,11 +77,11 @@ struct Parts {
 impl Parts {
     fn new(points: &[Point], triangles: &[[VertexId; 3]], near: f64, threads: &Threads) -> Self {
         let of = |(t, [a, b, c]): (u32, &[VertexId; 3])| {
-            [[*a, *b], [*b, *c], [*c, *a]].map(|edge| (rising(edge), t))
+            [[*a, *b], [*b, *c], [*c, *a]].map(|edge| (sorted_ids(edge), t))
         };
         let mut edges: Vec<([VertexId; 2], u32)> = (0..).zip(triangles).flat_map(of).collect();
         edges.sort_unstable();
-        let mut sets = Sets::new(triangles.len());
+        let mut sets = DisjointSets::new(triangles.len());
         let mut open = Vec::new();
         for same in edges.chunk_by(|x, y| x.0 == y.0) {
             same[1..].iter().for_each(|other| sets.join(same[0].1, other.1));
@@ -93,7 +93,7 @@ impl Parts {
         let mut is_faulty = vec![false; triangles.len()];
         for pair in own_crossings(points, triangles, threads) {
             let [i, j] = pair.map(|t| t as usize);
-            let is_twice = rising(triangles[i]) == rising(triangles[j]);
+            let is_twice = sorted_ids(triangles[i]) == sorted_ids(triangles[j]);
             if part_of[i] == part_of[j] && !is_twice {
                 is_faulty[part_of[i] as usize] = true;
             }
@@ -178,7 +178,7 @@ fn record_meetings(work: &mut Work, cut: &Cut, sound: &[u32]) {
 fn drop_duplicate_pieces(work: &mut Work, divided: &mut DividedSurfaces) -> bool {
     let mut same: BTreeMap<(u32, [VertexId; 3]), Vec<usize>> = BTreeMap::new();
     for (i, piece) in divided.pieces.iter().enumerate() {
-        let [a, b, c] = rising(piece.vertices);
+        let [a, b, c] = sorted_ids(piece.vertices);
         if a != b && b != c {
             same.entry((piece.surface, [a, b, c])).or_default().push(i);
         }
@@ -189,7 +189,7 @@ fn drop_duplicate_pieces(work: &mut Work, divided: &mut DividedSurfaces) -> bool
     for (&(surface, _), list) in &same {
         list.iter().for_each(|&i| is_removed[i] = true);
         let first = divided.pieces[list[0]].vertices;
-        let faces_as_first = |i: &&usize| runs_alike(divided.pieces[**i].vertices, first);
+        let faces_as_first = |i: &&usize| same_orientation(divided.pieces[**i].vertices, first);
         let n_alike = list.iter().filter(faces_as_first).count();
         if 2 * n_alike == list.len() {
             even.push((surface, list));

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::super::forest::FACET_EDGES;
 use super::super::forest::NONE;
 use super::trees::{TreeNode, Trees};
-use crate::base::{Id, Point, VertexId, rising};
+use crate::base::{Id, Point, VertexId, sorted_ids};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::{EDGES, FACETS};
@@ -32,7 +32,7 @@ pub(super) fn misshapen(trees: &mut Trees, reference: &[Point], points: &[Point]
 /// vertex that has moved off its edge.
 pub(super) fn bridged(trees: &mut Trees, mesh: &TetMesh) {
     let of_others = mesh.tets.iter().zip(&trees.node_of).filter(|(_, node)| **node == NONE);
-    let edges = of_others.flat_map(|(tet, _)| EDGES.map(|[i, j]| rising([tet[i], tet[j]])));
+    let edges = of_others.flat_map(|(tet, _)| EDGES.map(|[i, j]| sorted_ids([tet[i], tet[j]])));
     let edges: HashSet<[VertexId; 2]> = edges.collect();
     if edges.is_empty() {
         return;
@@ -40,7 +40,7 @@ pub(super) fn bridged(trees: &mut Trees, mesh: &TetMesh) {
     for node in 0..trees.nodes.len() as u32 {
         let vertices = trees.nodes[node as usize].vertices;
         let mut split = EDGES.iter().enumerate().filter(|(e, _)| vertices[4 + e] != VertexId::NONE);
-        if split.any(|(_, &[i, j])| edges.contains(&rising([vertices[i], vertices[j]]))) {
+        if split.any(|(_, &[i, j])| edges.contains(&sorted_ids([vertices[i], vertices[j]]))) {
             trees.dissolve(node);
         }
     }
@@ -103,5 +103,5 @@ fn cut_facet(node: &TreeNode, triangle: [VertexId; 3]) -> Option<[VertexId; 3]> 
         triangle.iter().all(|v| corners.contains(v) || middles.contains(v))
     })?;
     let n = FACET_EDGES[facet].iter().filter(|e| node.vertices[4 + **e] != VertexId::NONE).count();
-    (n == 1 || n == 2).then(|| rising(FACETS[facet].map(|k| node.vertices[k])))
+    (n == 1 || n == 2).then(|| sorted_ids(FACETS[facet].map(|k| node.vertices[k])))
 }

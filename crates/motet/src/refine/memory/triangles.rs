@@ -5,7 +5,7 @@ use super::super::forest::NONE;
 use super::super::forest::eight;
 use super::trees::{TreeNode, Trees};
 use super::{Memory, unfit};
-use crate::base::{Result, TetId, VertexId, rising};
+use crate::base::{Result, TetId, VertexId, sorted_ids};
 use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
@@ -37,7 +37,7 @@ pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<G
                 (whole, most) = (of_tet, Some(n_divided));
             }
         }
-        keys.push((rising(whole), t, whole));
+        keys.push((sorted_ids(whole), t, whole));
     }
     // Duplicate triangles, with the same vertices, stay apart.
     let mut firsts: Vec<(usize, [VertexId; 3])> = Vec::new();

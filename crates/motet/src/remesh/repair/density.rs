@@ -80,7 +80,7 @@ impl Repair {
             if edge.ratio >= shortest {
                 break;
             }
-            self.watch.go_on("collapsing short edges", i, edges.len())?;
+            self.watch.report_and_check("collapsing short edges", i, edges.len())?;
             lack += isize::from(self.collapse_crowded(edge, floor, &mut density.field, zone));
         }
         for (i, edge) in edges.iter().rev().enumerate() {
@@ -92,7 +92,7 @@ impl Repair {
             if edge.ratio <= longest {
                 break;
             }
-            self.watch.go_on("splitting long edges", i, edges.len())?;
+            self.watch.report_and_check("splitting long edges", i, edges.len())?;
             lack -= isize::from(self.insert_on(edge, floor, zone));
         }
         Ok(())

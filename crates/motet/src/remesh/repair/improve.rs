@@ -210,7 +210,7 @@ impl Repair {
         self.sort(zone);
         for (i, &tet) in zone.iter().enumerate() {
             if self.is_low(tet, below) {
-                self.watch.go_on("improving tets", i, zone.len())?;
+                self.watch.report_and_check("improving tets", i, zone.len())?;
                 self.weigh_swaps(tet, progress);
                 self.make_best(progress);
             }
@@ -231,7 +231,7 @@ impl Repair {
             self.complex.hold(v) == Hold::Free && !progress.settled.has_vertex(&self.changes, v)
         });
         for (i, &vertex) in vertices.iter().enumerate() {
-            self.watch.go_on("improving tets", i, vertices.len())?;
+            self.watch.report_and_check("improving tets", i, vertices.len())?;
             if self.weigh_move(vertex, progress) {
                 self.make_best(progress);
             } else {

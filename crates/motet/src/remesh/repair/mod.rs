@@ -343,7 +343,7 @@ impl Repair {
         let mut progressed = false;
         for (i, &tet) in bad.iter().enumerate() {
             if self.is_bad(tet) {
-                self.watch.go_on("repairing tets", i, bad.len())?;
+                self.watch.report_and_check("repairing tets", i, bad.len())?;
                 progressed |= self.repair(tet);
             }
         }

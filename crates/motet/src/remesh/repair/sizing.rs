@@ -4,7 +4,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::base::{Point, Result, TetId, VertexId, rising};
+use crate::base::{Point, Result, TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
 use crate::kernel::{Change, Hold};
@@ -157,7 +157,7 @@ impl Repair {
             if self.complex.n_tets() > sizing.max_tets {
                 break;
             }
-            self.watch.go_on("splitting long edges", n_split, n_split + long.len())?;
+            self.watch.report_and_check("splitting long edges", n_split, n_split + long.len())?;
             // An edge is removed only by its own split.
             let Some(tet) = self.tet_at(edge) else { continue };
             let Some(middle) = self.split(tet, edge.ends, &mut sizing.field, &mut change, &mut inserted)
@@ -261,7 +261,7 @@ impl Repair {
                 if !edge.ends.iter().any(|v| was_changed[v.index()]) {
                     continue;
                 }
-                self.watch.go_on("collapsing short edges", i, short.len())?;
+                self.watch.report_and_check("collapsing short edges", i, short.len())?;
                 // An earlier collapse may have removed this edge.
                 let Some(tet) = self.tet_at(edge) else { continue };
                 if self.collapse_to_size(tet, edge.ends, &mut sizing.field, &mut inserted) {
@@ -335,7 +335,7 @@ impl Repair {
             let ratios = field.of_tet(vertices, self.complex.corners(tet));
             for (ratio, [i, j]) in ratios.into_iter().zip(EDGES) {
                 if is_such(ratio, tet) {
-                    edges.push(Edge { ratio, ends: rising([vertices[i], vertices[j]]), tet });
+                    edges.push(Edge { ratio, ends: sorted_ids([vertices[i], vertices[j]]), tet });
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Operations that failed and whose surroundings have not changed since: they would fail again.
 
-use crate::base::{TetId, VertexId, rising};
+use crate::base::{TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::kernel::Complex;
 
@@ -113,7 +113,7 @@ impl Settled {
         ends: [VertexId; 2],
     ) {
         for &tet in tets {
-            let places = rising(ends.map(|v| complex.place(tet, v)));
+            let places = sorted_ids(ends.map(|v| complex.place(tet, v)));
             if let Some(edge) = EDGES.iter().position(|edge| *edge == places) {
                 entry(&mut self.of_tet, tet.index())[edge] = changes.now;
             }
