@@ -14,17 +14,9 @@ use crate::geometry::vector::{add, scale, sub};
 use crate::motion::certificate::{Certificate, Seconds, measure};
 use crate::motion::check::Check;
 use crate::motion::map::Map;
-use crate::motion::mover::{Mover, Work};
-use crate::motion::nodes::Start;
+use crate::motion::mover::{Mover, State, Work};
+use crate::motion::nodes::SubstepStart;
 use crate::motion::update::{Displacements, Padded};
-
-/// Where a call of [`Mover::advance`] left the mesh.
-#[derive(Clone, Debug)]
-pub(crate) struct State {
-    points: Vec<Point>,
-    /// Displacements of the driven vertices in this state.
-    driven: Vec<Point>,
-}
 
 /// Bisections in the search for the admissible part of the way, which is found to 1/4096.
 const HALVINGS: usize = 12;
@@ -50,8 +42,8 @@ impl Mover {
         let begin = Instant::now();
         let mut seconds = Seconds::default();
         self.check_lengths(displacement, out)?;
-        let work = timed(&mut seconds.update, || self.go(displacement, out, threads))?;
-        let turned = timed(&mut seconds.check, || self.check.turned_over(out, threads));
+        let work = timed(&mut seconds.update, || self.displace(displacement, out, threads))?;
+        let inverted = timed(&mut seconds.check, || self.check.newly_inverted(out, threads));
         let mut certificate = Certificate {
             complete: true,
             fraction: 1.0,
@@ -60,17 +52,17 @@ impl Mover {
             smoothed: work.smoothed,
             ..Default::default()
         };
-        if turned.is_empty() {
+        if inverted.is_empty() {
             self.state = Some(State { points: out.to_vec(), driven: displacement.to_vec() });
         } else {
-            certificate.blocked_by = turned;
+            certificate.blocked_by = inverted;
             certificate.blocked_by.truncate(10);
             let before = self.state.clone();
-            let gone = self.go_as_far_as_can_be(displacement, out, threads, &mut certificate, &mut seconds);
-            if gone.is_err() {
+            let result = self.advance_in_substeps(displacement, out, threads, &mut certificate, &mut seconds);
+            if result.is_err() {
                 self.state = before;
             }
-            gone?;
+            result?;
         }
         let driven = self.state.as_ref().map_or(displacement, |state| &state.driven);
         certificate.leaves_plane = self.leaves_plane(driven);
@@ -124,14 +116,14 @@ impl Mover {
         iterations: &mut usize,
         seconds: &mut Seconds,
     ) -> Result<f64> {
-        largest(|fraction| {
+        largest_fraction(|fraction| {
             let part: Vec<Point> = target.iter().map(|&d| scale(d, fraction)).collect();
-            *iterations += timed(&mut seconds.update, || self.go(&part, out, threads))?.iterations;
-            Ok(timed(&mut seconds.check, || self.check.holds(out, &self.reference, 0.0, threads)))
+            *iterations += timed(&mut seconds.update, || self.displace(&part, out, threads))?.iterations;
+            Ok(timed(&mut seconds.check, || self.check.stays_upright(out, &self.reference, 0.0, threads)))
         })
     }
 
-    fn go_as_far_as_can_be(
+    fn advance_in_substeps(
         &mut self,
         target: &[Point],
         out: &mut [Point],
@@ -142,17 +134,17 @@ impl Mover {
         certificate.admissible_fraction =
             self.admissible_in_one_step(target, out, threads, &mut certificate.iterations, seconds)?;
         let from_reference = self.state.is_none();
-        self.go_on(target, out, threads, certificate, seconds)?;
+        self.run_substeps(target, out, threads, certificate, seconds)?;
         if from_reference && certificate.fraction < certificate.admissible_fraction {
             certificate.fraction = certificate.admissible_fraction;
-            let work = self.go_in_one_step(target, certificate.fraction, out, threads)?;
+            let work = self.step_by_fraction(target, certificate.fraction, out, threads)?;
             certificate.iterations += work.iterations;
             certificate.smoothed = work.smoothed;
         }
         Ok(())
     }
 
-    fn go_on(
+    fn run_substeps(
         &mut self,
         target: &[Point],
         out: &mut [Point],
@@ -172,16 +164,16 @@ impl Mover {
                 certificate.substeps,
                 self.limits.substeps,
             )?;
-            let mut leg = timed(&mut seconds.graph, || Leg::new(self, &state, target, threads))?;
-            let mut part = leg.longest(self.limits.keep_volume, out, threads, seconds)?;
+            let mut path = timed(&mut seconds.graph, || SubstepPath::new(self, &state, target, threads))?;
+            let mut part = path.longest_admissible(self.limits.keep_volume, out, threads, seconds)?;
             if part * left < self.limits.smallest {
-                part = leg.longest(0.0, out, threads, seconds)?;
+                part = path.longest_admissible(0.0, out, threads, seconds)?;
             }
-            certificate.smoothed = leg.place(part, out, threads)?;
-            certificate.iterations += leg.iterations;
+            certificate.smoothed = path.place(part, out, threads)?;
+            certificate.iterations += path.iterations;
             certificate.substeps += 1;
             left *= 1.0 - part;
-            state.driven = leg.driven(part);
+            state.driven = path.driven(part);
             state.points.copy_from_slice(out);
             certificate.complete = left == 0.0;
             if certificate.complete || part * (left / (1.0 - part)) < self.limits.smallest {
@@ -195,7 +187,7 @@ impl Mover {
     }
 
     /// Moves by the admissible fraction of the displacement, in one step from the reference.
-    fn go_in_one_step(
+    fn step_by_fraction(
         &mut self,
         target: &[Point],
         fraction: f64,
@@ -203,23 +195,23 @@ impl Mover {
         threads: &Threads,
     ) -> Result<Work> {
         let driven: Vec<Point> = target.iter().map(|&d| scale(d, fraction)).collect();
-        let work = self.go(&driven, out, threads)?;
+        let work = self.displace(&driven, out, threads)?;
         self.state = Some(State { points: out.to_vec(), driven });
         Ok(work)
     }
 }
 
 /// The way from one state to the target, with the map built at that state.
-struct Leg<'a> {
+struct SubstepPath<'a> {
     mover: &'a Mover,
     state: &'a State,
     target: &'a [Point],
     map: Map,
-    start: Start,
+    start: SubstepStart,
     iterations: usize,
 }
 
-impl<'a> Leg<'a> {
+impl<'a> SubstepPath<'a> {
     fn new(mover: &'a Mover, state: &'a State, target: &'a [Point], threads: &Threads) -> Result<Self> {
         let map = mover.rebuild(&state.points, threads)?;
         let start = mover.nodes.start(&mover.reference, &state.points, &state.driven, threads)?;
@@ -249,7 +241,7 @@ impl<'a> Leg<'a> {
 
     /// The largest part of the way on which every cell stays upright: the whole way where possible, otherwise
     /// no farther than where each cell keeps `share` of its volume.
-    fn longest(
+    fn longest_admissible(
         &mut self,
         share: f64,
         out: &mut [Point],
@@ -257,10 +249,10 @@ impl<'a> Leg<'a> {
         seconds: &mut Seconds,
     ) -> Result<f64> {
         let (check, state): (&Check, _) = (&self.mover.check, self.state);
-        largest(|part| {
+        largest_fraction(|part| {
             timed(&mut seconds.update, || self.place(part, out, threads).map(|_| ()))?;
             let share = if part == 1.0 { 0.0 } else { share };
-            Ok(timed(&mut seconds.check, || check.holds(out, &state.points, share, threads)))
+            Ok(timed(&mut seconds.check, || check.stays_upright(out, &state.points, share, threads)))
         })
     }
 }
@@ -270,7 +262,7 @@ impl<'a> Leg<'a> {
 ///
 /// # Errors
 /// Those of `holds`.
-fn largest(mut holds: impl FnMut(f64) -> Result<bool>) -> Result<f64> {
+fn largest_fraction(mut holds: impl FnMut(f64) -> Result<bool>) -> Result<f64> {
     if holds(1.0)? {
         return Ok(1.0);
     }

@@ -48,7 +48,7 @@ impl BoundaryMotion {
 
     /// Makes `vertices` stay, unless they have an earlier order; later orders for them are refused.
     pub fn hold(&mut self, vertices: &[VertexId]) -> Taken {
-        self.give(vertices.iter().map(|&v| (v, Order::Stay)))
+        self.set_orders(vertices.iter().map(|&v| (v, Order::Stay)))
     }
 
     /// Refuses a motion of a patch if some of its vertices obey an earlier order, other than to stay, that
@@ -88,9 +88,9 @@ impl BoundaryMotion {
                 norm(sub(a, b)) > ROUNDING * (norm(a) + norm(b) + norm(place))
             })
         };
-        let is_told = |i: usize| matches!(self.orders[i], Order::Go(_) | Order::Follow(_));
+        let has_order = |i: usize| matches!(self.orders[i], Order::Go(_) | Order::Follow(_));
         let contradicted =
-            |v: &VertexId| self.vertices.binary_search(v).is_ok_and(|i| is_told(i) && differs(i, *v));
+            |v: &VertexId| self.vertices.binary_search(v).is_ok_and(|i| has_order(i) && differs(i, *v));
         vertices.iter().copied().filter(contradicted).collect()
     }
 
@@ -102,12 +102,12 @@ impl BoundaryMotion {
         motion.check()?;
         self.motions.push(motion);
         let number = self.motions.len() - 1;
-        Ok(self.give(vertices.iter().map(|&v| (v, Order::Follow(number)))))
+        Ok(self.set_orders(vertices.iter().map(|&v| (v, Order::Follow(number)))))
     }
 
     /// Gives each of these vertices its own displacement, unless it has an earlier order.
     pub fn go(&mut self, displacements: &[(VertexId, Point)]) -> Taken {
-        self.give(displacements.iter().map(|&(v, d)| (v, Order::Go(d))))
+        self.set_orders(displacements.iter().map(|&(v, d)| (v, Order::Go(d))))
     }
 
     /// All vertices of this motion, in rising order.
@@ -116,7 +116,7 @@ impl BoundaryMotion {
     }
 
     /// The vertices with an order other than to stay, in rising order.
-    pub fn told(&self) -> Vec<VertexId> {
+    pub fn ordered_to_move(&self) -> Vec<VertexId> {
         let all = self.vertices.iter().zip(&self.orders);
         all.filter(|(_, o)| matches!(o, Order::Go(_) | Order::Follow(_))).map(|(&v, _)| v).collect()
     }
@@ -144,7 +144,7 @@ impl BoundaryMotion {
         }
     }
 
-    fn give(&mut self, orders: impl Iterator<Item = (VertexId, Order)>) -> Taken {
+    fn set_orders(&mut self, orders: impl Iterator<Item = (VertexId, Order)>) -> Taken {
         let mut taken = Taken::default();
         for (vertex, order) in orders {
             match self.vertices.binary_search(&vertex) {
@@ -175,7 +175,7 @@ mod tests {
         motion.go(&[(VertexId(4), [9.0; 3]), (VertexId(7), [0.0, 4.0, 0.0])]);
         let half = motion.displacements(&[[0.0; 3]; 8], 0.5);
         assert_eq!(half, [[0.0; 3], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
-        assert_eq!(motion.told(), [4, 7].map(VertexId));
+        assert_eq!(motion.ordered_to_move(), [4, 7].map(VertexId));
         let all = [1, 3, 4, 7].map(VertexId);
         // Vertex 3 stays, which is no contradiction; vertex 4 is shifted in the same way.
         let likewise = Prescribed::Shift([2.0, 1e-15, 0.0]);
@@ -185,7 +185,7 @@ mod tests {
             [4, 7].map(VertexId)
         );
         motion.go(&[(VertexId(1), [0.0; 3])]);
-        assert_eq!(motion.told(), [1, 4, 7].map(VertexId));
+        assert_eq!(motion.ordered_to_move(), [1, 4, 7].map(VertexId));
         assert_eq!(motion.moving(&[[0.0; 3]; 8]), [4, 7].map(VertexId));
     }
 }

@@ -121,7 +121,7 @@ const CHUNK: usize = 1 << 13;
 /// Measures every cell of a mesh whose vertices are at `points`.
 pub(crate) fn measure(check: &Check, points: &[Point], threads: &Threads) -> Quality {
     let n = check.corners.len();
-    let chunk = |start: usize| measure_some(check, points, start..(start + CHUNK).min(n));
+    let chunk = |start: usize| measure_range(check, points, start..(start + CHUNK).min(n));
     let starts: Vec<usize> = (0..n).step_by(CHUNK).collect();
     let parts: Vec<Measured> = match threads.pool() {
         None => starts.into_iter().map(chunk).collect(),
@@ -134,9 +134,9 @@ pub(crate) fn measure(check: &Check, points: &[Point], threads: &Threads) -> Qua
         eas.extend(measured.eas);
         ratios += measured.ratios;
         Quality {
-            worst_eas: worse(all.worst_eas, part.worst_eas),
-            worst_mean_ratio: worse(all.worst_mean_ratio, part.worst_mean_ratio),
-            worst_scaled_jacobian: worse(all.worst_scaled_jacobian, part.worst_scaled_jacobian),
+            worst_eas: worse_of(all.worst_eas, part.worst_eas),
+            worst_mean_ratio: worse_of(all.worst_mean_ratio, part.worst_mean_ratio),
+            worst_scaled_jacobian: worse_of(all.worst_scaled_jacobian, part.worst_scaled_jacobian),
             ..all
         }
     });
@@ -168,10 +168,10 @@ fn worst_curved(check: &Check, points: &[Point], threads: &Threads) -> Option<Wo
     let worst = threads.each(runs, |run| check.curved.worst(run, points));
     let as_worst =
         |(cell, least): (CellId, LeastJacobian)| Worst { value: least.scaled, cell, place: least.place };
-    worst.into_iter().map(|worst| worst.map(as_worst)).fold(None, worse)
+    worst.into_iter().map(|worst| worst.map(as_worst)).fold(None, worse_of)
 }
 
-fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>) -> Measured {
+fn measure_range(check: &Check, points: &[Point], corners: std::ops::Range<usize>) -> Measured {
     let mut measured = Measured { eas: Vec::with_capacity(corners.len()), ..Measured::default() };
     let quality = &mut measured.quality;
     for i in corners {
@@ -188,18 +188,18 @@ fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>
             let ratio = mean_ratio(tet);
             measured.eas.push(value);
             measured.ratios += ratio;
-            quality.worst_eas = worse(quality.worst_eas, as_worst(value));
-            quality.worst_mean_ratio = worse(quality.worst_mean_ratio, as_worst(ratio));
+            quality.worst_eas = worse_of(quality.worst_eas, as_worst(value));
+            quality.worst_mean_ratio = worse_of(quality.worst_mean_ratio, as_worst(ratio));
         } else {
             quality.worst_scaled_jacobian =
-                worse(quality.worst_scaled_jacobian, as_worst(scaled_jacobian(tet)));
+                worse_of(quality.worst_scaled_jacobian, as_worst(scaled_jacobian(tet)));
         }
     }
     measured
 }
 
 /// The one with the smaller value; the first of equal ones.
-fn worse(a: Option<Worst>, b: Option<Worst>) -> Option<Worst> {
+fn worse_of(a: Option<Worst>, b: Option<Worst>) -> Option<Worst> {
     match (a, b) {
         (Some(a), Some(b)) if b.value < a.value => Some(b),
         (a, b) => a.or(b),

@@ -8,7 +8,7 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::volume_6;
 use crate::mesh::curved::CurvedCells;
 use crate::mesh::{Mesh, OrientedTets};
-use crate::motion::corners::Corners;
+use crate::motion::corners::CornerTets;
 
 /// The corners of the cells, the quadratic cells, and which of both were inverted or flat from the start.
 ///
@@ -16,17 +16,17 @@ use crate::motion::corners::Corners;
 /// which has to keep upright only what was upright.
 #[derive(Debug, Default)]
 pub(crate) struct Check {
-    pub(crate) corners: Corners,
+    pub(crate) corners: CornerTets,
     /// The linear tets, which identify layers among those of low quality.
     pub(crate) tets: OrientedTets,
     pub(crate) curved: CurvedCells,
     /// What was inverted or flat in the reference.
-    before: Fallen,
+    before: Inverted,
 }
 
 /// Inverted or flat corners and cells, in rising order.
 #[derive(Debug, Default)]
-struct Fallen {
+struct Inverted {
     /// Corners of linear cells.
     corners: Vec<u32>,
     /// Quadratic cells, as indices into the list of those.
@@ -40,20 +40,20 @@ impl Check {
     pub(crate) fn new(mesh: &Mesh, threads: &Threads) -> Self {
         let (cells, points) = (&mesh.cells, &mesh.points);
         let tets = OrientedTets::of_linear(mesh);
-        let mut corners = Corners::of(cells, &tets);
+        let mut corners = CornerTets::of(cells, &tets);
         let signs = threads.map(corners.len(), |i| orientation(corners.tets[i], points));
-        let mut before = corners.stand_up(cells, &signs);
+        let mut before = corners.orient_upright(cells, &signs);
         before.retain(|&i| !corners.is_curved[i as usize]);
         let curved = CurvedCells::of(cells, points);
-        let mut check = Self { corners, tets, curved, before: Fallen::default() };
-        check.before = Fallen { corners: before, curved: check.curved_not_upright(points, threads) };
+        let mut check = Self { corners, tets, curved, before: Inverted::default() };
+        check.before = Inverted { corners: before, curved: check.curved_not_upright(points, threads) };
         check
     }
 
     /// All that is inverted or flat.
-    fn not_upright(&self, points: &[Point], threads: &Threads) -> Fallen {
+    fn not_upright(&self, points: &[Point], threads: &Threads) -> Inverted {
         let is_curved = &self.corners.is_curved;
-        Fallen {
+        Inverted {
             corners: self.collect(threads, |i, tet| !is_curved[i as usize] && !is_upright(tet, points)),
             curved: self.curved_not_upright(points, threads),
         }
@@ -65,16 +65,22 @@ impl Check {
     }
 
     /// Cells, in rising order, that have an inverted or flat part which was upright in the reference.
-    pub(crate) fn turned_over(&self, points: &[Point], threads: &Threads) -> Vec<CellId> {
-        let mut turned = self.not_upright(points, threads);
-        turned.corners.retain(|i| self.before.corners.binary_search(i).is_err());
-        turned.curved.retain(|i| self.before.curved.binary_search(i).is_err());
-        self.cells_of(&turned)
+    pub(crate) fn newly_inverted(&self, points: &[Point], threads: &Threads) -> Vec<CellId> {
+        let mut inverted = self.not_upright(points, threads);
+        inverted.corners.retain(|i| self.before.corners.binary_search(i).is_err());
+        inverted.curved.retain(|i| self.before.curved.binary_search(i).is_err());
+        self.cells_of(&inverted)
     }
 
     /// Whether all that was upright in the reference still is, and what was upright in `start` has kept
     /// `share` of its volume there (of a quadratic cell: of the least determinant of its Jacobian).
-    pub(crate) fn holds(&self, points: &[Point], start: &[Point], share: f64, threads: &Threads) -> bool {
+    pub(crate) fn stays_upright(
+        &self,
+        points: &[Point],
+        start: &[Point],
+        share: f64,
+        threads: &Threads,
+    ) -> bool {
         let has_lost = |i: u32, tet: [VertexId; 4]| {
             if self.corners.is_curved[i as usize] {
                 return false;
@@ -85,22 +91,22 @@ impl Check {
             let volume = |points: &[Point]| volume_6(tet.map(|v| points[v.index()]));
             share > 0.0 && volume(points) < share * volume(start)
         };
-        !self.any(threads, has_lost) && self.curved_holds(points, start, share, threads)
+        !self.any(threads, has_lost) && self.curved_stay_upright(points, start, share, threads)
     }
 
-    fn curved_holds(&self, points: &[Point], start: &[Point], share: f64, threads: &Threads) -> bool {
+    fn curved_stay_upright(&self, points: &[Point], start: &[Point], share: f64, threads: &Threads) -> bool {
         let least = |i: usize, points: &[Point]| {
             self.curved.least(i, points, f64::INFINITY).map_or(0.0, |least| least.determinant)
         };
-        let holds = |i: usize| {
+        let stays_upright = |i: usize| {
             if !self.curved.is_upright(i, points) {
                 return self.before.curved.binary_search(&(i as u32)).is_ok();
             }
             share == 0.0 || least(i, points) >= share * least(i, start)
         };
         match threads.pool() {
-            None => (0..self.curved.len()).all(holds),
-            Some(pool) => pool.install(|| (0..self.curved.len()).into_par_iter().all(holds)),
+            None => (0..self.curved.len()).all(stays_upright),
+            Some(pool) => pool.install(|| (0..self.curved.len()).into_par_iter().all(stays_upright)),
         }
     }
 
@@ -111,9 +117,9 @@ impl Check {
     }
 
     /// The cells with inverted or flat parts, each once, in rising order.
-    fn cells_of(&self, fallen: &Fallen) -> Vec<CellId> {
-        let of_corners = fallen.corners.iter().map(|&i| self.corners.cells[i as usize]);
-        let curved = fallen.curved.iter().map(|&i| self.curved.cells[i as usize]);
+    fn cells_of(&self, inverted: &Inverted) -> Vec<CellId> {
+        let of_corners = inverted.corners.iter().map(|&i| self.corners.cells[i as usize]);
+        let curved = inverted.curved.iter().map(|&i| self.curved.cells[i as usize]);
         let mut cells: Vec<CellId> = of_corners.chain(curved).collect();
         cells.sort_unstable();
         cells.dedup();

@@ -40,7 +40,7 @@ pub struct Tried {
 }
 
 /// Default bound: the worst cell may lose half of its quality, and no more than this is required.
-const LEAST: f64 = 0.1;
+const DEFAULT_MIN_QUALITY: f64 = 0.1;
 
 /// Chooses the cheapest method that keeps every cell of all frames of a motion at an EAS (or scaled Jacobian)
 /// of `least`.
@@ -72,7 +72,8 @@ pub fn choose<I: Iterator<Item = Result<Vec<Point>>>>(
     };
     let ladder =
         [Method::Delaunay, Method::Bodies(bodies), Method::Guided, Method::Elastic(Elastic::default())];
-    let mut choice = Choice { method: Method::Delaunay, least: least.unwrap_or(LEAST), tried: Vec::new() };
+    let mut choice =
+        Choice { method: Method::Delaunay, least: least.unwrap_or(DEFAULT_MIN_QUALITY), tried: Vec::new() };
     let mut best: Option<f64> = None;
     let mut refusal = None;
     let n_methods = ladder.len();
@@ -89,10 +90,11 @@ pub fn choose<I: Iterator<Item = Result<Vec<Point>>>>(
             }
             Ok(mut mover) => {
                 if least.is_none() {
-                    let came = worst(&mover.quality(mover.reference(), threads));
-                    choice.least = came.map_or(LEAST, |came| LEAST.min(0.5 * came));
+                    let initial = worst(&mover.quality(mover.reference(), threads));
+                    choice.least =
+                        initial.map_or(DEFAULT_MIN_QUALITY, |initial| DEFAULT_MIN_QUALITY.min(0.5 * initial));
                 }
-                tried.go(&mut mover, frames()?, choice.least, threads)?;
+                tried.run(&mut mover, frames()?, choice.least, threads)?;
             }
         }
         tried.seconds = begin.elapsed().as_secs_f64();
@@ -114,7 +116,7 @@ pub fn choose<I: Iterator<Item = Result<Vec<Point>>>>(
 
 impl Tried {
     /// Runs all frames, or as many as can be reached.
-    fn go(
+    fn run(
         &mut self,
         mover: &mut Mover,
         frames: impl Iterator<Item = Result<Vec<Point>>>,

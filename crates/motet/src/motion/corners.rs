@@ -13,7 +13,7 @@ use crate::mesh::{CellKind, Cells, OrientedTets};
 
 /// The corner tets of all volume cells, in the order of the cells.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Corners {
+pub(crate) struct CornerTets {
     /// Positive where the cell is upright.
     pub(crate) tets: Vec<[VertexId; 4]>,
     /// The cell of each corner.
@@ -24,9 +24,9 @@ pub(crate) struct Corners {
     pub(crate) is_curved: Vec<bool>,
 }
 
-impl Corners {
+impl CornerTets {
     /// The corners of the volume cells of `cells`: linear tets as oriented in `tets`, others as they are
-    /// numbered. [`Self::stand_up`] has to follow.
+    /// numbered. [`Self::orient_upright`] has to follow.
     pub(crate) fn of(cells: &Cells, tets: &OrientedTets) -> Self {
         let mut oriented = tets.tets.iter();
         let mut corners = Self::with_capacity(cells.len());
@@ -35,7 +35,7 @@ impl Corners {
             if kind == CellKind::TETRA {
                 corners.tets.extend(oriented.next());
             } else {
-                three_valent(&facets, cell, &mut corners.tets);
+                corner_tets(&facets, cell, &mut corners.tets);
             }
             corners.cells.resize(corners.tets.len(), cell);
             corners.is_cell.resize(corners.tets.len(), kind == CellKind::TETRA);
@@ -50,7 +50,7 @@ impl Corners {
     /// Tets are already oriented. Files do not agree on how to number a wedge: among cells of another kind,
     /// the orientation of the majority counts as upright. Faces of a polyhedron may run either way around:
     /// there each corner is judged by itself.
-    pub(crate) fn stand_up(&mut self, cells: &Cells, signs: &[i8]) -> Vec<u32> {
+    pub(crate) fn orient_upright(&mut self, cells: &Cells, signs: &[i8]) -> Vec<u32> {
         let mut n_upright = [0i64; 256];
         for (cell, &sign) in self.cells.iter().zip(signs) {
             n_upright[cells.kind(*cell).0 as usize] += i64::from(sign);
@@ -85,7 +85,7 @@ impl Corners {
 }
 
 /// The tets at the corners of one cell where exactly three facets meet.
-fn three_valent(facets: &Facets, cell: CellId, tets: &mut Vec<[VertexId; 4]>) {
+fn corner_tets(facets: &Facets, cell: CellId, tets: &mut Vec<[VertexId; 4]>) {
     // (corner, the one before it in a facet's ring, the one after it)
     let mut wedges: Vec<[VertexId; 3]> = Vec::new();
     for local in 0..facets.count(cell) as u32 {

@@ -6,7 +6,7 @@ use crate::motion::weights::weights;
 
 /// Where points lie in the triangulation of some nodes.
 #[derive(Debug, Default)]
-pub(crate) struct Hanging {
+pub(crate) struct Embedding {
     /// Corners, as indices of nodes, of the tets that contain a point.
     pub(crate) tets: Vec<[u32; 4]>,
     /// For each point, the index of its tet in [`Self::tets`].
@@ -19,7 +19,7 @@ pub(crate) struct Hanging {
     pub(crate) n_tets: usize,
 }
 
-impl Hanging {
+impl Embedding {
     /// Removes some points, given in rising order.
     pub(crate) fn remove(&mut self, some: &[u32]) {
         let is_kept = |i: u32| some.binary_search(&i).is_err();
@@ -50,14 +50,14 @@ pub(crate) fn triangulate(nodes: &[Point], threads: &Threads) -> Result<Triangul
 }
 
 /// Finds the tet of each of `points`, and its weights there. The points must be finite.
-pub(crate) fn hang(triangulation: &Triangulation, points: &[Point], threads: &Threads) -> Hanging {
+pub(crate) fn embed(triangulation: &Triangulation, points: &[Point], threads: &Threads) -> Embedding {
     let located = triangulation.locator().locate_all(points, threads);
     let nodes = triangulation.points();
     let found: Vec<(u32, bool)> = located.iter().map(|at| (at.tet().0, at.is_inside())).collect();
-    Hanging::new(nodes, triangulation.tets(), &found, points, threads)
+    Embedding::new(nodes, triangulation.tets(), &found, points, threads)
 }
 
-impl Hanging {
+impl Embedding {
     /// Built from `found`: the tet of each point, and whether the point lies inside it.
     pub(crate) fn new(
         nodes: &[Point],

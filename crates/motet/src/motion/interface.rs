@@ -41,12 +41,12 @@ impl Interface {
         }
         let at = |v: &VertexId| displacement[v.index()];
         let is_inside = |v: &&VertexId| boundary.vertices.binary_search(v).is_err();
-        let is_asked = |v: &VertexId| in_range(at(v)) && at(v) != [0.0; 3];
-        if !(0..mesh.points.len()).map(VertexId::new).any(|v| is_asked(&v) && is_inside(&&v)) {
+        let is_displaced = |v: &VertexId| in_range(at(v)) && at(v) != [0.0; 3];
+        if !(0..mesh.points.len()).map(VertexId::new).any(|v| is_displaced(&v) && is_inside(&&v)) {
             return Ok(Vec::new());
         }
         let mut all = Self::all(mesh, boundary);
-        all.retain(|interface| interface.vertices.iter().filter(is_inside).any(is_asked));
+        all.retain(|interface| interface.vertices.iter().filter(is_inside).any(is_displaced));
         for interface in &all {
             if let Some(v) = interface.vertices.iter().find(|v| !in_range(at(v))) {
                 return Err(Error::input(format!(
@@ -61,15 +61,15 @@ impl Interface {
     }
 }
 
-/// Calls `see` with every labelled facet, on the boundary too, and with every facet between two regions.
-pub(crate) fn for_each_wall_facet(mesh: &Mesh, mut see: impl FnMut(&[VertexId])) {
+/// Calls `visit` with every labelled facet, on the boundary too, and with every facet between two regions.
+pub(crate) fn for_each_wall_facet(mesh: &Mesh, mut visit: impl FnMut(&[VertexId])) {
     let of_patches = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
-    of_patches.for_each(|(.., vertices)| see(vertices));
-    for_each_between(mesh, |_, vertices| see(vertices));
+    of_patches.for_each(|(.., vertices)| visit(vertices));
+    for_each_between(mesh, |_, vertices| visit(vertices));
 }
 
-/// Calls `see` with every facet between two regions and their labels, the lower first.
-fn for_each_between(mesh: &Mesh, mut see: impl FnMut([i32; 2], &[VertexId])) {
+/// Calls `visit` with every facet between two regions and their labels, the lower first.
+fn for_each_between(mesh: &Mesh, mut visit: impl FnMut([i32; 2], &[VertexId])) {
     let Some(regions) = mesh.regions() else { return };
     let volumes = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3));
     let mut of_volumes = volumes.map(|(cell, ..)| regions.ids[cell.index()]);
@@ -83,7 +83,7 @@ fn for_each_between(mesh: &Mesh, mut see: impl FnMut([i32; 2], &[VertexId])) {
             let [x, y] = [a, b].map(|facet| regions.ids[facet.cell.index()]);
             if x != y {
                 let facet: Vec<VertexId> = facets.vertices(*a).1.collect();
-                see([x.min(y), x.max(y)], &facet);
+                visit([x.min(y), x.max(y)], &facet);
             }
         }
     });

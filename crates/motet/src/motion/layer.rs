@@ -21,13 +21,13 @@ use crate::geometry::triangle;
 use crate::geometry::vector::{add, distance, sub};
 use crate::mesh::Cells;
 use crate::motion::options::{Extent, FacetSet};
-use crate::motion::rotation::{Wall, change, mean};
+use crate::motion::rotation::{Wall, mean, rotation_change};
 use crate::spatial::NearestTriangle;
 
 /// Largest distance between the feet of neighbours, relative to the distance between the neighbours. In a
 /// vessel with branches, bent, twisted and widened, prisms of the layer keep at least 0.46 of their thickness
 /// and cells invert where this is infinite; at 1.5, 2 and 3 none do, and 0.65, 0.69 and 0.66 are kept.
-const TEAR: f64 = 2.0;
+const MAX_FOOT_RATIO: f64 = 2.0;
 
 /// One vertex of the layer.
 #[derive(Clone, Copy, Debug)]
@@ -94,13 +94,13 @@ impl Layer {
                 members.push(Member { vertex, triangle, weights, offset });
             }
         }
-        let between = between_walls(points, cells, &vertices, &members);
+        let between = spans_crease(points, cells, &vertices, &members);
         members.retain(|m| !between[m.vertex.index()]);
         Ok(Self { wall: Wall::new(&wall_points, triangles), wall_nodes, members })
     }
 
     /// Displacements of all members, given those of the driven nodes.
-    pub(crate) fn displacements(&self, driven: &[Point], threads: &Threads) -> Vec<Moved> {
+    pub(crate) fn displacements(&self, driven: &[Point], threads: &Threads) -> Vec<MemberMotion> {
         let of_wall = |v: u32| driven[self.wall_nodes[v as usize] as usize];
         let rotations = self.wall.rotations(of_wall, threads);
         threads.map(self.members.len(), |i| {
@@ -108,7 +108,7 @@ impl Layer {
             let corners = self.wall.triangle(m.triangle as usize);
             let foot = triangle::at(corners.map(of_wall), m.weights);
             let parts = corners.iter().zip(m.weights).map(|(&v, w)| (w, rotations[v as usize]));
-            Moved { foot, turn: change(mean(parts), m.offset) }
+            MemberMotion { foot, rotation: rotation_change(mean(parts), m.offset) }
         })
     }
 
@@ -141,23 +141,23 @@ impl Layer {
 
 /// How a member of the layer has moved, in two parts.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moved {
+pub(crate) struct MemberMotion {
     /// The displacement of its foot.
     pub(crate) foot: Point,
     /// The change of its offset by rotation.
-    pub(crate) turn: Point,
+    pub(crate) rotation: Point,
 }
 
-impl Moved {
+impl MemberMotion {
     pub(crate) fn total(self) -> Point {
-        add(self.foot, self.turn)
+        add(self.foot, self.rotation)
     }
 }
 
-/// Which vertices share a cell with another one whose foot is more than [`TEAR`] times as far from theirs as
+/// Which vertices share a cell with another one whose foot is more than [`MAX_FOOT_RATIO`] times as far from theirs as
 /// they are from each other. Where the wall has a crease, each would follow another side, and the cells
 /// between would be crushed: they are left to the graph.
-fn between_walls(points: &[Point], cells: &Cells, wall: &[VertexId], members: &[Member]) -> Vec<bool> {
+fn spans_crease(points: &[Point], cells: &Cells, wall: &[VertexId], members: &[Member]) -> Vec<bool> {
     let mut foot = vec![None; points.len()];
     wall.iter().for_each(|v| foot[v.index()] = Some(points[v.index()]));
     members.iter().for_each(|m| foot[m.vertex.index()] = Some(sub(points[m.vertex.index()], m.offset)));
@@ -166,7 +166,8 @@ fn between_walls(points: &[Point], cells: &Cells, wall: &[VertexId], members: &[
         for (i, &a) in vertices.iter().enumerate() {
             for &b in &vertices[..i] {
                 let (Some(foot_a), Some(foot_b)) = (foot[a.index()], foot[b.index()]) else { continue };
-                if distance(foot_a, foot_b) > TEAR * distance(points[a.index()], points[b.index()]) {
+                if distance(foot_a, foot_b) > MAX_FOOT_RATIO * distance(points[a.index()], points[b.index()])
+                {
                     between[a.index()] = true;
                     between[b.index()] = true;
                 }

@@ -1,28 +1,28 @@
 //! Maps that carry the displacements of the nodes to all vertices.
 
 use crate::base::{Point, Result, Threads};
-use crate::motion::bodies::Bodies;
-use crate::motion::distance::{Inverse, Radial};
+use crate::motion::bodies::RigidBodies;
+use crate::motion::distance::{InverseDistance, Radial};
+use crate::motion::graph_map::GraphMap;
 use crate::motion::guided::Guided;
-use crate::motion::solve::Solve;
-use crate::motion::spread::Spread;
+use crate::motion::solve::LinearMethod;
 use crate::motion::update::Displacements;
 
 /// One of the methods, set up for one position of the mesh.
 #[derive(Debug)]
 pub(crate) enum Map {
     /// A weighted sum for each vertex.
-    Graph(Spread),
+    Graph(GraphMap),
     /// Shares in the motion of rigid bodies, and weighted sums for the rest.
-    Bodies(Box<Bodies>),
+    Bodies(Box<RigidBodies>),
     /// The graph whose nodes rotate.
     Guided(Box<Guided>),
     /// Means of rigid motions, by distance.
-    Inverse(Box<Inverse>),
+    Inverse(Box<InverseDistance>),
     /// Radial basis functions.
     Radial(Box<Radial>),
     /// A linear system.
-    Solve(Box<Solve>),
+    Linear(Box<LinearMethod>),
 }
 
 impl Map {
@@ -39,7 +39,7 @@ impl Map {
         threads: &Threads,
     ) -> Result<usize> {
         match self {
-            Self::Graph(spread) => spread.apply(from, displacements, out, threads),
+            Self::Graph(graph_map) => graph_map.apply(from, displacements, out, threads),
             Self::Bodies(bodies) => bodies.apply(from, displacements, out, threads),
             Self::Guided(guided) => guided.apply(from, displacements, out, threads),
             Self::Inverse(inverse) => {
@@ -47,7 +47,7 @@ impl Map {
                 Ok(0)
             }
             Self::Radial(radial) => Ok(radial.apply(from, displacements, out, threads)),
-            Self::Solve(solve) => Ok(solve.apply(from, displacements, out, threads)?.iterations),
+            Self::Linear(linear) => Ok(linear.apply(from, displacements, out, threads)?.iterations),
         }
     }
 }

@@ -25,7 +25,7 @@ const DISPLACEMENT_ARRAYS: &[&str] = &["displacement", "Displacement", "u", "U",
 
 /// Two points are the same where they are closer than this fraction of the bounding box's diagonal: single
 /// precision keeps 1.2e-7 of a coordinate.
-const SAME_PLACE: f64 = 1e-6;
+const RELATIVE_TOLERANCE: f64 = 1e-6;
 
 /// The vertex of `mesh` that each point of `surface`, which lies on the undeformed mesh, is: by position, or
 /// by its ids where that fails.
@@ -34,7 +34,7 @@ const SAME_PLACE: f64 = 1e-6;
 /// When points lie on no vertex and carry no ids; reports how many they are, which is the first, and how far
 /// it is from the mesh. When an id belongs to no vertex.
 pub fn match_patch(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
-    match_by_position(mesh, surface).or_else(|lost| match_by_id(mesh, surface)?.ok_or(lost))
+    match_by_position(mesh, surface).or_else(|error| match_by_id(mesh, surface)?.ok_or(error))
 }
 
 /// The vertices that belong to the surface's own ids; `None` where it carries none.
@@ -87,8 +87,8 @@ impl IdArray {
 fn match_by_position(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
     let grid = Grid::new(&mesh.points);
     let found: Vec<_> = surface.points.iter().map(|&p| grid.vertex_at(p)).collect();
-    let lost: Vec<usize> = (0..found.len()).filter(|&i| found[i].is_none()).collect();
-    let Some(&first) = lost.first() else {
+    let unmatched: Vec<usize> = (0..found.len()).filter(|&i| found[i].is_none()).collect();
+    let Some(&first) = unmatched.first() else {
         return Ok(found.into_iter().flatten().collect());
     };
     let [x, y, z] = surface.points[first];
@@ -97,7 +97,7 @@ fn match_by_position(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
     Err(Error::input(format!(
         "{} of the surface's {} points lie on no vertex of the mesh; this one, ({x}, {y}, {z}), is {distance:.3e} \
          from the nearest",
-        lost.len(),
+        unmatched.len(),
         found.len()
     ))
     .at(format!("point {first}"))
@@ -118,7 +118,7 @@ struct Grid<'a> {
 impl<'a> Grid<'a> {
     fn new(points: &'a [Point]) -> Self {
         let [low, high] = bounds(points).unwrap_or_default();
-        let width = (norm(sub(high, low)) * SAME_PLACE).max(f64::MIN_POSITIVE);
+        let width = (norm(sub(high, low)) * RELATIVE_TOLERANCE).max(f64::MIN_POSITIVE);
         let mut grid = Self { points, low, width, cells: HashMap::new() };
         for (vertex, &p) in points.iter().enumerate() {
             grid.cells.entry(grid.cell(p)).or_default().push(vertex as u32);
@@ -189,7 +189,7 @@ impl<'a> SurfaceMotion<'a> {
         if let Some(i) = moved.iter().position(|d| d.iter().any(|x| !x.is_finite())) {
             return Err(Error::input("a displacement that is no finite number").at(format!("point {i}")));
         }
-        let pairs = self.once_each(&vertices, &moved)?;
+        let pairs = self.merged(&vertices, &moved)?;
         self.vertices = Some(vertices);
         Ok(pairs)
     }
@@ -215,9 +215,9 @@ impl<'a> SurfaceMotion<'a> {
     fn displacements(&self, surface: &Mesh, vertices: &[VertexId]) -> Result<Vec<Point>> {
         let points = vertices.iter().zip(&surface.points);
         let moved: Vec<Point> = points.map(|(v, &p)| sub(p, self.mesh.points[v.index()])).collect();
-        let same_place = self.same_place();
+        let tolerance = self.tolerance();
         // Tests what must hold, since a coordinate that is not a number must not pass for unmoved.
-        let unmoved = moved.iter().all(|&d| norm(d) <= same_place);
+        let unmoved = moved.iter().all(|&d| norm(d) <= tolerance);
         if !unmoved {
             return Ok(moved);
         }
@@ -228,13 +228,13 @@ impl<'a> SurfaceMotion<'a> {
         }
     }
 
-    fn same_place(&self) -> f64 {
-        self.mesh.bounds().map_or(0.0, |[low, high]| norm(sub(high, low)) * SAME_PLACE)
+    fn tolerance(&self) -> f64 {
+        self.mesh.bounds().map_or(0.0, |[low, high]| norm(sub(high, low)) * RELATIVE_TOLERANCE)
     }
 
     /// Merges points of several faces that are one vertex.
-    fn once_each(&self, vertices: &[VertexId], moved: &[Point]) -> Result<Vec<(VertexId, Point)>> {
-        let same_place = self.same_place();
+    fn merged(&self, vertices: &[VertexId], moved: &[Point]) -> Result<Vec<(VertexId, Point)>> {
+        let tolerance = self.tolerance();
         let mut order: Vec<usize> = (0..vertices.len()).collect();
         order.sort_by_key(|&i| vertices[i]);
         let mut pairs: Vec<(VertexId, Point)> = Vec::with_capacity(order.len());
@@ -242,7 +242,7 @@ impl<'a> SurfaceMotion<'a> {
             match pairs.last() {
                 Some((vertex, d)) if *vertex == vertices[i] => {
                     let apart = norm(sub(*d, moved[i]));
-                    if apart > same_place {
+                    if apart > tolerance {
                         return Err(Error::input(format!(
                             "is vertex {vertex} like another point, but they move {apart:.3e} apart"
                         ))

@@ -19,24 +19,24 @@ pub(crate) struct Middles {
 /// A node is in the middle when it is off by no more than this fraction of the longest distance between its
 /// corners: this allows for an arc that bends by less than a thousandth of a radian, and for coordinates of
 /// few digits.
-const STRAIGHT: f64 = 1e-4;
+const STRAIGHT_TOLERANCE: f64 = 1e-4;
 /// It is also in the middle when it is off by this many roundings of the largest coordinate at most, in the
 /// precision of the coordinates.
 const ROUNDINGS: f64 = 4.0;
 
 impl Middles {
-    /// Finds the middle nodes of a reference mesh that are not prescribed; with `any`, also those of edges
+    /// Finds the middle nodes of a reference mesh that are not prescribed; with `also_curved`, also those of edges
     /// that are not straight, for methods that know corners alone.
     ///
     /// A node that is a corner of another volume cell follows as corners do. If several cells have a node
     /// between different corners, the first counts.
-    pub(crate) fn of(mesh: &Mesh, is_prescribed: &[bool], any: bool) -> Self {
+    pub(crate) fn of(mesh: &Mesh, is_prescribed: &[bool], also_curved: bool) -> Self {
         let volumes = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3));
         let of_kind: Vec<_> = (0..=u8::MAX).map(|k| middles(CellKind(k))).collect();
-        let mut is_taken = is_prescribed.to_vec();
+        let mut is_excluded = is_prescribed.to_vec();
         for (_, kind, nodes) in volumes() {
             let n_corners = nodes.len() - of_kind[kind.0 as usize].len();
-            nodes[..n_corners].iter().for_each(|v| is_taken[v.index()] = true);
+            nodes[..n_corners].iter().for_each(|v| is_excluded[v.index()] = true);
         }
         let mut found: Vec<(VertexId, Vec<VertexId>)> = Vec::new();
         for (_, kind, nodes) in volumes() {
@@ -44,8 +44,8 @@ impl Middles {
                 let v = nodes[middle.node];
                 let corners = middle.corners.iter().map(|&c| nodes[c]);
                 let places: Vec<Point> = corners.clone().map(|v| mesh.points[v.index()]).collect();
-                if !is_taken[v.index()] && (any || is_between(mesh.points[v.index()], &places)) {
-                    is_taken[v.index()] = true;
+                if !is_excluded[v.index()] && (also_curved || is_between(mesh.points[v.index()], &places)) {
+                    is_excluded[v.index()] = true;
                     found.push((v, corners.collect()));
                 }
             }
@@ -84,5 +84,5 @@ fn is_between(p: Point, corners: &[Point]) -> bool {
     let is_single = coordinates().all(|&x| f64::from(x as f32) == x);
     let epsilon = if is_single { f64::from(f32::EPSILON) } else { f64::EPSILON };
     let largest = coordinates().fold(0.0, |most: f64, x| most.max(x.abs()));
-    norm(sub(p, middle)) <= (STRAIGHT * longest).max(ROUNDINGS * epsilon * largest)
+    norm(sub(p, middle)) <= (STRAIGHT_TOLERANCE * longest).max(ROUNDINGS * epsilon * largest)
 }

@@ -7,10 +7,11 @@ use serde::Serialize;
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{in_range, sub};
 use crate::mesh::{Boundary, Mesh};
-use crate::motion::bodies::{self, Bodies};
+use crate::motion::bodies::{self, RigidBodies};
 use crate::motion::check::Check;
-use crate::motion::distance::{Inverse, Radial};
-use crate::motion::graph::{Graph, Hanging, hang, triangulate};
+use crate::motion::distance::{InverseDistance, Radial};
+use crate::motion::graph::{Embedding, Graph, embed, triangulate};
+use crate::motion::graph_map::GraphMap;
 use crate::motion::guided::{self, Guided, Helpers};
 use crate::motion::map::Map;
 use crate::motion::middles::Middles;
@@ -18,10 +19,9 @@ use crate::motion::nodes::{Nodes, not_sliding};
 use crate::motion::options::{FacetSet, Limits, Method, Options, Strain};
 use crate::motion::slide::{LeavesPlane, SlidingPlane};
 use crate::motion::smooth::Smoother;
-use crate::motion::solve::Solve;
-use crate::motion::spread::Spread;
-use crate::motion::update::Update;
-use crate::motion::walls::{Added, Walls};
+use crate::motion::solve::LinearMethod;
+use crate::motion::update::WeightTable;
+use crate::motion::walls::{AddedPoints, Walls};
 
 /// Moves the vertices of a mesh with its boundary.
 ///
@@ -52,8 +52,16 @@ pub struct Mover {
     pub(crate) tets: Vec<[VertexId; 4]>,
     pub(crate) check: Check,
     pub(crate) limits: Limits,
-    pub(crate) state: Option<crate::motion::advance::State>,
+    pub(crate) state: Option<State>,
     setup: Setup,
+}
+
+/// Where a call of [`Mover::advance`] left the mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    pub(crate) points: Vec<Point>,
+    /// Displacements of the driven vertices in this state.
+    pub(crate) driven: Vec<Point>,
 }
 
 /// The work done in a step.
@@ -136,13 +144,13 @@ impl Mover {
         let is_used = used_by_volume(mesh);
         let mut nodes = Nodes::new(mesh, &boundary, options, &is_used, threads)?;
         let walls = options.within_walls.then(|| Walls::new(mesh, &boundary, &mut nodes));
-        setup.seconds.layer = lap(&mut clock);
+        setup.seconds.layer = lap_seconds(&mut clock);
         let check = Check::new(mesh, threads);
-        setup.seconds.cells = lap(&mut clock);
+        setup.seconds.cells = lap_seconds(&mut clock);
         let mut is_node = vec![false; mesh.points.len()];
         nodes.vertices.iter().for_each(|v| is_node[v.index()] = true);
         let is_prescribed = nodes.prescribed(mesh.points.len());
-        let middles = Middles::of(mesh, &is_prescribed, options.method.knows_corners_alone());
+        let middles = Middles::of(mesh, &is_prescribed, options.method.places_corners_only());
         for v in middles.vertices() {
             setup.middles += usize::from(!is_node[v.index()]);
             is_node[v.index()] = true;
@@ -158,10 +166,10 @@ impl Mover {
             method: options.method.clone(),
             strain: options.strain,
             bodies: match &options.method {
-                Method::Bodies(sets) => bodies::vertices(sets, mesh, &boundary, &options.also_moved)?,
+                Method::Bodies(sets) => bodies::body_vertices(sets, mesh, &boundary, &options.also_moved)?,
                 _ => Vec::new(),
             },
-            map: Map::Graph(Spread::default()),
+            map: Map::Graph(GraphMap::default()),
             smoother: None,
             helpers: Helpers::default(),
             walls,
@@ -174,7 +182,7 @@ impl Mover {
         threads.watch().report_and_check("setting a motion up", 0, 0)?;
         match mover.method {
             Method::Delaunay | Method::Bodies(_) | Method::Guided => {
-                mover.hang_reference(&is_used, threads)?;
+                mover.embed_reference(&is_used, threads)?;
             }
             _ => mover.assemble_reference(&is_used, threads)?,
         }
@@ -202,7 +210,7 @@ impl Mover {
     /// Where the rim of a sliding patch leaves its plane farthest, when the vertices of [`Self::boundary`]
     /// have these displacements; `None` where all stay within their planes.
     pub fn leaves_plane(&self, displacement: &[Point]) -> Option<LeavesPlane> {
-        self.nodes.leaving(&self.reference, displacement)
+        self.nodes.worst_departure(&self.reference, displacement)
     }
 
     /// What setting up found, and how long it took.
@@ -214,12 +222,12 @@ impl Mover {
     /// else.
     pub fn weights(&self, v: VertexId) -> Option<([VertexId; 4], [f64; 4])> {
         self.hanging.binary_search(&v).ok()?;
-        let update = match &self.map {
-            Map::Graph(spread) => &spread.update,
+        let table = match &self.map {
+            Map::Graph(graph_map) => &graph_map.table,
             Map::Bodies(bodies) => bodies.graph(),
             _ => return None,
         };
-        let (nodes, weights) = update.of(v.index());
+        let (nodes, weights) = table.of(v.index());
         let vertex = |node: u32| self.nodes.vertices.get(node as usize).copied();
         let [a, b, c, d] = nodes.map(vertex);
         Some(([a?, b?, c?, d?], weights))
@@ -235,7 +243,7 @@ impl Mover {
     /// tolerance.
     pub fn step(&self, displacement: &[Point], out: &mut [Point], threads: &Threads) -> Result<()> {
         self.check_lengths(displacement, out)?;
-        self.go(displacement, out, threads).map(|_| ())
+        self.displace(displacement, out, threads).map(|_| ())
     }
 
     pub(crate) fn check_lengths(&self, displacement: &[Point], out: &[Point]) -> Result<()> {
@@ -251,7 +259,12 @@ impl Mover {
     }
 
     /// A step without a check of the lengths.
-    pub(crate) fn go(&self, displacement: &[Point], out: &mut [Point], threads: &Threads) -> Result<Work> {
+    pub(crate) fn displace(
+        &self,
+        displacement: &[Point],
+        out: &mut [Point],
+        threads: &Threads,
+    ) -> Result<Work> {
         let nodes = self.nodes.displacements(displacement, threads);
         let iterations = self.map.apply(&self.reference, &nodes, out, threads)?;
         Ok(Work { iterations, smoothed: self.finish(out, threads) })
@@ -311,7 +324,7 @@ impl Mover {
     pub(crate) fn rebuild(&self, points: &[Point], threads: &Threads) -> Result<Map> {
         match self.method {
             Method::InverseDistance => {
-                let inverse = Inverse::new(&self.wall, &self.nodes.vertices, &self.hanging, points);
+                let inverse = InverseDistance::new(&self.wall, &self.nodes.vertices, &self.hanging, points);
                 Ok(Map::Inverse(Box::new(inverse)))
             }
             Method::Radial => {
@@ -320,34 +333,40 @@ impl Mover {
             Method::Elastic(_) | Method::Laplace(_) => {
                 let (tets, nodes) = (&self.check.corners.tets, &self.nodes.vertices);
                 let vertices = (&self.hanging[..], &nodes[..]);
-                Solve::new(&self.method, tets, points, vertices, &self.wall, threads)
-                    .map(|solve| Map::Solve(Box::new(solve)))
+                LinearMethod::new(&self.method, tets, points, vertices, &self.wall, threads)
+                    .map(|linear| Map::Linear(Box::new(linear)))
             }
             _ => {
-                let (graph, found, _) = self.find(points, threads)?;
-                self.on_graph(graph, &found, points, threads)
+                let (graph, found, _) = self.build_graph(points, threads)?;
+                self.map_on_graph(graph, &found, points, threads)
             }
         }
     }
 
     /// The map of displacements on a graph that was built with the vertices at `points`.
-    fn on_graph(&self, graph: Graph, found: &Hanging, points: &[Point], threads: &Threads) -> Result<Map> {
+    fn map_on_graph(
+        &self,
+        graph: Graph,
+        found: &Embedding,
+        points: &[Point],
+        threads: &Threads,
+    ) -> Result<Map> {
         if matches!(self.method, Method::Guided) {
-            let mut update = Update::never(graph.places.len() as u32, self.reference.len());
+            let mut table = WeightTable::fixed(graph.places.len() as u32, self.reference.len());
             for (vertex, (&tet, w)) in self.hanging.iter().zip(found.tet.iter().zip(&found.weights)) {
-                update.hang(*vertex, found.tets[tet as usize], *w);
+                table.set(*vertex, found.tets[tet as usize], *w);
             }
-            let guided = Guided::new(graph, update, (&self.nodes, &self.helpers), &self.wall, points)?;
+            let guided = Guided::new(graph, table, (&self.nodes, &self.helpers), &self.wall, points)?;
             return Ok(Map::Guided(Box::new(guided)));
         }
-        let added = Added::new(&graph, &self.nodes.of_graph)?;
-        let n_added = added.as_ref().map_or(0, Added::len);
-        let spread = Spread { update: self.tabulate(found, n_added), added: added.map(Box::new) };
+        let added = AddedPoints::new(&graph, &self.nodes.of_graph)?;
+        let n_added = added.as_ref().map_or(0, AddedPoints::len);
+        let graph_map = GraphMap { table: self.weight_table(found, n_added), added: added.map(Box::new) };
         if self.bodies.is_empty() {
-            return Ok(Map::Graph(spread));
+            return Ok(Map::Graph(graph_map));
         }
         let (tets, vertices) = (&self.check.corners.tets, (&self.hanging[..], &self.nodes));
-        Bodies::new((&self.bodies, self.strain), tets, points, vertices, spread, threads)
+        RigidBodies::new((&self.bodies, self.strain), tets, points, vertices, graph_map, threads)
             .map(|b| Map::Bodies(Box::new(b)))
     }
 
@@ -367,7 +386,7 @@ impl Mover {
         self.map = self.rebuild(&self.reference, threads)?;
         let nodes = &self.nodes;
         let (solved, factor_bytes) = match &self.map {
-            Map::Solve(solve) => (self.hanging.len(), solve.factor_bytes()),
+            Map::Linear(linear) => (self.hanging.len(), linear.factor_bytes()),
             _ => (0, 0),
         };
         self.setup.seconds.system = begin.elapsed().as_secs_f64();
@@ -385,7 +404,7 @@ impl Mover {
     }
 
     /// Builds the graph and locates the vertices in it; also returns the seconds for each of the two.
-    fn find(&self, points: &[Point], threads: &Threads) -> Result<(Graph, Hanging, [f64; 2])> {
+    fn build_graph(&self, points: &[Point], threads: &Threads) -> Result<(Graph, Embedding, [f64; 2])> {
         let mut clock = Instant::now();
         let at = |v: &VertexId| points[v.index()];
         let given = self.nodes.of_graph.iter().map(|&n| &self.nodes.vertices[n as usize]);
@@ -393,29 +412,34 @@ impl Mover {
         if let Some(walls) = &self.walls {
             let places: Vec<Point> = self.hanging.iter().map(at).collect();
             let (graph, found) = walls.graph(graph, &places, threads)?;
-            return Ok((graph, found, [lap(&mut clock), 0.0]));
+            return Ok((graph, found, [lap_seconds(&mut clock), 0.0]));
         }
         let triangulation = triangulate(&graph, threads)?;
-        let built = lap(&mut clock);
+        let built = lap_seconds(&mut clock);
         let places: Vec<Point> = self.hanging.iter().map(at).collect();
-        let found = hang(&triangulation, &places, threads);
+        let found = embed(&triangulation, &places, threads);
         let tets = triangulation.tets().iter().map(|t| t.map(|v| v.0)).collect();
-        Ok((Graph { places: graph, tets }, found, [built, lap(&mut clock)]))
+        Ok((Graph { places: graph, tets }, found, [built, lap_seconds(&mut clock)]))
     }
 
     /// Builds the graph of the reference. Vertices outside it that no cell uses do not take part.
-    fn hang_reference(&mut self, is_used: &[bool], threads: &Threads) -> Result<()> {
+    fn embed_reference(&mut self, is_used: &[bool], threads: &Threads) -> Result<()> {
         if matches!(self.method, Method::Guided) {
-            self.helpers = guided::choose(&self.check.corners.tets, &self.reference, &self.hanging, RINGS);
+            self.helpers = guided::choose_helpers(
+                &self.check.corners.tets,
+                &self.reference,
+                &self.hanging,
+                HELPER_RINGS,
+            );
         }
-        let (graph, mut found, [triangulation, hanging]) = self.find(&self.reference, threads)?;
+        let (graph, mut found, [triangulation, hanging]) = self.build_graph(&self.reference, threads)?;
         let stays = |i: u32| !is_used[self.hanging[i as usize].index()];
         let staying: Vec<u32> = found.outside.iter().copied().filter(|&i| stays(i)).collect();
         found.remove(&staying);
         let mut i = 0u32..;
         self.hanging.retain(|_| i.next().is_none_or(|i| staying.binary_search(&i).is_err()));
         let begin = Instant::now();
-        self.map = self.on_graph(graph, &found, &self.reference, threads)?;
+        self.map = self.map_on_graph(graph, &found, &self.reference, threads)?;
         self.setup.seconds.system = begin.elapsed().as_secs_f64();
         let vertices = |t: &[u32; 4]| {
             let [a, b, c, d] = t.map(|i| self.vertex_of_graph(i));
@@ -442,28 +466,28 @@ impl Mover {
 
     /// The table for all vertices: nodes follow themselves, and vertices that stay follow the node that never
     /// moves.
-    fn tabulate(&self, found: &Hanging, n_added: usize) -> Update {
+    fn weight_table(&self, found: &Embedding, n_added: usize) -> WeightTable {
         let n_nodes = self.nodes.vertices.len();
-        let mut update = Update::never((n_nodes + n_added) as u32, self.reference.len());
+        let mut table = WeightTable::fixed((n_nodes + n_added) as u32, self.reference.len());
         let (of_graph, n_given) = (&self.nodes.of_graph, self.nodes.of_graph.len());
         let node = |i: u32| {
             of_graph.get(i as usize).copied().unwrap_or_else(|| (i as usize - n_given + n_nodes) as u32)
         };
         for (node, vertex) in (0..).zip(&self.nodes.vertices) {
-            update.nodes[vertex.index()] = [node; 4];
+            table.nodes[vertex.index()] = [node; 4];
         }
         for (vertex, (&tet, w)) in self.hanging.iter().zip(found.tet.iter().zip(&found.weights)) {
             let nodes = found.tets[tet as usize].map(node);
-            update.hang(*vertex, nodes, *w);
+            table.set(*vertex, nodes, *w);
         }
-        update
+        table
     }
 }
 
 /// Helpers are more than this many edges apart. With 2 a step takes a third of the time on a mesh of 32,000
 /// vertices, but a flap that bends by 90 degrees keeps an inverted tet through 16 sweeps of smoothing, and at
 /// 60 degrees half as many bad ones again.
-const RINGS: usize = 1;
+const HELPER_RINGS: usize = 1;
 
 fn is_zero(n: &usize) -> bool {
     *n == 0
@@ -479,7 +503,7 @@ fn wall(boundary: &Boundary, options: &Options) -> FacetSet {
     }
 }
 
-fn lap(clock: &mut Instant) -> f64 {
+fn lap_seconds(clock: &mut Instant) -> f64 {
     let now = Instant::now();
     let seconds = (now - *clock).as_secs_f64();
     *clock = now;

@@ -7,7 +7,7 @@ use crate::geometry::vector::{add, sub};
 use crate::mesh::{Boundary, Mesh};
 use crate::motion::layer::Layer;
 use crate::motion::options::{FacetSet, Options, RigidLayer};
-use crate::motion::slide::{Freedom, LeavesPlane, Rim, Slide, SlidingPlane, key, leaving};
+use crate::motion::slide::{LeavesPlane, Rim, Slide, SlidingConstraints, SlidingPlane, key, worst_departure};
 use crate::motion::update::{Displacements, Padded};
 
 /// All nodes of a mesh, and what moves them.
@@ -25,7 +25,7 @@ pub(crate) struct Nodes {
     member_slides: Vec<Option<u32>>,
     slides: Vec<Slide>,
     /// How the vertices of sliding patches are constrained.
-    freedom: Freedom,
+    constraints: SlidingConstraints,
     /// The planes of sliding patches, as they are reported.
     pub(crate) planes: Vec<SlidingPlane>,
     rims: Vec<Rim>,
@@ -33,7 +33,7 @@ pub(crate) struct Nodes {
 
 /// Where a motion in sub-steps has brought the nodes, and what the sliding ones follow from there on.
 #[derive(Debug)]
-pub(crate) struct Start {
+pub(crate) struct SubstepStart {
     /// Displacements of all nodes from the reference, and that of the node that never moves.
     pub(crate) displacement: Vec<Padded>,
     slides: Vec<Slide>,
@@ -64,32 +64,43 @@ impl Nodes {
         (0..).zip(&nodes.vertices).for_each(|(i, v)| node_of[v.index()] = i);
         let mut driven = options.also_moved.clone();
         driven.sort_unstable();
-        let freedom =
-            Freedom::new(&mesh.points, &options.sliding, boundary, &driven, options.slide_tolerance.0)?;
-        let slide_of = freedom.held_of(mesh.points.len());
+        let constraints = SlidingConstraints::new(
+            &mesh.points,
+            &options.sliding,
+            boundary,
+            &driven,
+            options.slide_tolerance.0,
+        )?;
+        let slide_of = constraints.constraint_of(mesh.points.len());
         if let Some(rigid) = &options.rigid_layer {
             let all = rigid.wall.is_none().then(|| not_sliding(boundary, &options.sliding));
             let wall = rigid.wall.as_ref().or(all.as_ref()).expect("one of the two is there");
             nodes.add_layer(mesh, rigid, wall, is_used, &node_of, &slide_of)?;
         }
-        nodes.planes = freedom.planes();
-        nodes.rims = freedom.rims(&mesh.points, |v| node_of[v.index()]);
-        nodes.slides = nodes.hung(&freedom, &mesh.points, threads)?;
-        nodes.freedom = freedom;
+        nodes.planes = constraints.planes();
+        nodes.rims = constraints.rims(&mesh.points, |v| node_of[v.index()]);
+        nodes.slides = nodes.slides_at(&constraints, &mesh.points, threads)?;
+        nodes.constraints = constraints;
         Ok(nodes)
     }
 
     /// What the sliding vertices follow, with all vertices at `points`; those of the layer follow their feet
     /// instead.
-    fn hung(&self, freedom: &Freedom, points: &[Point], threads: &Threads) -> Result<Vec<Slide>> {
+    fn slides_at(
+        &self,
+        constraints: &SlidingConstraints,
+        points: &[Point],
+        threads: &Threads,
+    ) -> Result<Vec<Slide>> {
         let mut node_of = vec![NONE; points.len()];
         (0..).zip(&self.vertices[..self.n_driven]).for_each(|(i, v)| node_of[v.index()] = i);
         let mut in_layer = vec![false; points.len()];
         self.layer.iter().flat_map(|l| &l.members).for_each(|m| in_layer[m.vertex.index()] = true);
         let follows = |v: VertexId| !in_layer[v.index()];
         let node = |v: VertexId| node_of[v.index()];
-        let slide = |held| Slide::new(points, &freedom.flats, held, follows, node, threads);
-        freedom.held.iter().map(slide).collect()
+        let slide =
+            |constraint| Slide::new(points, &constraints.patch_planes, constraint, follows, node, threads);
+        constraints.constraints.iter().map(slide).collect()
     }
 
     /// The start of a sub-step with the vertices at `points`, reached by the displacements `driven` of the
@@ -103,7 +114,7 @@ impl Nodes {
         points: &[Point],
         driven: &[Point],
         threads: &Threads,
-    ) -> Result<Start> {
+    ) -> Result<SubstepStart> {
         let mut displacement = self.displacements(driven, threads).table().into_owned();
         for &node in self.slides.iter().flat_map(|slide| &slide.sliding) {
             let v = self.vertices[node as usize].index();
@@ -111,9 +122,9 @@ impl Nodes {
         }
         let slides = match self.slides.is_empty() {
             true => Vec::new(),
-            false => self.hung(&self.freedom.refitted(points)?, points, threads)?,
+            false => self.slides_at(&self.constraints.refitted(points)?, points, threads)?,
         };
-        Ok(Start { displacement, slides })
+        Ok(SubstepStart { displacement, slides })
     }
 
     /// Makes nodes of the vertices near the wall that are not driven; sliding vertices, which are driven in
@@ -160,7 +171,7 @@ impl Nodes {
     /// continues from `start`.
     pub(crate) fn displacements_from(
         &self,
-        start: &Start,
+        start: &SubstepStart,
         driven: &[Point],
         threads: &Threads,
     ) -> Vec<Padded> {
@@ -180,7 +191,9 @@ impl Nodes {
             let kinds = self.member_nodes.iter().zip(&self.member_slides);
             for (moved, (&node, slide)) in layer.displacements(driven, threads).into_iter().zip(kinds) {
                 all[node as usize] = Padded::new(match slide {
-                    Some(slide) => sub(moved.total(), self.slides[*slide as usize].outward(moved.turn)),
+                    Some(slide) => {
+                        sub(moved.total(), self.slides[*slide as usize].normal_component(moved.rotation))
+                    }
                     None => moved.total(),
                 });
             }
@@ -189,8 +202,8 @@ impl Nodes {
     }
 
     /// Where a rim of a sliding patch leaves its plane farthest, given the displacements of the driven nodes.
-    pub(crate) fn leaving(&self, reference: &[Point], driven: &[Point]) -> Option<LeavesPlane> {
-        leaving(&self.rims, &self.vertices, reference, driven)
+    pub(crate) fn worst_departure(&self, reference: &[Point], driven: &[Point]) -> Option<LeavesPlane> {
+        worst_departure(&self.rims, &self.vertices, reference, driven)
     }
 
     /// Nodes that slide by following others, in rising order; those of the layer are not among them.
@@ -212,7 +225,7 @@ impl Nodes {
     }
 
     /// Values at all nodes, given those at the driven ones: nodes of the layer have the values at their feet.
-    pub(crate) fn at_feet(&self, driven: &[Point]) -> Vec<Point> {
+    pub(crate) fn extended_to_layer(&self, driven: &[Point]) -> Vec<Point> {
         let mut all = driven.to_vec();
         all.resize(self.vertices.len(), [0.0; 3]);
         if let Some(layer) = &self.layer {

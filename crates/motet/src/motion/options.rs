@@ -77,7 +77,7 @@ pub struct Elastic {
 
 impl Default for Elastic {
     fn default() -> Self {
-        Self { poisson: 0.3, stiffening: 1.0, tolerance: SOLVED, factor_bytes: 0 }
+        Self { poisson: 0.3, stiffening: 1.0, tolerance: DEFAULT_TOLERANCE, factor_bytes: 0 }
     }
 }
 
@@ -97,7 +97,7 @@ pub struct Laplace {
 
 impl Default for Laplace {
     fn default() -> Self {
-        Self { exponent: 1.0, wall: None, tolerance: SOLVED, factor_bytes: 0 }
+        Self { exponent: 1.0, wall: None, tolerance: DEFAULT_TOLERANCE, factor_bytes: 0 }
     }
 }
 
@@ -116,7 +116,7 @@ pub struct MethodWords {
 
 impl Default for MethodWords {
     fn default() -> Self {
-        Self { bodies: Vec::new(), wall: None, residual: SOLVED.residual, factor_gib: 0.0 }
+        Self { bodies: Vec::new(), wall: None, residual: DEFAULT_TOLERANCE.residual, factor_gib: 0.0 }
     }
 }
 
@@ -139,7 +139,7 @@ impl Method {
     pub fn all(words: MethodWords) -> [Self; 7] {
         let MethodWords { bodies, wall, residual, factor_gib } = words;
         let factor_bytes = (factor_gib * (1u64 << 30) as f64) as u64;
-        let tolerance = Tolerance { residual, ..SOLVED };
+        let tolerance = Tolerance { residual, ..DEFAULT_TOLERANCE };
         [
             Self::Delaunay,
             Self::Bodies(bodies),
@@ -152,7 +152,7 @@ impl Method {
     }
 
     /// Whether the method places only corners of cells, since it is based on the tets at them.
-    pub(crate) fn knows_corners_alone(&self) -> bool {
+    pub(crate) fn places_corners_only(&self) -> bool {
         matches!(self, Self::Bodies(_) | Self::Elastic(_) | Self::Laplace(_))
     }
 
@@ -220,7 +220,7 @@ impl Method {
 }
 
 /// Displacements are accurate to about this fraction of the largest: far finer than cells.
-const SOLVED: Tolerance = Tolerance { residual: 1e-6, iterations: 10_000 };
+const DEFAULT_TOLERANCE: Tolerance = Tolerance { residual: 1e-6, iterations: 10_000 };
 
 /// How a mesh is to be moved. The default moves every interior vertex by the graph of the boundary alone.
 #[derive(Clone, Debug, Default)]

@@ -2,8 +2,8 @@
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::in_range;
-use crate::motion::graph::{hang, triangulate};
-use crate::motion::update::{Displacements, Update};
+use crate::motion::graph::{embed, triangulate};
+use crate::motion::update::{Displacements, WeightTable};
 
 /// Moves arbitrary points by the Delaunay graph of some nodes: a weighted sum of four displacements each.
 ///
@@ -19,8 +19,8 @@ pub struct PointMover {
     reference: Vec<Point>,
     n_nodes: usize,
     /// The given node that stands for each node of the graph.
-    firsts: Vec<u32>,
-    update: Update,
+    representatives: Vec<u32>,
+    table: WeightTable,
     n_outside: usize,
 }
 
@@ -35,26 +35,26 @@ impl PointMover {
         if nodes.len().max(points.len()) > VertexId::MAX_COUNT {
             return Err(Error::input(format!("{} points are more than there are ids", points.len())));
         }
-        let mut firsts: Vec<u32> = (0..nodes.len() as u32).collect();
+        let mut representatives: Vec<u32> = (0..nodes.len() as u32).collect();
         // -0.0 counts as 0.0.
         let place = |&i: &u32| nodes[i as usize].map(|x| x + 0.0);
-        firsts.sort_by(|a, b| {
+        representatives.sort_by(|a, b| {
             let (p, q) = (place(a), place(b));
             p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])).then(p[2].total_cmp(&q[2])).then(a.cmp(b))
         });
-        firsts.dedup_by(|b, a| place(a) == place(b));
-        let graph: Vec<Point> = firsts.iter().map(place).collect();
+        representatives.dedup_by(|b, a| place(a) == place(b));
+        let graph: Vec<Point> = representatives.iter().map(place).collect();
         let triangulation = triangulate(&graph, threads)?;
-        let found = hang(&triangulation, points, threads);
-        let mut update = Update::never(graph.len() as u32, points.len());
+        let found = embed(&triangulation, points, threads);
+        let mut table = WeightTable::fixed(graph.len() as u32, points.len());
         for (i, (&tet, w)) in found.tet.iter().zip(&found.weights).enumerate() {
-            update.hang(VertexId::new(i), found.tets[tet as usize], *w);
+            table.set(VertexId::new(i), found.tets[tet as usize], *w);
         }
         Ok(Self {
             reference: points.to_vec(),
             n_nodes: nodes.len(),
-            firsts,
-            update,
+            representatives,
+            table,
             n_outside: found.outside.len(),
         })
     }
@@ -89,8 +89,8 @@ impl PointMover {
             }
         }
         check_finite(displacement, "displacement")?;
-        let driven: Vec<Point> = self.firsts.iter().map(|&i| displacement[i as usize]).collect();
-        self.update.apply(&self.reference, &Displacements::Driven(&driven), out, threads);
+        let driven: Vec<Point> = self.representatives.iter().map(|&i| displacement[i as usize]).collect();
+        self.table.apply(&self.reference, &Displacements::Driven(&driven), out, threads);
         Ok(())
     }
 }

@@ -86,7 +86,7 @@ impl Prescribed {
         match self {
             Self::Shift(by) => add(p, scale(*by, fraction)),
             Self::Turn { axis, angle, centre } => {
-                add(*centre, turned(sub(p, *centre), *axis, angle * fraction))
+                add(*centre, rotate(sub(p, *centre), *axis, angle * fraction))
             }
             Self::Affine(rows) => {
                 let image = rows.map(|[a, b, c, d]| a * p[0] + b * p[1] + c * p[2] + d);
@@ -97,7 +97,7 @@ impl Prescribed {
                 let off = sub(*towards, scale(along, dot(*towards, along)));
                 add(
                     *hinge,
-                    bent(sub(p, *hinge), along, scale(off, 1.0 / norm(off)), angle * fraction / length),
+                    bend(sub(p, *hinge), along, scale(off, 1.0 / norm(off)), angle * fraction / length),
                 )
             }
             Self::Sequence(motions) => motions.iter().fold(p, |p, motion| motion.apply(p, fraction)),
@@ -116,7 +116,7 @@ impl Prescribed {
 
 /// Where a point of a beam along the unit vector `along` from the origin goes when the beam gets this
 /// curvature towards the unit vector `off`.
-fn bent(v: Point, along: Point, off: Point, curvature: f64) -> Point {
+fn bend(v: Point, along: Point, off: Point, curvature: f64) -> Point {
     let (height, aside) = (dot(v, along), dot(v, off));
     if height <= 0.0 || curvature == 0.0 {
         return v;
@@ -130,7 +130,7 @@ fn bent(v: Point, along: Point, off: Point, curvature: f64) -> Point {
 }
 
 /// Rotates `v` by `angle` about an axis through the origin (Rodrigues 1840).
-fn turned(v: Point, axis: Point, angle: f64) -> Point {
+fn rotate(v: Point, axis: Point, angle: f64) -> Point {
     let k = scale(axis, 1.0 / norm(axis));
     let (sin, cos) = angle.sin_cos();
     let along = scale(k, dot(k, v) * (1.0 - cos));

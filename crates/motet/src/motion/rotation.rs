@@ -12,7 +12,7 @@ use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
 /// A rotation as a quaternion: `[w, x, y, z]`, of length 1 unless it is part of a sum.
 pub(crate) type Quaternion = [f64; 4];
 
-pub(crate) const NO_TURN: Quaternion = [1.0, 0.0, 0.0, 0.0];
+pub(crate) const IDENTITY: Quaternion = [1.0, 0.0, 0.0, 0.0];
 
 /// A triangle of the wall in its reference position.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +85,7 @@ impl Frame {
         if a == b && a == c {
             // Only translated, like most of a wall of which a part moves: a twentieth of the time, and no
             // rounding.
-            return NO_TURN.map(|x| x * self.area);
+            return IDENTITY.map(|x| x * self.area);
         }
         let [first, second] = [add(self.edges[0], sub(b, a)), add(self.edges[1], sub(c, a))];
         let normal = unit(cross(first, second));
@@ -134,11 +134,11 @@ pub(crate) fn mean(parts: impl Iterator<Item = (f64, Quaternion)>) -> Quaternion
         (0..4).for_each(|i| sum[i] += weight * q[i]);
     }
     let length = sum.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if length > 0.0 { sum.map(|x| x / length) } else { NO_TURN }
+    if length > 0.0 { sum.map(|x| x / length) } else { IDENTITY }
 }
 
 /// The difference between the rotated `v` and `v`, without cancellation where the rotation is small.
-pub(crate) fn change(q: Quaternion, v: Point) -> Point {
+pub(crate) fn rotation_change(q: Quaternion, v: Point) -> Point {
     let axis = [q[1], q[2], q[3]];
     scale(cross(axis, add(cross(axis, v), scale(v, q[0]))), 2.0)
 }
@@ -166,7 +166,7 @@ mod tests {
                 let (v, origin) = ([0.3, -0.7, 1.9], [0.0; 3]);
                 let turned = sub(turn.apply(v, 1.0), turn.apply(origin, 1.0));
                 for q in rotations {
-                    assert!(distance(add(v, change(q, v)), turned) < 1e-14, "{degrees} {axis:?}");
+                    assert!(distance(add(v, rotation_change(q, v)), turned) < 1e-14, "{degrees} {axis:?}");
                 }
             }
         }
@@ -185,9 +185,9 @@ mod tests {
         let points = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let wall = Wall::new(&points, vec![[0, 1, 2], [0, 1, 3]]);
         let rotations = wall.rotations(|_| [0.0, 0.0, 1.0], &Threads::single());
-        assert_eq!(rotations[2], NO_TURN);
+        assert_eq!(rotations[2], IDENTITY);
         let fallen = |v| if v == 3 { [0.5, -1.0, 0.0] } else { [0.0; 3] };
         let flattened = wall.rotations(fallen, &Threads::single());
-        assert!(flattened.iter().all(|&q| q == NO_TURN));
+        assert!(flattened.iter().all(|&q| q == IDENTITY));
     }
 }

@@ -58,7 +58,7 @@ impl Displacements<'_> {
 
 /// The nodes that each vertex follows, and their weights.
 #[derive(Debug, Default)]
-pub(crate) struct Update {
+pub(crate) struct WeightTable {
     /// Four nodes for each vertex.
     pub(crate) nodes: Vec<[u32; 4]>,
     /// The weights of the last three of them.
@@ -66,19 +66,19 @@ pub(crate) struct Update {
 }
 
 /// With fewer vertices per part, a second thread takes longer to wake than to do its part.
-const SMALLEST: usize = 2048;
+const MIN_PART: usize = 2048;
 
 /// Parts per thread. The caller begins at once and takes part after part while the others, which sleep
 /// between steps, wake up: with a fixed share for each, it would wait for the last to wake.
 const PARTS: usize = 16;
 
-impl Update {
-    /// An update in which all of `n` vertices follow a node that never moves.
-    pub(crate) fn never(node: u32, n: usize) -> Self {
+impl WeightTable {
+    /// A table in which all of `n` vertices follow a node that never moves.
+    pub(crate) fn fixed(node: u32, n: usize) -> Self {
         Self { nodes: vec![[node; 4]; n], weights: vec![[0.0; 3]; n] }
     }
 
-    pub(crate) fn hang(&mut self, v: VertexId, nodes: [u32; 4], w: [f64; 4]) {
+    pub(crate) fn set(&mut self, v: VertexId, nodes: [u32; 4], w: [f64; 4]) {
         self.nodes[v.index()] = nodes;
         self.weights[v.index()] = [w[1], w[2], w[3]];
     }
@@ -99,7 +99,7 @@ impl Update {
             let (nodes, weights) = (&self.nodes[vertices.clone()], &self.weights[vertices.clone()]);
             add_means(&from[vertices], nodes, weights, bytemuck::cast_slice(table), out);
         };
-        let part = out.len().div_ceil(PARTS * threads.count()).max(SMALLEST);
+        let part = out.len().div_ceil(PARTS * threads.count()).max(MIN_PART);
         let Some(pool) = threads.pool().filter(|_| part < out.len()) else {
             return some(0, &displacements.table(), out);
         };
@@ -135,9 +135,9 @@ fn add_means(
 ) {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = pulp::x86::V3::try_new() {
-        return simd.vectorize(Each { sum: Wide(simd), from, nodes, weights, displacement, out });
+        return simd.vectorize(UpdateLoop { sum: Wide(simd), from, nodes, weights, displacement, out });
     }
-    Each { sum: Plain, from, nodes, weights, displacement, out }.call();
+    UpdateLoop { sum: Plain, from, nodes, weights, displacement, out }.call();
 }
 
 /// How `sum w_i d_i` is computed from the last three weights. It is a trait, since a closure is not certain
@@ -184,7 +184,7 @@ impl Sum for Plain {
 }
 
 /// The loop and what it runs over.
-struct Each<'a, S> {
+struct UpdateLoop<'a, S> {
     sum: S,
     from: &'a [Point],
     nodes: &'a [[u32; 4]],
@@ -193,7 +193,7 @@ struct Each<'a, S> {
     out: &'a mut [Point],
 }
 
-impl<S: Sum> NullaryFnOnce for Each<'_, S> {
+impl<S: Sum> NullaryFnOnce for UpdateLoop<'_, S> {
     type Output = ();
 
     #[inline(always)]
@@ -226,7 +226,7 @@ mod tests {
         let mut plain = wide.clone();
         add_means(&from, &nodes, &weights, &displacement, &mut wide);
         let (from, nodes, weights, displacement) = (&from[..], &nodes[..], &weights[..], &displacement[..]);
-        Each { sum: Plain, from, nodes, weights, displacement, out: &mut plain }.call();
+        UpdateLoop { sum: Plain, from, nodes, weights, displacement, out: &mut plain }.call();
         assert_eq!(wide, plain);
     }
 }

@@ -13,7 +13,7 @@ use crate::delaunay::{Constrained, EdgePoints, constrain};
 use crate::geometry::tet;
 use crate::geometry::vector::{add, dot, scale, sub};
 use crate::mesh::{Boundary, Mesh};
-use crate::motion::graph::{Graph, Hanging};
+use crate::motion::graph::{Embedding, Graph};
 use crate::motion::nodes::Nodes;
 use crate::motion::options::FacetSet;
 use crate::motion::slide::key;
@@ -73,22 +73,22 @@ impl Walls {
         nodes: Vec<Point>,
         points: &[Point],
         threads: &Threads,
-    ) -> Result<(Graph, Hanging)> {
+    ) -> Result<(Graph, Embedding)> {
         let filled = constrain(&nodes, &self.triangles, EdgePoints::MoveInside, threads).map_err(|e| {
             let what = format!("the graph cannot be kept within the walls: {}", e.what());
             Error::input(what)
                 .remedy("look with `motet info` for facets that cross or touch; or let the graph cross walls")
         })?;
         let Constrained { points: places, tets, .. } = filled;
-        let hanging = hang(&places, &tets, points, threads);
+        let embedding = embed(&places, &tets, points, threads);
         let tets = tets.into_iter().map(|t| t.map(|v| v.0)).collect();
-        Ok((Graph { places, tets }, hanging))
+        Ok((Graph { places, tets }, embedding))
     }
 }
 
-/// Locates points as [`graph::hang`](crate::motion::graph::hang) does, in tets that need not fill a convex
+/// Locates points as [`graph::embed`](crate::motion::graph::embed) does, in tets that need not fill a convex
 /// space.
-fn hang(nodes: &[Point], tets: &[[VertexId; 4]], points: &[Point], threads: &Threads) -> Hanging {
+fn embed(nodes: &[Point], tets: &[[VertexId; 4]], points: &[Point], threads: &Threads) -> Embedding {
     let corners = |t: u32| tets[t as usize].map(|v| nodes[v.index()]);
     let boxes: Vec<[Point; 2]> = (0..tets.len() as u32)
         .map(|t| {
@@ -115,12 +115,12 @@ fn hang(nodes: &[Point], tets: &[[VertexId; 4]], points: &[Point], threads: &Thr
         })
         .collect()
     });
-    Hanging::new(nodes, tets, &found, points, threads)
+    Embedding::new(nodes, tets, &found, points, threads)
 }
 
 /// Points that the graph added: they follow the others.
 #[derive(Debug)]
-pub(crate) struct Added {
+pub(crate) struct AddedPoints {
     /// For each given node of the graph, its index among all nodes.
     given: Vec<u32>,
     n: usize,
@@ -128,9 +128,9 @@ pub(crate) struct Added {
 }
 
 /// A tolerance far below what affects cells.
-const SOLVED: Tolerance = Tolerance { residual: 1e-12, iterations: 10_000 };
+const STEP_TOLERANCE: Tolerance = Tolerance { residual: 1e-12, iterations: 10_000 };
 
-impl Added {
+impl AddedPoints {
     /// Sets up the added points of a graph; `None` where all its nodes are given.
     ///
     /// # Errors
@@ -161,7 +161,7 @@ impl Added {
     ///
     /// # Errors
     /// When the system cannot be solved to the tolerance.
-    pub(crate) fn extended(
+    pub(crate) fn with_added(
         &self,
         displacements: &Displacements<'_>,
         threads: &Threads,
@@ -172,7 +172,7 @@ impl Added {
         right.iter_mut().for_each(|f| *f = f.map(|x| -x));
         let mut added = vec![[0.0; 3]; self.n];
         let System { inner, sweeps, .. } = &self.system;
-        let solved = conjugate_gradients(inner, sweeps, &right, &mut added, SOLVED, threads)?;
+        let solved = conjugate_gradients(inner, sweeps, &right, &mut added, STEP_TOLERANCE, threads)?;
         let (nodes, never) = table.split_at(table.len() - 1);
         let all =
             nodes.iter().copied().chain(added.into_iter().map(Padded::new)).chain(never.iter().copied());

@@ -15,10 +15,10 @@ use crate::geometry::{self, tet, triangle};
 
 /// Below this fraction of `length^3` a volume from rounded products is not trusted: its error, some 1e-15 of
 /// `length^3`, would show in the weights as 1e-9.
-const FLAT: f64 = 1e-6;
+const MIN_RELATIVE_VOLUME: f64 = 1e-6;
 
 /// How far from the point, relative to the tet's length, the weights may put it.
-const OFF: f64 = 2e-15;
+const MAX_OFFSET: f64 = 2e-15;
 
 /// Weights in [0, 1] whose sum is 1 and for which `sum w_i x_i` is `p`, for a point `p` of the tet `x`.
 ///
@@ -29,15 +29,15 @@ pub(crate) fn weights(p: Point, x: [Point; 4]) -> [f64; 4] {
     if length == 0.0 {
         return [1.0, 0.0, 0.0, 0.0];
     }
-    let good = |w: &[f64; 4]| norm(combine(*w, e)) <= OFF * length;
+    let good = |w: &[f64; 4]| norm(combine(*w, e)) <= MAX_OFFSET * length;
     let volumes = rounded_volumes(e);
     let sum: f64 = volumes.iter().sum();
-    if sum > FLAT * length * length * length
+    if sum > MIN_RELATIVE_VOLUME * length * length * length
         && let Some(w) = shares(volumes).filter(good)
     {
         return w;
     }
-    geometry::weights(x, p).map(sum_to_one).filter(good).unwrap_or_else(|| nearest(e))
+    geometry::weights(x, p).map(sum_to_one).filter(good).unwrap_or_else(|| nearest_on_surface(e))
 }
 
 /// `sum w_i e_i`
@@ -71,7 +71,7 @@ fn sum_to_one(mut w: [f64; 4]) -> [f64; 4] {
 }
 
 /// Weights of the point nearest to the origin on any facet of the tet `e`.
-fn nearest(e: [Point; 4]) -> [f64; 4] {
+fn nearest_on_surface(e: [Point; 4]) -> [f64; 4] {
     let on_facets = tet::FACETS.map(|facet| {
         let on_facet = triangle::closest(facet.map(|i| e[i]), [0.0; 3]);
         let mut w = [0.0; 4];

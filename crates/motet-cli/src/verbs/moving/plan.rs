@@ -162,7 +162,7 @@ impl<'a> Request<'a, '_> {
                 file.display()
             ));
         }
-        let (nodes, moving) = (motion.vertices().to_vec(), motion.told());
+        let (nodes, moving) = (motion.vertices().to_vec(), motion.ordered_to_move());
         let driven = self.driven(&nodes, self.on_interfaces(&moving));
         let (interfaces, unused) = (Vec::new(), 0);
         let (mesh, fixed) = (self.mesh, self.fixed);
@@ -174,7 +174,7 @@ impl<'a> Request<'a, '_> {
         let moved = self.read_surface(file)?;
         let mut motion = self.at_rest(moved.iter().map(|(v, _)| *v));
         motion.go(&moved);
-        let on_interfaces = self.on_interfaces(&motion.told());
+        let on_interfaces = self.on_interfaces(&motion.ordered_to_move());
         Ok(self.in_equal_parts(motion, &on_interfaces))
     }
 

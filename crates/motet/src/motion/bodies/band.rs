@@ -2,7 +2,7 @@
 //! the bit, and a band about one edge wide between the two is sheared.
 //!
 //! For bodies that keep moving (Behr and Tezduyar 1999, *The shear-slip mesh update method*, make such a band
-//! by hand). A share is a ramp of the distance from the body: 1 up to [`CLEAR`] edges, 0 from [`WIDTH`] edges
+//! by hand). A share is a ramp of the distance from the body: 1 up to [`CLEARANCE`] edges, 0 from [`WIDTH`] edges
 //! farther on, both nearer to the body where another wall is near. Distances are found through the mesh, from
 //! vertex to vertex, to the facets near those found for the previous vertex: what lies behind a wall is as
 //! far away as the way around it.
@@ -29,11 +29,11 @@ use crate::geometry::vector::distance;
 use crate::mesh::mean_edge_lengths;
 
 /// How many edges away from the body the band begins.
-const CLEAR: f64 = 0.3;
+const CLEARANCE: f64 = 0.3;
 /// How many edges wide it is.
 const WIDTH: f64 = 1.0;
 /// Where another wall is near, the band begins and ends no farther away than these fractions of the gap.
-const OF_GAP: [f64; 2] = [0.25, 0.85];
+const GAP_FRACTIONS: [f64; 2] = [0.25, 0.85];
 
 /// Walls, and the edges that lead away from them.
 struct Walls<'a> {
@@ -63,10 +63,12 @@ pub(super) fn shares(
     for (b, body) in bodies.iter().enumerate() {
         let is_body = |owner| owner == BODIES + b as u32;
         let is_other = |owner| owner != NOBODY && owner != BODIES + b as u32;
-        let of_body = walls.distances(is_body, (CLEAR + WIDTH) * longest);
+        let of_body = walls.distances(is_body, (CLEARANCE + WIDTH) * longest);
         // A wall across a gap this wide does not change the ramp.
-        let of_others =
-            walls.distances(is_other, ((CLEAR + WIDTH) / OF_GAP[1]).max(CLEAR / OF_GAP[0]) * longest);
+        let of_others = walls.distances(
+            is_other,
+            ((CLEARANCE + WIDTH) / GAP_FRACTIONS[1]).max(CLEARANCE / GAP_FRACTIONS[0]) * longest,
+        );
         let (along_body, along_others) = (walls.reached(is_body), walls.reached(is_other));
         let share = |v: usize| {
             let foot = of_body[v].foot.map_or(v, |facet| walls.facets[facet as usize][0].index());
@@ -88,19 +90,19 @@ pub(super) fn shares(
 /// The share at a distance from the body, given the width of the gap to the next wall and the length of
 /// edges.
 fn ramp(distance: f64, gap: f64, edge: f64) -> f64 {
-    let begin = (CLEAR * edge).min(OF_GAP[0] * gap);
-    let end = ((CLEAR + WIDTH) * edge).min(OF_GAP[1] * gap);
+    let begin = (CLEARANCE * edge).min(GAP_FRACTIONS[0] * gap);
+    let end = ((CLEARANCE + WIDTH) * edge).min(GAP_FRACTIONS[1] * gap);
     if distance < end { ((end - distance) / (end - begin)).min(1.0) } else { 0.0 }
 }
 
 /// Owners of vertices: nobody, a wall of no body, and the bodies from [`BODIES`] on.
 const NOBODY: u32 = 0;
-const A_WALL: u32 = 1;
+const OTHER_WALL: u32 = 1;
 const BODIES: u32 = 2;
 
 /// The distance of a vertex from some walls, and the nearest of their facets.
 #[derive(Clone, Copy, Debug)]
-struct Far {
+struct WallDistance {
     distance: f64,
     foot: Option<u32>,
 }
@@ -108,7 +110,7 @@ struct Far {
 impl<'a> Walls<'a> {
     fn new(bodies: &[Vec<VertexId>], held: &[VertexId], tets: &[[VertexId; 4]], points: &'a [Point]) -> Self {
         let mut owner = vec![NOBODY; points.len()];
-        held.iter().for_each(|v| owner[v.index()] = A_WALL);
+        held.iter().for_each(|v| owner[v.index()] = OTHER_WALL);
         for (b, body) in (BODIES..).zip(bodies) {
             body.iter().for_each(|v| owner[v.index()] = b);
         }
@@ -137,24 +139,24 @@ impl<'a> Walls<'a> {
 
     /// The distance of each vertex that lies on no wall from the walls of some owners (Dijkstra 1959, with
     /// the distance from the nearest facet in place of the length of the way); infinite where every way there
-    /// crosses a wall, and where it is more than `enough` and a step.
-    fn distances(&self, is_source: impl Fn(u32) -> bool, enough: f64) -> Vec<Far> {
-        let mut known = vec![Far { distance: f64::INFINITY, foot: None }; self.points.len()];
+    /// crosses a wall, and where it is more than `max_distance` and a step.
+    fn distances(&self, is_source: impl Fn(u32) -> bool, max_distance: f64) -> Vec<WallDistance> {
+        let mut known = vec![WallDistance { distance: f64::INFINITY, foot: None }; self.points.len()];
         let mut front = BinaryHeap::new();
         for (v, _) in self.owner.iter().enumerate().filter(|(_, owner)| is_source(**owner)) {
             known[v].distance = 0.0;
-            front.push(Reached { distance: 0.0, vertex: v as u32 });
+            front.push(FrontVertex { distance: 0.0, vertex: v as u32 });
         }
-        while let Some(Reached { distance, vertex }) = front.pop() {
+        while let Some(FrontVertex { distance, vertex }) = front.pop() {
             let v = vertex as usize;
-            if distance > known[v].distance || distance > enough {
+            if distance > known[v].distance || distance > max_distance {
                 continue;
             }
             for &u in self.beside.list(v).iter().filter(|&&u| self.owner[u as usize] == NOBODY) {
                 let far = self.near_foot(u as usize, v, known[v].foot);
                 if far.distance < known[u as usize].distance {
                     known[u as usize] = far;
-                    front.push(Reached { distance: far.distance, vertex: u });
+                    front.push(FrontVertex { distance: far.distance, vertex: u });
                 }
             }
         }
@@ -177,37 +179,37 @@ impl<'a> Walls<'a> {
 
     /// The distance of vertex `u` from the facets at the foot of its neighbour `v`; a vertex on the wall is
     /// its own foot.
-    fn near_foot(&self, u: usize, v: usize, foot: Option<u32>) -> Far {
+    fn near_foot(&self, u: usize, v: usize, foot: Option<u32>) -> WallDistance {
         let p = self.points[u];
         let itself = [VertexId::new(v)];
         let corners = foot.map_or(&itself[..], |facet| &self.facets[facet as usize]);
         let facets = corners.iter().flat_map(|corner| self.facets_of.list(corner.index()));
         let far = |&facet: &u32| {
             let corners = self.facets[facet as usize].map(|v| self.points[v.index()]);
-            Far { distance: point_triangle::closest(p, corners).distance(), foot: Some(facet) }
+            WallDistance { distance: point_triangle::closest(p, corners).distance(), foot: Some(facet) }
         };
         // Walls without facets, such as the edge of a sheet, consist of their vertices alone.
-        let vertex = Far { distance: distance(p, self.points[v]), foot: None };
+        let vertex = WallDistance { distance: distance(p, self.points[v]), foot: None };
         facets.map(far).reduce(|a, b| if b.distance < a.distance { b } else { a }).unwrap_or(vertex)
     }
 }
 
 /// A vertex on the front; nearer ones come first.
 #[derive(Clone, Copy, PartialEq)]
-struct Reached {
+struct FrontVertex {
     distance: f64,
     vertex: u32,
 }
 
-impl Eq for Reached {}
+impl Eq for FrontVertex {}
 
-impl PartialOrd for Reached {
+impl PartialOrd for FrontVertex {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Reached {
+impl Ord for FrontVertex {
     fn cmp(&self, other: &Self) -> Ordering {
         other.distance.total_cmp(&self.distance).then(other.vertex.cmp(&self.vertex))
     }
@@ -238,7 +240,7 @@ mod tests {
         let n_between = shares.iter().filter(|s| **s > 0.0 && **s < 1.0).count();
         assert!(n_between > 0 && shares.iter().all(|s| (0.0..=1.0).contains(s)));
         let longest = edges.iter().copied().fold(0.0, f64::max);
-        let is_beyond = |d: f64| d > (CLEAR + WIDTH) * longest;
+        let is_beyond = |d: f64| d > (CLEARANCE + WIDTH) * longest;
         assert!(far.iter().any(|d| is_beyond(*d)));
         assert!(shares.iter().zip(&far).all(|(s, d)| !is_beyond(*d) || *s == 0.0));
     }

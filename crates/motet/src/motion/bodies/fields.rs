@@ -38,9 +38,9 @@ const POWER: f64 = 3.0;
 /// Number of solutions before the final one.
 const ROUNDS: usize = 16;
 /// Relaxation factor between these solutions: a full step oscillates.
-const PART: f64 = 0.25;
+const RELAXATION: f64 = 0.25;
 /// The smallest slope that counts, relative to the mean.
-const LEAST: f64 = 1e-2;
+const MIN_SLOPE: f64 = 1e-2;
 const ROUGH: Tolerance = Tolerance { residual: 1e-3, iterations: 10_000 };
 const FINE: Tolerance = Tolerance { residual: 1e-8, iterations: 10_000 };
 
@@ -81,7 +81,7 @@ impl Fields {
             for (k, body) in three.iter().enumerate() {
                 body.iter().for_each(|&n| on_driven[n as usize][k] = 1.0);
             }
-            let all = nodes.at_feet(&on_driven);
+            let all = nodes.extended_to_layer(&on_driven);
             held.iter().map(|&n| all[n as usize]).collect()
         };
         let at = |n: &u32| points[nodes.vertices[*n as usize].index()];
@@ -163,7 +163,7 @@ impl Domain<'_> {
                     tolerance,
                     self.threads,
                 )?;
-                let part = if round == 0 || round == ROUNDS { 1.0 } else { PART };
+                let part = if round == 0 || round == ROUNDS { 1.0 } else { RELAXATION };
                 shares
                     .iter_mut()
                     .zip(new)
@@ -171,11 +171,11 @@ impl Domain<'_> {
             }
             let slopes = self.threads.map(self.tets.len(), |t| self.slope_squared(t, &shares, turn));
             let mean = slopes.iter().map(|s| s.sqrt()).sum::<f64>() / slopes.len().max(1) as f64;
-            let least = (LEAST * mean).powi(2);
+            let min_slope = (MIN_SLOPE * mean).powi(2);
             conductivities = stiffness
                 .iter()
                 .zip(slopes)
-                .map(|(k, s)| k * (s.max(least) / (mean * mean)).powf(POWER))
+                .map(|(k, s)| k * (s.max(min_slope) / (mean * mean)).powf(POWER))
                 .collect();
         }
         Ok(shares)

@@ -26,21 +26,21 @@ use crate::geometry::vector::{add, distance, norm, sub};
 use crate::mesh::{Boundary, Mesh, bounds};
 use crate::motion::bodies::fields::Fields;
 use crate::motion::bodies::rigid::Rigid;
+use crate::motion::graph_map::GraphMap;
 use crate::motion::interface::for_each_wall_facet;
 use crate::motion::nodes::Nodes;
 use crate::motion::options::{FacetSet, Strain};
-use crate::motion::spread::Spread;
-use crate::motion::update::{Displacements, Padded, Update};
+use crate::motion::update::{Displacements, Padded, WeightTable};
 
 /// Shares of all bodies at every vertex, and the graph for the rest of the motion.
 #[derive(Debug)]
-pub(crate) struct Bodies {
+pub(crate) struct RigidBodies {
     /// The nodes of each body.
     nodes: Vec<Vec<u32>>,
     /// The vertex of each node.
     vertices: Vec<VertexId>,
     fields: Fields,
-    graph: Spread,
+    graph: GraphMap,
 }
 
 /// A body moves rigidly when its vertices end within this fraction of the largest displacement of where the
@@ -50,7 +50,7 @@ const ROUNDING: f64 = 1e-13;
 /// Vertices per chunk.
 const CHUNK: usize = 1 << 12;
 
-impl Bodies {
+impl RigidBodies {
     /// Computes the shares on a mesh whose cells have the corners `tets`, with its vertices at `points`.
     /// `free` are the vertices that follow.
     ///
@@ -61,7 +61,7 @@ impl Bodies {
         tets: &[[VertexId; 4]],
         points: &[Point],
         (free, nodes): (&[VertexId], &Nodes),
-        graph: Spread,
+        graph: GraphMap,
         threads: &Threads,
     ) -> Result<Self> {
         let node = |v: &VertexId| nodes.vertices[..nodes.n_driven].binary_search(v).ok().map(|i| i as u32);
@@ -74,24 +74,24 @@ impl Bodies {
     }
 
     /// The graph for the motion that no body carries.
-    pub(crate) fn graph(&self) -> &Update {
-        &self.graph.update
+    pub(crate) fn graph(&self) -> &WeightTable {
+        &self.graph.table
     }
 
     /// Moves the vertices of `out`, which begin with vertex `first`, along with the bodies.
-    fn carry(&self, motions: &[Rigid], from: &[Point], first: usize, out: &mut [Point]) {
+    fn move_along(&self, motions: &[Rigid], from: &[Point], first: usize, out: &mut [Point]) {
         let fields = &self.fields;
         #[cfg(target_arch = "x86_64")]
         if let Some(machine) = pulp::x86::V3::try_new() {
-            return machine.vectorize(Carry::<Wide> { machine, motions, fields, from, first, out });
+            return machine.vectorize(MoveAlong::<Wide> { machine, motions, fields, from, first, out });
         }
-        Carry::<Plain> { machine: (), motions, fields, from, first, out }.call();
+        MoveAlong::<Plain> { machine: (), motions, fields, from, first, out }.call();
     }
 
     /// Moves all vertices from their positions `from`; returns the number of iterations for the graph.
     ///
     /// # Errors
-    /// Those of [`Spread::apply`].
+    /// Those of [`GraphMap::apply`].
     pub(crate) fn apply(
         &self,
         from: &[Point],
@@ -110,7 +110,8 @@ impl Bodies {
             })
             .collect();
         let chunks = out.chunks_mut(CHUNK).enumerate().collect();
-        threads.each(chunks, |(i, out): (usize, &mut [Point])| self.carry(&motions, from, i * CHUNK, out));
+        threads
+            .each(chunks, |(i, out): (usize, &mut [Point])| self.move_along(&motions, from, i * CHUNK, out));
         let places = self.vertices.iter().zip(&*table);
         let rest = places.map(|(v, d)| sub(add(from[v.index()], d.point()), out[v.index()]));
         let rest: Vec<Padded> = rest.map(Padded::new).collect();
@@ -129,7 +130,7 @@ impl Bodies {
 }
 
 /// Moves consecutive vertices, beginning with `first`, along with the bodies.
-struct Carry<'a, F: FourLanes> {
+struct MoveAlong<'a, F: FourLanes> {
     machine: F::Machine,
     motions: &'a [Rigid],
     fields: &'a Fields,
@@ -138,7 +139,7 @@ struct Carry<'a, F: FourLanes> {
     out: &'a mut [Point],
 }
 
-impl<F: FourLanes> NullaryFnOnce for Carry<'_, F> {
+impl<F: FourLanes> NullaryFnOnce for MoveAlong<'_, F> {
     type Output = ();
 
     /// Four vertices at a time, the last group filled up by repeating a vertex: this takes 0.35 of the time
@@ -161,7 +162,7 @@ impl<F: FourLanes> NullaryFnOnce for Carry<'_, F> {
                 let of = |k: usize| fields.of(vertex(k))[b];
                 let [p0, p1, p2, p3] = [of(0), of(1), of(2), of(3)];
                 let shares = [[p0[0], p1[0], p2[0], p3[0]], [p0[1], p1[1], p2[1], p3[1]]];
-                let change = motion.change::<F>(machine, p, shares);
+                let change = motion.displacement::<F>(machine, p, shares);
                 moved = [moved[0] + change[0], moved[1] + change[1], moved[2] + change[2]];
             }
             let [x, y, z] = [moved[0].stored(), moved[1].stored(), moved[2].stored()];
@@ -181,7 +182,7 @@ impl<F: FourLanes> NullaryFnOnce for Carry<'_, F> {
 /// # Errors
 /// When a set has fewer than three vertices, has one that is not driven, or shares one with another set; when
 /// the walls are all in one piece.
-pub(crate) fn vertices(
+pub(crate) fn body_vertices(
     sets: &[FacetSet],
     mesh: &Mesh,
     boundary: &Boundary,

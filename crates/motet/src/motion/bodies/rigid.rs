@@ -14,14 +14,14 @@ pub(super) struct Rigid {
     axis: Point,
     /// Half the angle of rotation, which is from 0 to pi.
     half_angle: f64,
-    /// Sine and cosine of `k / PARTS` of the half angle, for each `k` up to [`PARTS`]; empty where nothing
+    /// Sine and cosine of `k / TABLE_SIZE` of the half angle, for each `k` up to [`TABLE_SIZE`]; empty where nothing
     /// rotates.
-    parts: Vec<[f64; 2]>,
+    angle_table: Vec<[f64; 2]>,
 }
 
 /// Size of the table of angles. With it, a step of 32,000 vertices takes 0.5 of the time that it takes with a
 /// sine and a cosine for each vertex.
-const PARTS: usize = 512;
+const TABLE_SIZE: usize = 512;
 
 impl Rigid {
     /// The motion that [fits best](geometry::rigid::Rigid::fit); the identity, to the bit, where all points
@@ -29,16 +29,16 @@ impl Rigid {
     pub(super) fn fit(pairs: &[(Point, Point)]) -> Self {
         let geometry::rigid::Rigid { centres, axis, half_angle } = geometry::rigid::Rigid::fit(pairs);
         let part = |k: usize| {
-            let (sine, cosine) = (half_angle * k as f64 / PARTS as f64).sin_cos();
+            let (sine, cosine) = (half_angle * k as f64 / TABLE_SIZE as f64).sin_cos();
             [sine, cosine]
         };
-        let parts = if half_angle > 0.0 { (0..=PARTS).map(part).collect() } else { Vec::new() };
-        Self { centre: centres[0], shift: sub(centres[1], centres[0]), axis, half_angle, parts }
+        let angle_table = if half_angle > 0.0 { (0..=TABLE_SIZE).map(part).collect() } else { Vec::new() };
+        Self { centre: centres[0], shift: sub(centres[1], centres[0]), axis, half_angle, angle_table }
     }
 
     /// The displacements of four points with these shares of translation and rotation.
     #[inline(always)]
-    pub(super) fn change<F: FourLanes>(
+    pub(super) fn displacement<F: FourLanes>(
         &self,
         machine: F::Machine,
         p: FourVectors<F>,
@@ -47,19 +47,19 @@ impl Rigid {
         let splat = |x: f64| F::splat(machine, x);
         let by = F::load(machine, &shift);
         let shifted = [splat(self.shift[0]) * by, splat(self.shift[1]) * by, splat(self.shift[2]) * by];
-        if self.parts.is_empty() {
+        if self.angle_table.is_empty() {
             return shifted;
         }
         let (mut sines, mut cosines, mut rests) = ([0.0; 4], [0.0; 4], [0.0; 4]);
         for i in 0..4 {
-            let at = turn[i] * PARTS as f64;
-            let k = (at as usize).min(PARTS);
-            [sines[i], cosines[i]] = self.parts[k];
+            let at = turn[i] * TABLE_SIZE as f64;
+            let k = (at as usize).min(TABLE_SIZE);
+            [sines[i], cosines[i]] = self.angle_table[k];
             rests[i] = at - k as f64;
         }
         let (sine, cosine) = (F::load(machine, &sines), F::load(machine, &cosines));
         // The rest of the angle is below pi / 1024: the truncation error of the series is below 1e-17.
-        let rest = F::load(machine, &rests) * splat(self.half_angle / PARTS as f64);
+        let rest = F::load(machine, &rests) * splat(self.half_angle / TABLE_SIZE as f64);
         let square = rest * rest;
         let small_sine =
             rest * (splat(1.0) - square * splat(1.0 / 6.0) * (splat(1.0) - square * splat(0.05)));
@@ -89,9 +89,9 @@ mod tests {
         (0..20).map(|i| f64::from(i) * 0.7).map(|t| [t.sin() + 3.0, (2.0 * t).cos(), 0.2 * t]).collect()
     }
 
-    fn change(rigid: &Rigid, p: Point, [shift, turn]: [f64; 2]) -> Point {
+    fn displacement(rigid: &Rigid, p: Point, [shift, turn]: [f64; 2]) -> Point {
         let four = p.map(|x| Plain::splat((), x));
-        rigid.change((), four, [[shift; 4], [turn; 4]]).map(|x| x.stored()[2])
+        rigid.displacement((), four, [[shift; 4], [turn; 4]]).map(|x| x.stored()[2])
     }
 
     fn fitted(turn: &Prescribed, shift: Point) -> Rigid {
@@ -111,12 +111,15 @@ mod tests {
                     let own =
                         Prescribed::Turn { axis, angle: part * f64::to_radians(degrees), centre: middle };
                     let expected = sub(own.apply(p, 1.0), p);
-                    assert!(distance(change(&rigid, p, [0.0, part]), expected) < 1e-13, "{degrees} {part}");
+                    assert!(
+                        distance(displacement(&rigid, p, [0.0, part]), expected) < 1e-13,
+                        "{degrees} {part}"
+                    );
                 }
             }
             for p in points() {
                 let expected = sub(add(turn(1.0).apply(p, 1.0), shift), p);
-                assert!(distance(change(&rigid, p, [1.0, 1.0]), expected) < 1e-13, "{degrees}");
+                assert!(distance(displacement(&rigid, p, [1.0, 1.0]), expected) < 1e-13, "{degrees}");
             }
         }
     }
@@ -124,7 +127,7 @@ mod tests {
     #[test]
     fn what_stays_stays_to_the_bit() {
         let rigid = Rigid::fit(&points().into_iter().map(|p| (p, p)).collect::<Vec<_>>());
-        assert!(points().into_iter().all(|p| change(&rigid, p, [0.4, 0.7]) == [0.0; 3]));
-        assert!(rigid.parts.is_empty());
+        assert!(points().into_iter().all(|p| displacement(&rigid, p, [0.4, 0.7]) == [0.0; 3]));
+        assert!(rigid.angle_table.is_empty());
     }
 }

@@ -15,7 +15,7 @@ use crate::motion::update::Displacements;
 
 /// The corners of the boundary, set up for one position of the mesh.
 #[derive(Debug)]
-pub(crate) struct Inverse {
+pub(crate) struct InverseDistance {
     wall: Wall,
     /// The node and the position of each corner, and a third of the area of its facets.
     corners: Vec<Corner>,
@@ -35,7 +35,7 @@ struct Corner {
 /// The near part of the weight begins at this fraction of the extent.
 const NEAR: f64 = 0.25;
 
-impl Inverse {
+impl InverseDistance {
     pub(crate) fn new(facets: &FacetSet, nodes: &[VertexId], free: &[VertexId], points: &[Point]) -> Self {
         let mut node_of = vec![None; points.len()];
         (0u32..).zip(nodes).for_each(|(i, v)| node_of[v.index()] = Some(i));

@@ -3,5 +3,5 @@
 mod inverse;
 mod radial;
 
-pub(crate) use inverse::Inverse;
+pub(crate) use inverse::InverseDistance;
 pub(crate) use radial::Radial;

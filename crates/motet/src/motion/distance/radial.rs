@@ -19,12 +19,12 @@ pub(crate) struct Radial {
 }
 
 /// Centres added at once.
-const BATCH: usize = 8;
+const CENTRES_PER_ROUND: usize = 8;
 /// Maximum number of centres: the work grows with its square, and overlapping supports couple their
 /// equations.
-const MOST: usize = 1000;
+const MAX_CENTRES: usize = 1000;
 /// Error allowed on the boundary, relative to the largest displacement.
-const OFF: f64 = 1e-3;
+const MAX_ERROR: f64 = 1e-3;
 
 /// Centres, and the Cholesky factor of their matrix, row by row.
 #[derive(Default)]
@@ -32,7 +32,7 @@ struct Centres {
     nodes: Vec<usize>,
     rows: Vec<Vec<f64>>,
     /// The displacements after forward substitution.
-    halves: Vec<Point>,
+    half_solved: Vec<Point>,
 }
 
 impl Radial {
@@ -66,11 +66,11 @@ impl Radial {
             let off = threads.map(places.len(), |i| {
                 norm(sub(wanted[i], self.sum(places[i], &centres, &places, &weights)))
             });
-            let mut order: Vec<usize> = (0..off.len()).filter(|&i| off[i] > OFF * largest).collect();
+            let mut order: Vec<usize> = (0..off.len()).filter(|&i| off[i] > MAX_ERROR * largest).collect();
             order.sort_by(|&i, &j| off[j].total_cmp(&off[i]).then(i.cmp(&j)));
             let before = centres.nodes.len();
             for &i in &order {
-                if centres.nodes.len() < (before + BATCH).min(MOST) {
+                if centres.nodes.len() < (before + CENTRES_PER_ROUND).min(MAX_CENTRES) {
                     centres.add(i, wanted[i], |j| self.phi(places[i], places[j]));
                 }
             }
@@ -105,21 +105,21 @@ impl Centres {
             let known: f64 = row.iter().zip(other).map(|(a, b)| a * b).sum();
             row.push((phi(c) - known) / other[row.len()]);
         }
-        let own = 1.0 - row.iter().map(|x| x * x).sum::<f64>();
-        if own < 1e-12 {
+        let pivot = 1.0 - row.iter().map(|x| x * x).sum::<f64>();
+        if pivot < 1e-12 {
             return;
         }
-        let known = row.iter().zip(&self.halves).fold([0.0; 3], |s, (x, h)| add(s, scale(*h, *x)));
-        let own = own.sqrt();
-        self.halves.push(scale(sub(wanted, known), 1.0 / own));
-        row.push(own);
+        let known = row.iter().zip(&self.half_solved).fold([0.0; 3], |s, (x, h)| add(s, scale(*h, *x)));
+        let pivot = pivot.sqrt();
+        self.half_solved.push(scale(sub(wanted, known), 1.0 / pivot));
+        row.push(pivot);
         self.rows.push(row);
         self.nodes.push(node);
     }
 
     /// Backward substitution: the weights of the centres.
     fn solved(&self) -> Vec<Point> {
-        let mut solved = self.halves.clone();
+        let mut solved = self.half_solved.clone();
         for i in (0..solved.len()).rev() {
             solved[i] = scale(solved[i], 1.0 / self.rows[i][i]);
             for j in 0..i {

@@ -15,7 +15,12 @@ pub(crate) struct Helpers {
 
 /// Chooses vertices of `free`, in a pseudorandom order, none of which is within `rings` edges of another or
 /// next to a vertex that is not free.
-pub(crate) fn choose(tets: &[[VertexId; 4]], points: &[Point], free: &[VertexId], rings: usize) -> Helpers {
+pub(crate) fn choose_helpers(
+    tets: &[[VertexId; 4]],
+    points: &[Point],
+    free: &[VertexId],
+    rings: usize,
+) -> Helpers {
     let edges = || {
         tets.iter().flat_map(|tet| {
             (0..4).flat_map(move |i| (0..4).filter(move |j| *j != i).map(move |j| (tet[i].index(), tet[j].0)))
@@ -35,7 +40,7 @@ pub(crate) fn choose(tets: &[[VertexId; 4]], points: &[Point], free: &[VertexId]
         !near.is_empty() && near.iter().all(|&n| is_free[n as usize])
     };
     let mut order: Vec<u32> = free.iter().map(|v| v.0).filter(|&v| is_inner(v as usize)).collect();
-    order.sort_by_key(|&v| (scattered(v), v));
+    order.sort_by_key(|&v| (hashed(v), v));
     // Which vertices are near a helper, and the last search that reached each vertex.
     let (mut is_near, mut seen) = (vec![false; points.len()], vec![u32::MAX; points.len()]);
     let mut vertices = Vec::new();
@@ -66,7 +71,7 @@ pub(crate) fn choose(tets: &[[VertexId; 4]], points: &[Point], free: &[VertexId]
 
 /// A pseudorandom number for a vertex, unrelated to those of its neighbours (the finaliser of MurmurHash3,
 /// Appleby 2011).
-fn scattered(v: u32) -> u32 {
+fn hashed(v: u32) -> u32 {
     let v = (v ^ (v >> 16)).wrapping_mul(0x85eb_ca6b);
     let v = (v ^ (v >> 13)).wrapping_mul(0xc2b2_ae35);
     v ^ (v >> 16)

@@ -17,35 +17,35 @@
 //!
 //! All of it starts from the reference: a step depends on where the boundary is, not on how it got there.
 
+mod affine_blend;
 mod helpers;
-mod lift;
 
 use crate::algebra::{Tolerance, conjugate_gradients};
 use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 use crate::motion::graph::Graph;
-use crate::motion::guided::lift::{Affine, Lift};
+use crate::motion::guided::affine_blend::{Affine, AffineBlend};
 use crate::motion::nodes::Nodes;
 use crate::motion::options::FacetSet;
 use crate::motion::rotation::{Quaternion, Wall};
 use crate::motion::solve::{Numbering, System, gradients, laplacian};
-use crate::motion::update::{Displacements, Update};
+use crate::motion::update::{Displacements, WeightTable};
 
-pub(crate) use helpers::{Helpers, choose};
+pub(crate) use helpers::{Helpers, choose_helpers};
 
 /// The tolerance of a step, far below what affects cells.
-const SOLVED: Tolerance = Tolerance { residual: 1e-9, iterations: 10_000 };
+const STEP_TOLERANCE: Tolerance = Tolerance { residual: 1e-9, iterations: 10_000 };
 /// Small tets are stiff: the power of the edge length in the stiffness for displacements. Powers of -2 to
 /// -3.5 were tried on a sphere that shifts and turns and on a flap that bends: weaker than -2.25, the flap's
 /// tip inverts cells; stronger than -2.5, the shifted sphere does.
-const STIFF: f64 = -2.25;
+const STIFFNESS_EXPONENT: f64 = -2.25;
 /// The power of the edge length in the stiffness for rotations. With -2 the rotated sphere leaves a tenth
 /// more bad tets.
-const STIFF_TO_TURN: f64 = -1.0;
+const ROTATION_STIFFNESS_EXPONENT: f64 = -1.0;
 /// Tets of the graph count from this volume on, relative to the cube of their longest edge: gradients of
 /// flatter ones are meaningless.
-const FLAT: f64 = 1e-9;
+const MIN_RELATIVE_VOLUME: f64 = 1e-9;
 
 const NO_ROW: u32 = u32::MAX;
 
@@ -71,9 +71,9 @@ pub(crate) struct Guided {
     /// The tets that have a helper, and the numbers of their nodes in the system.
     inner: Vec<u32>,
     inner_numbers: Vec<[u32; 4]>,
-    turn: System<f64>,
-    place: System<f64>,
-    lift: Lift,
+    rotation_system: System<f64>,
+    position_system: System<f64>,
+    blend: AffineBlend,
 }
 
 /// A tet of the graph that is not flat.
@@ -88,14 +88,14 @@ struct GraphTet {
 }
 
 impl Guided {
-    /// Sets up a graph whose nodes are the given ones, the helpers, and others that it needed; `update` holds
+    /// Sets up a graph whose nodes are the given ones, the helpers, and others that it needed; `table` holds
     /// the nodes and weights of each vertex.
     ///
     /// # Errors
     /// When a system cannot be set up.
     pub(crate) fn new(
         Graph { places, tets }: Graph,
-        update: Update,
+        table: WeightTable,
         (nodes, helpers): (&Nodes, &Helpers),
         facets: &FacetSet,
         points: &[Point],
@@ -103,20 +103,25 @@ impl Guided {
         let n_given = nodes.of_graph.len();
         let given = nodes.of_graph.iter().map(|&n| nodes.vertices[n as usize]);
         let known = given.chain(helpers.vertices.iter().copied()).map(|v| helpers.lengths[v.index()]);
-        let length = with_others(known.collect(), &tets, places.len());
+        let length = fill_unknown_lengths(known.collect(), &tets, places.len());
         let mean = |tet: &[u32; 4], power: f64| {
             0.25 * tet.iter().map(|&n| length[n as usize].powf(power)).sum::<f64>()
         };
         let mut kept = Vec::new();
-        let mut turn_stiffness = Vec::new();
+        let mut rotation_stiffness = Vec::new();
         for tet in &tets {
             let corners = tet.map(|n| places[n as usize]);
             let longest = EDGES.iter().map(|&[i, j]| distance(corners[i], corners[j])).fold(0.0, f64::max);
             let Some((gradients, volume)) = gradients(corners) else { continue };
             let weight = volume / (longest * longest * longest);
-            if weight > FLAT {
-                turn_stiffness.push(volume * mean(tet, STIFF_TO_TURN));
-                kept.push(GraphTet { nodes: *tet, gradients, stiffness: volume * mean(tet, STIFF), weight });
+            if weight > MIN_RELATIVE_VOLUME {
+                rotation_stiffness.push(volume * mean(tet, ROTATION_STIFFNESS_EXPONENT));
+                kept.push(GraphTet {
+                    nodes: *tet,
+                    gradients,
+                    stiffness: volume * mean(tet, STIFFNESS_EXPONENT),
+                    weight,
+                });
             }
         }
         let all = places.len();
@@ -161,23 +166,25 @@ impl Guided {
         let every: Vec<u32> = (0..kept.len() as u32).collect();
         let has_helper = |t: &u32| kept[*t as usize].nodes.iter().any(|n| *n as usize >= n_given);
         let inner: Vec<u32> = every.iter().copied().filter(has_helper).collect();
-        let (turn, _) = system(&every, (&ids(&off_wall), &ids(&on_wall)), &|t| turn_stiffness[t])?;
-        let (place, inner_numbers) = system(&inner, (&ids(&rows), &ids(&fixed)), &|t| kept[t].stiffness)?;
+        let (rotation_system, _) =
+            system(&every, (&ids(&off_wall), &ids(&on_wall)), &|t| rotation_stiffness[t])?;
+        let (position_system, inner_numbers) =
+            system(&inner, (&ids(&rows), &ids(&fixed)), &|t| kept[t].stiffness)?;
         Ok(Self {
             vertices: nodes.vertices.clone(),
             of_graph: nodes.of_graph.clone(),
             row_of,
-            flat: companions(&without, &tets),
+            flat: neighbours_in_tets(&without, &tets),
             wall: Wall::new(&wall_points, triangles),
             wall_nodes,
             off_wall,
             on_wall,
-            lift: Lift::new(update, &kept, all),
+            blend: AffineBlend::new(table, &kept, all),
             tets: kept,
             inner,
             inner_numbers,
-            turn,
-            place,
+            rotation_system,
+            position_system,
             places,
         })
     }
@@ -195,11 +202,11 @@ impl Guided {
     ) -> Result<usize> {
         let table = displacements.table();
         let mut moved: Vec<Point> = self.of_graph.iter().map(|&n| table[n as usize].point()).collect();
-        let (turns, iterations) = self.turns(&moved, threads)?;
+        let (rotation_vectors, iterations) = self.rotation_vectors(&moved, threads)?;
         let guides: Vec<Guide> = (self.inner.iter())
             .map(|&t| {
                 let tet = &self.tets[t as usize];
-                let mean = tet.nodes.iter().fold([0.0; 3], |sum, &n| add(sum, turns[n as usize]));
+                let mean = tet.nodes.iter().fold([0.0; 3], |sum, &n| add(sum, rotation_vectors[n as usize]));
                 Guide { rotation: rotation(scale(mean, 0.25)), stiffness: tet.stiffness }
             })
             .collect();
@@ -208,7 +215,7 @@ impl Guided {
         // Nodes without a row are numbered as given ones, but no tet couples them.
         let mut given = moved.clone();
         given.resize(n_given + self.flat.len(), [0.0; 3]);
-        let first = self.solve(&self.place, &guides, &given, &mut inner, threads)?;
+        let first = self.solve(&self.position_system, &guides, &given, &mut inner, threads)?;
         self.extend(&mut moved, &inner);
         // Once more: towards the resulting rotations, and with compressed tets stiffer.
         let guides = threads.map(guides.len(), |i| {
@@ -216,10 +223,10 @@ impl Guided {
             let gradient = deformation(tet, &moved);
             Guide {
                 rotation: nearest_rotation(gradient, guides[i].rotation),
-                stiffness: tet.stiffness * squeezed(gradient),
+                stiffness: tet.stiffness * stiffening(gradient),
             }
         });
-        let mut stiffer = self.place.clone();
+        let mut stiffer = self.position_system.clone();
         stiffer.fill(&self.inner_numbers, |i| {
             laplacian(&self.tets[self.inner[i] as usize].gradients, guides[i].stiffness)
         })?;
@@ -227,7 +234,7 @@ impl Guided {
         moved.truncate(n_given);
         self.extend(&mut moved, &inner);
         let maps = self.affine(&moved);
-        self.lift.apply(&self.places, from, &maps, out, threads);
+        self.blend.apply(&self.places, from, &maps, out, threads);
         for (v, d) in self.vertices.iter().zip(&*table) {
             out[v.index()] = add(from[v.index()], d.point());
         }
@@ -265,29 +272,36 @@ impl Guided {
                 }
             }
         }
-        let solved = conjugate_gradients(&system.inner, &system.sweeps, &right, inner, SOLVED, threads)?;
+        let solved =
+            conjugate_gradients(&system.inner, &system.sweeps, &right, inner, STEP_TOLERANCE, threads)?;
         Ok(solved.iterations)
     }
 
     /// The rotation vector of every node, and the number of iterations.
-    fn turns(&self, moved: &[Point], threads: &Threads) -> Result<(Vec<Point>, usize)> {
+    fn rotation_vectors(&self, moved: &[Point], threads: &Threads) -> Result<(Vec<Point>, usize)> {
         let of_wall = |v: u32| {
             let node = self.wall_nodes[v as usize];
             moved.get(node as usize).copied().unwrap_or_default()
         };
         let rotations = self.wall.rotations(of_wall, threads);
-        let mut turns = vec![[0.0; 3]; self.places.len()];
+        let mut rotation_vectors = vec![[0.0; 3]; self.places.len()];
         for (&node, q) in self.wall_nodes.iter().zip(&rotations).filter(|(node, _)| **node != u32::MAX) {
-            turns[node as usize] = rotation_vector(*q);
+            rotation_vectors[node as usize] = rotation_vector(*q);
         }
-        let given: Vec<Point> = self.on_wall.iter().map(|&n| turns[n as usize]).collect();
-        let mut right = self.turn.coupling.times(&given, threads);
+        let given: Vec<Point> = self.on_wall.iter().map(|&n| rotation_vectors[n as usize]).collect();
+        let mut right = self.rotation_system.coupling.times(&given, threads);
         right.iter_mut().for_each(|f| *f = f.map(|x| -x));
         let mut inner = vec![[0.0; 3]; self.off_wall.len()];
-        let solved =
-            conjugate_gradients(&self.turn.inner, &self.turn.sweeps, &right, &mut inner, SOLVED, threads)?;
-        self.off_wall.iter().zip(inner).for_each(|(&n, turn)| turns[n as usize] = turn);
-        Ok((turns, solved.iterations))
+        let solved = conjugate_gradients(
+            &self.rotation_system.inner,
+            &self.rotation_system.sweeps,
+            &right,
+            &mut inner,
+            STEP_TOLERANCE,
+            threads,
+        )?;
+        self.off_wall.iter().zip(inner).for_each(|(&n, vector)| rotation_vectors[n as usize] = vector);
+        Ok((rotation_vectors, solved.iterations))
     }
 
     /// The affine map of every node: its displacement there, and half the mean gradient of the displacement in its tets.
@@ -305,12 +319,12 @@ impl Guided {
                 (0..3).for_each(|j| sum[j] = add(sum[j], gradient[j]));
             }
         }
-        self.lift.affine(&self.places, moved, &sums)
+        self.blend.affine(&self.places, moved, &sums)
     }
 }
 
 /// Each of `nodes` with the other nodes that it shares tets with.
-fn companions(nodes: &[u32], tets: &[[u32; 4]]) -> Vec<(u32, Vec<u32>)> {
+fn neighbours_in_tets(nodes: &[u32], tets: &[[u32; 4]]) -> Vec<(u32, Vec<u32>)> {
     let of = |&node: &u32| {
         let tets = tets.iter().filter(|tet| tet.contains(&node));
         let mut near: Vec<u32> =
@@ -323,7 +337,7 @@ fn companions(nodes: &[u32], tets: &[[u32; 4]]) -> Vec<(u32, Vec<u32>)> {
 }
 
 /// The length at every node: a node of unknown length gets the mean of those that it shares tets with.
-fn with_others(mut lengths: Vec<f64>, tets: &[[u32; 4]], n: usize) -> Vec<f64> {
+fn fill_unknown_lengths(mut lengths: Vec<f64>, tets: &[[u32; 4]], n: usize) -> Vec<f64> {
     lengths.resize(n, 0.0);
     let is_known: Vec<bool> = lengths.iter().map(|&length| length > 0.0).collect();
     let mut sums = vec![(0.0, 0.0); n];
@@ -409,7 +423,7 @@ fn nearest_rotation(matrix: Matrix, mut from: Matrix) -> Matrix {
 
 /// The factor by which a tet becomes stiffer: the mean stretch of the inverse, 1 for a tet that keeps its
 /// shape; at least 1, at most 20.
-fn squeezed([a, b, c]: Matrix) -> f64 {
+fn stiffening([a, b, c]: Matrix) -> f64 {
     let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
     let size = (cofactors.iter().map(|v| dot(*v, *v)).sum::<f64>() / 3.0).sqrt();
     let volume = dot(a, cofactors[0]);

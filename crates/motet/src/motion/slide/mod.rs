@@ -15,24 +15,24 @@
 //! it. A motion in sub-steps therefore triangulates the planes anew at each sub-step, as it does the graph in
 //! space.
 
-mod freedom;
+mod constraints;
 mod plane;
 mod report;
 
 use crate::base::{Error, Point, Result, Threads, VertexId, rising_list};
 use crate::geometry::vector::{add, dot, scale, sub};
-use crate::motion::graph::{hang, triangulate};
-use crate::motion::slide::freedom::{Flat, Held};
+use crate::motion::graph::{embed, triangulate};
+use crate::motion::slide::constraints::{Constraint, PatchPlane};
 use crate::motion::update::Padded;
 
-pub(crate) use freedom::Freedom;
+pub(crate) use constraints::SlidingConstraints;
 pub use report::{LeavesPlane, SlidingPlane};
-pub(crate) use report::{Rim, leaving};
+pub(crate) use report::{Rim, worst_departure};
 
 /// The sliding vertices of one plane or line.
 #[derive(Debug)]
 pub(crate) struct Slide {
-    way: Way,
+    directions: SlideDirections,
     /// Nodes of the sliding vertices.
     pub(crate) sliding: Vec<u32>,
     /// For each of these, the nodes that it follows and their weights.
@@ -41,7 +41,7 @@ pub(crate) struct Slide {
 
 /// The directions in which sliding vertices can move.
 #[derive(Clone, Copy, Debug)]
-enum Way {
+enum SlideDirections {
     /// At right angles to this unit vector.
     Plane(Point),
     /// Along this unit vector.
@@ -63,25 +63,25 @@ impl Slide {
     /// When the vertices of a plane have fewer than three to follow, or all of these lie on a line.
     pub(crate) fn new(
         points: &[Point],
-        flats: &[Flat],
-        held: &Held,
+        patch_planes: &[PatchPlane],
+        constraint: &Constraint,
         is_sliding: impl Fn(VertexId) -> bool,
         node: impl Fn(VertexId) -> u32,
         threads: &Threads,
     ) -> Result<Self> {
         let (sliding, fixed): (Vec<VertexId>, Vec<VertexId>) =
-            held.free.iter().copied().partition(|&v| is_sliding(v));
-        let flat = &flats[held.planes[0] as usize];
-        let (way, follows) = match held.along {
+            constraint.free.iter().copied().partition(|&v| is_sliding(v));
+        let flat = &patch_planes[constraint.planes[0] as usize];
+        let (directions, follows) = match constraint.along {
             Some(along) => {
-                let sources: Vec<VertexId> = held.anchors.iter().chain(&fixed).copied().collect();
-                (Way::Line(along), on_line(points, along, &sources, &sliding))
+                let sources: Vec<VertexId> = constraint.anchors.iter().chain(&fixed).copied().collect();
+                (SlideDirections::Line(along), on_line(points, along, &sources, &sliding))
             }
-            None => (Way::Plane(flat.plane.normal), in_plane(points, flat, &sliding, threads)?),
+            None => (SlideDirections::Plane(flat.plane.normal), in_plane(points, flat, &sliding, threads)?),
         };
         let nodes = |(of, weights): ([VertexId; 4], [f64; 4])| (of.map(&node), weights);
         Ok(Self {
-            way,
+            directions,
             sliding: sliding.iter().map(|&v| node(v)).collect(),
             follows: follows.into_iter().map(nodes).collect(),
         })
@@ -92,10 +92,10 @@ impl Slide {
     }
 
     /// The component of a displacement out of the plane, or off the line.
-    pub(crate) fn outward(&self, d: Point) -> Point {
-        match self.way {
-            Way::Plane(normal) => scale(normal, dot(d, normal)),
-            Way::Line(along) => sub(d, scale(along, dot(d, along))),
+    pub(crate) fn normal_component(&self, d: Point) -> Point {
+        match self.directions {
+            SlideDirections::Plane(normal) => scale(normal, dot(d, normal)),
+            SlideDirections::Line(along) => sub(d, scale(along, dot(d, along))),
         }
     }
 
@@ -116,7 +116,7 @@ impl Slide {
 /// What each of `sliding` follows: a triangle of the Delaunay triangulation of the other vertices in the plane.
 fn in_plane(
     points: &[Point],
-    Flat { set, plane }: &Flat,
+    PatchPlane { set, plane }: &PatchPlane,
     sliding: &[VertexId],
     threads: &Threads,
 ) -> Result<Vec<([VertexId; 4], [f64; 4])>> {
@@ -134,12 +134,12 @@ fn in_plane(
         ))
         .at(format!("sliding patch {}", set.name))
     })?;
-    let hanging = hang(&graph, &flat, threads);
+    let embedding = embed(&graph, &flat, threads);
     // The node above the plane has no weight for a point in it; any node can take its place.
     let vertex = |i: u32| sources.get(i as usize).copied().unwrap_or(sources[0]);
     let above = sources.len() as u32;
-    let follows = hanging.tet.iter().zip(&hanging.weights).map(|(&tet, weights)| {
-        let tet = hanging.tets[tet as usize];
+    let follows = embedding.tet.iter().zip(&embedding.weights).map(|(&tet, weights)| {
+        let tet = embedding.tets[tet as usize];
         let mut weights = *weights;
         (0..4).filter(|&i| tet[i] == above).for_each(|i| weights[i] = 0.0);
         (tet.map(vertex), weights)

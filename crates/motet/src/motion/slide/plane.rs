@@ -59,7 +59,7 @@ impl Plane {
     }
 
     /// The angle in radians by which the normal may be off, since the patch is not exactly flat.
-    pub(crate) fn tilt(&self) -> f64 {
+    pub(crate) fn normal_error(&self) -> f64 {
         if self.radius > 0.0 { self.deviation / self.radius } else { 0.0 }
     }
 }

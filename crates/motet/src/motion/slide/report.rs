@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::base::{Point, VertexId};
 use crate::geometry::vector::dot;
-use crate::motion::slide::freedom::Freedom;
+use crate::motion::slide::constraints::SlidingConstraints;
 
 /// A plane in which one patch slides, or several patches side by side.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -44,10 +44,10 @@ pub(crate) struct Rim {
     nodes: Vec<u32>,
 }
 
-impl Freedom {
+impl SlidingConstraints {
     /// The report on each plane.
     pub(crate) fn planes(&self) -> Vec<SlidingPlane> {
-        let mut planes: Vec<SlidingPlane> = (self.flats.iter())
+        let mut planes: Vec<SlidingPlane> = (self.patch_planes.iter())
             .map(|flat| SlidingPlane {
                 patch: flat.set.name.clone(),
                 radius: flat.plane.radius,
@@ -55,17 +55,20 @@ impl Freedom {
                 sliding: 0,
             })
             .collect();
-        for held in &self.held {
-            held.planes.iter().for_each(|&plane| planes[plane as usize].sliding += held.free.len());
+        for constraint in &self.constraints {
+            constraint
+                .planes
+                .iter()
+                .for_each(|&plane| planes[plane as usize].sliding += constraint.free.len());
         }
         planes
     }
 
     /// The rim of each plane; `node` returns the node of a vertex.
     pub(crate) fn rims(&self, points: &[Point], node: impl Fn(VertexId) -> u32) -> Vec<Rim> {
-        let held = self.held_of(points.len());
-        let is_driven = |v: &VertexId| held[v.index()].is_none();
-        let rim = |flat: &super::freedom::Flat| {
+        let constraint = self.constraint_of(points.len());
+        let is_driven = |v: &VertexId| constraint[v.index()].is_none();
+        let rim = |flat: &super::constraints::PatchPlane| {
             let largest = (flat.set.vertices.iter())
                 .flat_map(|v| points[v.index()])
                 .fold(0.0, |a: f64, x| a.max(x.abs()));
@@ -76,13 +79,13 @@ impl Freedom {
                 nodes: flat.set.vertices.iter().copied().filter(is_driven).map(&node).collect(),
             }
         };
-        self.flats.iter().map(rim).collect()
+        self.patch_planes.iter().map(rim).collect()
     }
 }
 
 /// The vertex of all rims that leaves its plane farthest; `None` where all stay. `vertices` are those of the
 /// nodes; `driven` are the displacements of the driven nodes, which come first.
-pub(crate) fn leaving(
+pub(crate) fn worst_departure(
     rims: &[Rim],
     vertices: &[VertexId],
     reference: &[Point],

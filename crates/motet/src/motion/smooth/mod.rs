@@ -22,13 +22,13 @@ use crate::motion::check::Check;
 use crate::motion::smooth::star::Star;
 
 /// Vertices move where the EAS of their worst tet is below this, and freely where it is below [`BAD_EAS`].
-const FADES: f64 = 0.225;
+const FADE_EAS: f64 = 0.225;
 /// A sweep moves a vertex by no more than this fraction of the mean edge at it.
-const FARTHEST: f64 = 0.3;
-/// Number of shorter steps that are tried where the whole one does not help, each [`SHORTER`] times the one
+const MAX_STEP: f64 = 0.3;
+/// Number of shorter steps that are tried where the whole one does not help, each [`BACKTRACK_FACTOR`] times the one
 /// before.
 const BACKTRACKS: usize = 3;
-const SHORTER: f64 = 0.4;
+const BACKTRACK_FACTOR: f64 = 0.4;
 
 /// What smoothing needs of the mesh.
 #[derive(Debug, Default)]
@@ -60,7 +60,7 @@ impl Smoother {
 
     /// Moves vertices of bad tets; returns how many.
     pub(crate) fn apply(&self, points: &mut [Point], threads: &Threads) -> usize {
-        let mut listed = self.listed(points, threads);
+        let mut listed = self.vertices_to_move(points, threads);
         let first: Vec<Point> = listed.iter().map(|(v, _)| points[v.index()]).collect();
         self.sweep(&listed, points);
         let mut first = first.into_iter();
@@ -77,13 +77,13 @@ impl Smoother {
     }
 
     /// The vertices to move, in rising order, and how freely each may: 1 beside a bad tet.
-    fn listed(&self, points: &[Point], threads: &Threads) -> Vec<(VertexId, f64)> {
+    fn vertices_to_move(&self, points: &[Point], threads: &Threads) -> Vec<(VertexId, f64)> {
         let of_tets = threads.in_runs(self.tets.len(), CHUNK, |_: &mut (), run| {
             let mut found = Vec::new();
             for (tet, rough) in self.tets[run.clone()].iter().zip(rough_eas(points, &self.tets[run])) {
-                if f64::from(rough) < FADES + ROUGH_EAS_ERROR {
+                if f64::from(rough) < FADE_EAS + ROUGH_EAS_ERROR {
                     let corners = tet.map(|v| points[v.index()]);
-                    let freedom = ((FADES - eas(corners)) / (FADES - BAD_EAS)).clamp(0.0, 1.0);
+                    let freedom = ((FADE_EAS - eas(corners)) / (FADE_EAS - BAD_EAS)).clamp(0.0, 1.0);
                     found.extend(tet.iter().filter(|_| freedom > 0.0).map(|v| (*v, freedom)));
                 }
             }
@@ -117,7 +117,8 @@ impl<F: FourLanes> NullaryFnOnce for Sweeps<'_, F> {
                 for &t in self.smoother.tets_of.list(v.index()) {
                     star.push(opposite(self.smoother.tets[t as usize], v, self.points));
                 }
-                self.points[v.index()] = improved::<F>(self.machine, &star, self.points[v.index()], freedom);
+                self.points[v.index()] =
+                    newton_step::<F>(self.machine, &star, self.points[v.index()], freedom);
             }
         }
     }
@@ -125,22 +126,22 @@ impl<F: FourLanes> NullaryFnOnce for Sweeps<'_, F> {
 
 /// One step of Newton, shortened until it makes the sum smaller.
 #[inline(always)]
-fn improved<F: FourLanes>(machine: F::Machine, star: &Star, from: Point, freedom: f64) -> Point {
-    let (before, way) = star.downhill::<F>(machine, from);
-    let length = norm(way);
+fn newton_step<F: FourLanes>(machine: F::Machine, star: &Star, from: Point, freedom: f64) -> Point {
+    let (before, step) = star.value_and_newton_step::<F>(machine, from);
+    let length = norm(step);
     if length == 0.0 || !length.is_finite() {
         return from;
     }
-    let farthest = FARTHEST * star.mean_edge::<F>(machine, from);
-    let mut part = freedom * (farthest / length).min(1.0);
+    let max_step = MAX_STEP * star.mean_edge::<F>(machine, from);
+    let mut part = freedom * (max_step / length).min(1.0);
     for _ in 0..=BACKTRACKS {
-        let to = add(from, scale(way, part));
+        let to = add(from, scale(step, part));
         let now = star.value::<F>(machine, to);
         // Upright tets stay upright.
         if now.sum < before.sum && (now.worst > 0.0 || before.worst <= 0.0) {
             return to;
         }
-        part *= SHORTER;
+        part *= BACKTRACK_FACTOR;
     }
     from
 }

@@ -96,13 +96,17 @@ impl Star {
 
     /// The value at `x`, and the step of Newton's method from there.
     #[inline(always)]
-    pub(super) fn downhill<F: FourLanes>(&self, machine: F::Machine, x: Point) -> (Value, Point) {
+    pub(super) fn value_and_newton_step<F: FourLanes>(
+        &self,
+        machine: F::Machine,
+        x: Point,
+    ) -> (Value, Point) {
         let x = splat_point::<F>(machine, x);
         let splat = |x: f64| F::splat(machine, x);
         let (mut sum, mut worst) = (splat(0.0), splat(f64::INFINITY));
-        let mut slopes = [splat(0.0); 3];
+        let mut gradient = [splat(0.0); 3];
         // xx, xy, xz, yy, yz, zz
-        let mut bends = [splat(0.0); 6];
+        let mut hessian = [splat(0.0); 6];
         for ([p, q, r], count) in self.opposite.iter().zip(&self.counts) {
             let (p, q, r) = (vectors(machine, p), vectors(machine, q), vectors(machine, r));
             let count = F::load(machine, count);
@@ -129,17 +133,17 @@ impl Star {
                     let both = mixed * (of_volume[i] * of_squares[j] + of_squares[i] * of_volume[j])
                         + twice * (of_squares[i] * of_squares[j]);
                     let both = if i == j { both - splat(3.0) * by_squares } else { both };
-                    bends[k] = bends[k] + second * (slope[i] * slope[j]) + first * both;
+                    hessian[k] = hessian[k] + second * (slope[i] * slope[j]) + first * both;
                     k += 1;
                 }
-                slopes[i] = slopes[i] + first * slope[i];
+                gradient[i] = gradient[i] + first * slope[i];
             }
             worst = worst.min(ratio);
             sum = sum + count * value;
         }
-        let [xx, xy, xz, yy, yz, zz] = bends.map(F::sum);
-        let way = way(slopes.map(F::sum), [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
-        (Value { sum: sum.sum(), worst: worst.min_lane() }, way)
+        let [xx, xy, xz, yy, yz, zz] = hessian.map(F::sum);
+        let step = newton_step(gradient.map(F::sum), [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
+        (Value { sum: sum.sum(), worst: worst.min_lane() }, step)
     }
 }
 
@@ -166,12 +170,12 @@ fn barrier<F: FourLanes>(machine: F::Machine, r: F) -> Barrier<F> {
 }
 
 /// Newton's step where the sum is convex, else a step in each coordinate separately.
-fn way(slope: Point, bend: [[f64; 3]; 3]) -> Point {
-    let newton = bend.inverse().map(|inverse| scale(inverse.times(slope), -1.0));
+fn newton_step(gradient: Point, hessian: [[f64; 3]; 3]) -> Point {
+    let newton = hessian.inverse().map(|inverse| scale(inverse.times(gradient), -1.0));
     newton.unwrap_or_else(|| {
         std::array::from_fn(|i| {
-            let bend = bend[i][i].abs();
-            if bend > 0.0 { -slope[i] / bend } else { 0.0 }
+            let bend = hessian[i][i].abs();
+            if bend > 0.0 { -gradient[i] / bend } else { 0.0 }
         })
     })
 }
@@ -219,7 +223,7 @@ mod tests {
         let apart: f64 = tets.iter().map(|tet| one(tet).sum).sum();
         let worst = tets.iter().map(|tet| one(tet).worst).fold(f64::INFINITY, f64::min);
         let all = star(&tets);
-        for value in [all.value::<Plain>((), TET[0]), all.downhill::<Plain>((), TET[0]).0] {
+        for value in [all.value::<Plain>((), TET[0]), all.value_and_newton_step::<Plain>((), TET[0]).0] {
             assert!((value.sum - apart).abs() < 1e-12 * apart && value.worst == worst);
         }
     }
@@ -252,7 +256,7 @@ mod tests {
                     (same - other) / (4.0 * step * step)
                 })
             });
-            let (expected, found) = (way(slope, bend), star.downhill::<Plain>((), x).1);
+            let (expected, found) = (newton_step(slope, bend), star.value_and_newton_step::<Plain>((), x).1);
             let size = expected.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
             for i in 0..3 {
                 assert!((expected[i] - found[i]).abs() < 1e-3 * size, "{expected:?} {found:?}");
@@ -270,9 +274,11 @@ mod tests {
         let tets: Vec<[Point; 3]> =
             (0..9).map(|k| [TET[1], [0.3, 1.1, 0.7 - 0.2 * f64::from(k)], TET[3]]).collect();
         let star = star(&tets);
-        let ((value, way), (value_wide, way_wide)) =
-            (star.downhill::<Plain>((), TET[0]), star.downhill::<Wide>(machine, TET[0]));
-        assert!(way == way_wide && value.sum == value_wide.sum && value.worst == value_wide.worst);
+        let ((value, step), (value_wide, step_wide)) = (
+            star.value_and_newton_step::<Plain>((), TET[0]),
+            star.value_and_newton_step::<Wide>(machine, TET[0]),
+        );
+        assert!(step == step_wide && value.sum == value_wide.sum && value.worst == value_wide.worst);
         let (value, value_wide) = (star.value::<Plain>((), TET[0]), star.value::<Wide>(machine, TET[0]));
         assert!(value.sum == value_wide.sum && value.worst == value_wide.worst);
         assert_eq!(star.mean_edge::<Plain>((), TET[0]), star.mean_edge::<Wide>(machine, TET[0]));

@@ -23,7 +23,7 @@ use crate::motion::update::Displacements;
 
 /// A linear system for the displacements of the vertices that nothing else moves.
 #[derive(Debug)]
-pub(crate) struct Solve {
+pub(crate) struct LinearMethod {
     /// The vertices that are solved for.
     free: Vec<VertexId>,
     /// The vertices whose displacements are given.
@@ -40,7 +40,7 @@ enum Kind {
     Laplace(Solver<f64>),
 }
 
-impl Solve {
+impl LinearMethod {
     /// Sets up the system of a mesh whose cells have the corners `tets`, with its vertices at `points`. The
     /// displacements of `nodes` will be given; `wall` is where a Laplace equation is stiff.
     ///

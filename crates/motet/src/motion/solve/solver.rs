@@ -12,11 +12,11 @@ const TWO_LEVELS_FROM: usize = 5_000;
 #[derive(Debug)]
 pub(super) struct Solver<B> {
     system: System<B>,
-    way: Way<B>,
+    kind: SolverKind<B>,
 }
 
 #[derive(Debug)]
-enum Way<B> {
+enum SolverKind<B> {
     Factor(Box<Cholesky>),
     TwoLevels(Box<TwoLevel<B>>),
     Sweeps,
@@ -35,15 +35,15 @@ impl<B: Block> Solver<B> {
             0 => None,
             max_bytes => Cholesky::new(&system.inner, places, max_bytes)?,
         };
-        let way = match factor {
-            Some(factor) => Way::Factor(Box::new(factor)),
-            None if places.len() < TWO_LEVELS_FROM => Way::Sweeps,
+        let kind = match factor {
+            Some(factor) => SolverKind::Factor(Box::new(factor)),
+            None if places.len() < TWO_LEVELS_FROM => SolverKind::Sweeps,
             None => match TwoLevel::new(&system.inner, places, threads)? {
-                Some(levels) => Way::TwoLevels(Box::new(levels)),
-                None => Way::Sweeps,
+                Some(levels) => SolverKind::TwoLevels(Box::new(levels)),
+                None => SolverKind::Sweeps,
             },
         };
-        Ok(Self { system, way })
+        Ok(Self { system, kind })
     }
 
     /// Computes the displacements `x` of the unknown vertices from the given ones; `x` holds a guess on
@@ -57,18 +57,20 @@ impl<B: Block> Solver<B> {
     ) -> Result<Solved> {
         let System { inner, coupling, sweeps, .. } = &self.system;
         let right: Vec<Point> = coupling.times(given, threads).into_iter().map(|f| f.map(|x| -x)).collect();
-        match &self.way {
-            Way::Factor(factor) => {
+        match &self.kind {
+            SolverKind::Factor(factor) => {
                 *x = factor.solve(&right);
                 Ok(Solved::default())
             }
-            Way::TwoLevels(levels) => conjugate_gradients(inner, &**levels, &right, x, tolerance, threads),
-            Way::Sweeps => conjugate_gradients(inner, sweeps, &right, x, tolerance, threads),
+            SolverKind::TwoLevels(levels) => {
+                conjugate_gradients(inner, &**levels, &right, x, tolerance, threads)
+            }
+            SolverKind::Sweeps => conjugate_gradients(inner, sweeps, &right, x, tolerance, threads),
         }
     }
 
     /// Bytes of the factor; 0 without one.
     pub(super) fn factor_bytes(&self) -> u64 {
-        if let Way::Factor(factor) = &self.way { factor.n_bytes() } else { 0 }
+        if let SolverKind::Factor(factor) = &self.kind { factor.n_bytes() } else { 0 }
     }
 }

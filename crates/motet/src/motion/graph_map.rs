@@ -2,18 +2,18 @@
 //! placed.
 
 use crate::base::{Point, Result, Threads};
-use crate::motion::update::{Displacements, Update};
-use crate::motion::walls::Added;
+use crate::motion::update::{Displacements, WeightTable};
+use crate::motion::walls::AddedPoints;
 
 /// How vertices depend on the nodes of the graph.
 #[derive(Debug, Default)]
-pub(crate) struct Spread {
+pub(crate) struct GraphMap {
     /// Its nodes are followed by the points that the graph added.
-    pub(crate) update: Update,
-    pub(crate) added: Option<Box<Added>>,
+    pub(crate) table: WeightTable,
+    pub(crate) added: Option<Box<AddedPoints>>,
 }
 
-impl Spread {
+impl GraphMap {
     /// Moves all vertices from their positions `from`; returns the number of iterations.
     ///
     /// # Errors
@@ -26,11 +26,11 @@ impl Spread {
         threads: &Threads,
     ) -> Result<usize> {
         let Some(added) = &self.added else {
-            self.update.apply(from, displacements, out, threads);
+            self.table.apply(from, displacements, out, threads);
             return Ok(0);
         };
-        let (all, iterations) = added.extended(displacements, threads)?;
-        self.update.apply(from, &all, out, threads);
+        let (all, iterations) = added.with_added(displacements, threads)?;
+        self.table.apply(from, &all, out, threads);
         Ok(iterations)
     }
 }

@@ -8,7 +8,7 @@ use crate::base::four::{FourLanes, Plain};
 use crate::base::{Point, Threads};
 use crate::geometry::vector::{add, scale, sub};
 use crate::motion::guided::GraphTet;
-use crate::motion::update::Update;
+use crate::motion::update::WeightTable;
 
 /// The displacement near a node as a function of position: three columns, and the value at the origin. The
 /// fourth number of each is 0.
@@ -16,8 +16,8 @@ pub(super) type Affine = [[f64; 4]; 4];
 
 /// How vertices depend on nodes.
 #[derive(Debug)]
-pub(super) struct Lift {
-    update: Update,
+pub(super) struct AffineBlend {
+    table: WeightTable,
     /// For each node, 1 over the sum of the weights of its tets.
     shares: Vec<f64>,
 }
@@ -25,13 +25,13 @@ pub(super) struct Lift {
 /// Vertices per chunk.
 const CHUNK: usize = 1 << 12;
 
-impl Lift {
-    pub(super) fn new(update: Update, tets: &[GraphTet], n_nodes: usize) -> Self {
+impl AffineBlend {
+    pub(super) fn new(table: WeightTable, tets: &[GraphTet], n_nodes: usize) -> Self {
         let mut sums = vec![0.0; n_nodes];
         for tet in tets {
             tet.nodes.iter().for_each(|n| sums[*n as usize] += tet.weight);
         }
-        Self { update, shares: sums.into_iter().map(|s| if s > 0.0 { 1.0 / s } else { 0.0 }).collect() }
+        Self { table, shares: sums.into_iter().map(|s| if s > 0.0 { 1.0 / s } else { 0.0 }).collect() }
     }
 
     /// The affine map of every node, from displacements and the weighted sums of their gradients, as columns.
@@ -61,12 +61,12 @@ impl Lift {
         let origin = places.first().copied().unwrap_or_default();
         let chunks = out.chunks_mut(CHUNK).enumerate().collect();
         threads.each(chunks, |(i, out): (usize, &mut [Point])| {
-            let (first, update) = (i * CHUNK, &self.update);
+            let (first, table) = (i * CHUNK, &self.table);
             #[cfg(target_arch = "x86_64")]
             if let Some(machine) = pulp::x86::V3::try_new() {
                 return machine.vectorize(Vertices::<Wide> {
                     machine,
-                    update,
+                    table,
                     origin,
                     from,
                     maps,
@@ -74,7 +74,7 @@ impl Lift {
                     out,
                 });
             }
-            Vertices::<Plain> { machine: (), update, origin, from, maps, first, out }.call();
+            Vertices::<Plain> { machine: (), table, origin, from, maps, first, out }.call();
         });
     }
 }
@@ -82,7 +82,7 @@ impl Lift {
 /// Moves consecutive vertices, beginning with `first`.
 struct Vertices<'a, F: FourLanes> {
     machine: F::Machine,
-    update: &'a Update,
+    table: &'a WeightTable,
     origin: Point,
     from: &'a [Point],
     maps: &'a [Affine],
@@ -95,10 +95,10 @@ impl<F: FourLanes> NullaryFnOnce for Vertices<'_, F> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { machine, update, origin, from, maps, first, out } = self;
+        let Self { machine, table, origin, from, maps, first, out } = self;
         let vertices = first..first + out.len();
-        let hangs = update.nodes[vertices.clone()].iter().zip(&update.weights[vertices.clone()]);
-        for ((out, &from), (&[i, j, k, l], &[w1, w2, w3])) in out.iter_mut().zip(&from[vertices]).zip(hangs) {
+        let rows = table.nodes[vertices.clone()].iter().zip(&table.weights[vertices.clone()]);
+        for ((out, &from), (&[i, j, k, l], &[w1, w2, w3])) in out.iter_mut().zip(&from[vertices]).zip(rows) {
             let splat = |x: f64| F::splat(machine, x);
             let weights = [splat(1.0 - w1 - w2 - w3), splat(w1), splat(w2), splat(w3)];
             let nodes = [&maps[i as usize], &maps[j as usize], &maps[k as usize], &maps[l as usize]];
