@@ -222,14 +222,14 @@ fn what_is_no_body_is_refused() {
             .contains("has 0 vertices")
     );
     let whole = box_grid([2, 2, 2], [[0.0; 3], [1.0; 3]]);
-    assert!(refused(Vec::new(), &whole).contains("all in one piece"));
+    assert!(refused(Vec::new(), &whole).contains("all walls are connected"));
     let inside: Vec<VertexId> = (0..mesh.points.len())
         .map(VertexId::new)
         .filter(|v| boundary.vertices.binary_search(v).is_err())
         .take(3)
         .collect();
     let inner = FacetSet { name: "inner".into(), vertices: inside, ..FacetSet::default() };
-    assert!(refused(vec![inner], &mesh).contains("inside the volume"));
+    assert!(refused(vec![inner], &mesh).contains("an interior vertex"));
 }
 
 #[test]

@@ -20,7 +20,7 @@ const VERBS: &[(&str, Verb)] = &[
     ("choosing points inside", fill),
     ("building a new surface", conform),
     ("refining", refine),
-    ("setting a motion up", set_up),
+    ("setting up a motion", set_up),
     ("trying methods", try_methods),
 ];
 

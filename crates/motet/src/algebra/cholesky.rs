@@ -24,8 +24,8 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// Factorises `matrix`, whose rows lie at `places`; `None` when the factor would take more than `max_bytes`
-    /// bytes, which is known before it is computed.
+    /// Factorises `matrix`, whose rows lie at `places`; `None` when the factor would take more than
+    /// `max_bytes`, which is known before it is computed.
     ///
     /// # Errors
     /// When the matrix is not positive definite, or there is not enough memory for the factor.
@@ -43,8 +43,10 @@ impl Cholesky {
         let mut inverse = vec![0; n];
         forward.iter().enumerate().for_each(|(place, &row)| inverse[row] = place);
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
-        let out_of_memory =
-            |_| Error::input("there is no memory for the factor of a system").remedy("keep none");
+        let out_of_memory = |_| {
+            Error::input("not enough memory for the factor of a linear system")
+                .remedy("do not request a factor (factor memory 0)")
+        };
         let symbolic = factorize_symbolic_cholesky(
             pattern,
             Side::Upper,
@@ -72,7 +74,11 @@ impl Cholesky {
                 MemStack::new(&mut stack),
                 Default::default(),
             )
-            .map_err(|_| Error::input("a system is not positive definite: it has no factor"))?;
+            .map_err(|_| {
+                Error::input(
+                    "the matrix of a linear system is not positive definite and cannot be factorised",
+                )
+            })?;
         Ok(Some(Self { symbolic, values: factor, width }))
     }
 

@@ -46,7 +46,7 @@ impl<B: Block> Sgs<B> {
         let inverse = |row| {
             matrix.diagonal(row).inverse().ok_or_else(|| {
                 Error::input(format!(
-                    "row {row} of a matrix to be solved has no positive block on its diagonal"
+                    "row {row} of the matrix of a linear system has no positive definite diagonal block"
                 ))
             })
         };
@@ -164,10 +164,10 @@ pub fn conjugate_gradients<B: Block>(
         threads.watch().report_and_check("solving a system", solved.iterations, 0)?;
         if solved.iterations == tolerance.iterations || !solved.residual.is_finite() {
             return Err(Error::input(format!(
-                "{} iterations left a residual of {:.1e} where {:.1e} is asked for",
+                "after {} iterations the residual is {:.1e}; {:.1e} was requested",
                 solved.iterations, solved.residual, tolerance.residual
             ))
-            .remedy("ask for less, or begin with a mesh whose cells are less flat"));
+            .remedy("allow a larger residual, or use a mesh whose cells are less flat"));
         }
         let matrix_direction = matrix.times(&direction, threads);
         let alpha = rz / dot(&direction, &matrix_direction);

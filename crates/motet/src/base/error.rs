@@ -84,10 +84,10 @@ impl Error {
         let error = Self::new(ErrorKind::Output, format!("cannot be written: {source}")).in_file(file);
         let error = match source.kind() {
             std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {
-                error.remedy("make room, or write elsewhere")
+                error.remedy("free some space, or write elsewhere")
             }
             std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::ReadOnlyFilesystem => {
-                error.remedy("change its rights, or write elsewhere")
+                error.remedy("change its permissions, or write elsewhere")
             }
             _ => error,
         };

@@ -35,7 +35,7 @@ impl Threads {
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
         pool.map(|pool| Self { pool: Some(pool), ..Self::default() }).map_err(|e| {
-            Error::options(format!("{n} threads could not be started: {e}")).remedy("ask for fewer")
+            Error::options(format!("{n} threads could not be started: {e}")).remedy("request fewer threads")
         })
     }
 

@@ -17,8 +17,8 @@ pub struct Progress {
     pub of: usize,
 }
 
-/// A channel between a call and whoever started it: the call reports its progress and checks from time to time
-/// whether to stop; the other side reads the progress and may stop the call. Clones share one channel. The
+/// A channel between a call and whoever started it: the call reports its progress and checks from time to
+/// time whether to stop; the other side reads the progress and may stop the call. Clones share one channel. The
 /// default watch is connected to nobody and costs nothing.
 ///
 /// ```
@@ -73,7 +73,7 @@ impl Watch {
     pub(crate) fn report_and_check(&self, stage: &'static str, done: usize, of: usize) -> Result<()> {
         self.report(stage, done, of);
         if self.0.as_ref().is_some_and(|channel| channel.is_stopped.load(Ordering::Relaxed)) {
-            return Err(Error::new(ErrorKind::Stopped, format!("stopped while {stage}, on request")));
+            return Err(Error::new(ErrorKind::Stopped, format!("stopped on request while {stage}")));
         }
         Ok(())
     }

@@ -160,7 +160,7 @@ impl Mover {
         certificate.complete = false;
         while certificate.substeps < self.limits.substeps {
             threads.watch().report_and_check(
-                "moving in parts",
+                "moving in sub-steps",
                 certificate.substeps,
                 self.limits.substeps,
             )?;

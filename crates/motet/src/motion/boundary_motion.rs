@@ -69,7 +69,7 @@ impl BoundaryMotion {
         let [x, y, z] = points[first.index()];
         let n = contradicted.len();
         Err(Error::options(format!(
-            "patch {patch} and a patch moved before it share {n} vertices, and move them to different places"
+            "patch {patch} and an earlier patch share {n} vertices but move them differently"
         ))
         .at(format!("vertex {first} at ({x:.6}, {y:.6}, {z:.6})"))
         .remedy(

@@ -39,7 +39,7 @@ impl SurfaceCarrier {
         let (mut links, mut farthest) = (Vec::with_capacity(places.len()), 0.0_f64);
         for (i, closest) in found.into_iter().enumerate() {
             let closest = closest.ok_or_else(|| {
-                Error::input("there is no surface near this place").at(format!("point {i}"))
+                Error::input("no surface was found near this point").at(format!("point {i}"))
             })?;
             let vertices = triangles[closest.triangle];
             let is_here = |v: VertexId| points[v.index()] == places[i];

@@ -107,7 +107,8 @@ impl Certificate {
         let cells: Vec<String> = self.blocked_by.iter().map(ToString::to_string).collect();
         (!self.complete).then(|| {
             format!(
-                "the motion stopped at {} of its way after {} sub-steps, where cells would turn over (the first: {})",
+                "the motion stopped at {} of the way after {} sub-steps, where cells would be inverted \
+                 (the first: {})",
                 percent(self.fraction),
                 self.substeps,
                 cells.join(", ")

@@ -63,8 +63,8 @@ pub fn choose<I: Iterator<Item = Result<Vec<Point>>>>(
     threads: &Threads,
 ) -> Result<Choice> {
     if let Some(least) = least.filter(|least| !(0.0..=1.0).contains(least)) {
-        return Err(Error::options(format!("an EAS of {least} as the least, expected a number in [0, 1]"))
-            .remedy("leave it out"));
+        return Err(Error::options(format!("the smallest EAS allowed must be in [0, 1]; got {least}"))
+            .remedy("leave it out to use the default"));
     }
     let bodies = match &options.method {
         Method::Bodies(sets) => sets.clone(),

@@ -50,11 +50,13 @@ impl Interface {
         for interface in &all {
             if let Some(v) = interface.vertices.iter().find(|v| !in_range(at(v))) {
                 return Err(Error::input(format!(
-                    "a displacement that is no finite number, on the interface {}",
+                    "a displacement on the interface {} is not finite",
                     interface.name
                 ))
                 .at(format!("point {v}"))
-                .remedy("give finite numbers on all of an interface that moves, or zeros on one that is to follow"));
+                .remedy(
+                    "give finite displacements on the whole interface, or zeros where it should follow",
+                ));
             }
         }
         Ok(all)

@@ -67,7 +67,7 @@ impl Layer {
         }
         let wall_nodes = vertices.iter().map(|&v| {
             node(v).ok_or_else(|| {
-                Error::input("is on the wall of the rigid layer, but nothing moves it")
+                Error::input("is on the wall of the rigid layer, but its motion is not given")
                     .at(format!("vertex {v}"))
             })
         });
@@ -154,8 +154,8 @@ impl MemberMotion {
     }
 }
 
-/// Which vertices share a cell with another one whose foot is more than [`MAX_FOOT_RATIO`] times as far from theirs as
-/// they are from each other. Where the wall has a crease, each would follow another side, and the cells
+/// Which vertices share a cell with another one whose foot is more than [`MAX_FOOT_RATIO`] times as far from
+/// theirs as they are from each other. Where the wall has a crease, each would follow another side, and the cells
 /// between would be crushed: they are left to the graph.
 fn spans_crease(points: &[Point], cells: &Cells, wall: &[VertexId], members: &[Member]) -> Vec<bool> {
     let mut foot = vec![None; points.len()];

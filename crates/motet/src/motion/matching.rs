@@ -76,9 +76,9 @@ impl IdArray {
         };
         let vertices = ids.iter().enumerate().map(|(point, id)| match own.get(id) {
             Some(&vertex) => Ok(VertexId::new(vertex)),
-            None => Err(Error::input(format!("{} {id} is that of no point of the mesh", self.name))
+            None => Err(Error::input(format!("no point of the mesh has {} {id}", self.name))
                 .at(format!("point {point}"))
-                .remedy("give the surface that belongs to this mesh")),
+                .remedy("give a surface that belongs to this mesh")),
         });
         vertices.collect()
     }
@@ -102,8 +102,8 @@ fn match_by_position(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
     ))
     .at(format!("point {first}"))
     .remedy(
-        "give the surface a point array GlobalNodeID (from 1) or vtkOriginalPointIds (from 0), or let it lie in the \
-         undeformed place with a vector array `displacement`",
+        "give the surface a point array GlobalNodeID (from 1) or vtkOriginalPointIds (from 0), or give the \
+         undeformed surface with a vector array `displacement`",
     ))
 }
 
@@ -187,7 +187,7 @@ impl<'a> SurfaceMotion<'a> {
         let vertices = self.vertices_of(surface)?;
         let moved = self.displacements(surface, &vertices)?;
         if let Some(i) = moved.iter().position(|d| d.iter().any(|x| !x.is_finite())) {
-            return Err(Error::input("a displacement that is no finite number").at(format!("point {i}")));
+            return Err(Error::input("the displacement is not finite").at(format!("point {i}")));
         }
         let pairs = self.merged(&vertices, &moved)?;
         self.vertices = Some(vertices);
@@ -203,7 +203,7 @@ impl<'a> SurfaceMotion<'a> {
         match &self.vertices {
             Some(before) if before.len() == surface.points.len() => Ok(before.clone()),
             Some(before) => Err(Error::input(format!(
-                "has {} points, the surface before it {}; without ids they must be the same",
+                "has {} points, but the previous surface has {}; without ids the points must be the same",
                 surface.points.len(),
                 before.len()
             ))
@@ -244,7 +244,7 @@ impl<'a> SurfaceMotion<'a> {
                     let apart = norm(sub(*d, moved[i]));
                     if apart > tolerance {
                         return Err(Error::input(format!(
-                            "is vertex {vertex} like another point, but they move {apart:.3e} apart"
+                            "is vertex {vertex}, as is another point, but their displacements differ by {apart:.3e}"
                         ))
                         .at(format!("point {i}"))
                         .remedy("give the vertex one displacement"));
@@ -347,7 +347,7 @@ mod tests {
         ids[5] = ids[2];
         s.set_point_field(Field::scalars("vtkOriginalPointIds", ids));
         let error = SurfaceMotion::new(&mesh, Matching::Id).next(&s).unwrap_err().to_string();
-        assert!(error.contains("apart"), "{error}");
+        assert!(error.contains("differ by"), "{error}");
     }
 
     #[test]

@@ -25,8 +25,8 @@ const STRAIGHT_TOLERANCE: f64 = 1e-4;
 const ROUNDINGS: f64 = 4.0;
 
 impl Middles {
-    /// Finds the middle nodes of a reference mesh that are not prescribed; with `also_curved`, also those of edges
-    /// that are not straight, for methods that know corners alone.
+    /// Finds the middle nodes of a reference mesh that are not prescribed; with `also_curved`, also those of
+    /// edges that are not straight, for methods that know corners alone.
     ///
     /// A node that is a corner of another volume cell follows as corners do. If several cells have a node
     /// between different corners, the first counts.

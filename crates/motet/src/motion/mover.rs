@@ -179,7 +179,7 @@ impl Mover {
             state: None,
             setup,
         };
-        threads.watch().report_and_check("setting a motion up", 0, 0)?;
+        threads.watch().report_and_check("setting up a motion", 0, 0)?;
         match mover.method {
             Method::Delaunay | Method::Bodies(_) | Method::Guided => {
                 mover.embed_reference(&is_used, threads)?;
@@ -251,7 +251,7 @@ impl Mover {
         match out.len() == self.reference.len() {
             true => Ok(()),
             false => Err(Error::input(format!(
-                "room for {} points is given, but the mesh has {}",
+                "the output holds {} points, but the mesh has {}",
                 out.len(),
                 self.reference.len()
             ))),
@@ -315,8 +315,10 @@ impl Mover {
         }
         match displacement.iter().position(|&d| !in_range(d)) {
             None => Ok(()),
-            Some(i) => Err(Error::input("a displacement that is no finite number")
-                .at(format!("vertex {}", self.boundary()[i]))),
+            Some(i) => {
+                Err(Error::input("the displacement is not finite")
+                    .at(format!("vertex {}", self.boundary()[i])))
+            }
         }
     }
 
@@ -521,14 +523,14 @@ fn used_by_volume(mesh: &Mesh) -> Vec<bool> {
 fn check_input(mesh: &Mesh, boundary: &Boundary, options: &Options) -> Result<()> {
     if boundary.n_unknown > 0 {
         return Err(Error::input(format!(
-            "{} volume cells are of a kind whose facets are not known",
+            "{} volume cells are of an unsupported kind: their facets are not known",
             boundary.n_unknown
         ))
         .remedy("write the mesh with linear or quadratic cells in place of Lagrange ones"));
     }
     if boundary.is_empty() {
         let what = match mesh.cells.dim() {
-            Some(3) => "the volume cells have no boundary that could be moved".into(),
+            Some(3) => "the volume cells have no boundary to move".into(),
             dim => format!("volume cells are needed, but the cells have dimension {}", dim.unwrap_or(0)),
         };
         return Err(Error::input(what).remedy("give a volume mesh: a surface has no inside to move"));
@@ -544,9 +546,11 @@ fn check_input(mesh: &Mesh, boundary: &Boundary, options: &Options) -> Result<()
     let needed = volumes.flat_map(|(_, _, vertices)| vertices).chain(named);
     match needed.copied().find(|v| !in_range(mesh.points[v.index()])) {
         None => Ok(()),
-        Some(v) => Err(Error::input(format!("has no finite place: {:?}", mesh.points[v.index()]))
-            .at(format!("vertex {v}"))
-            .remedy("repair the coordinates in the file")),
+        Some(v) => {
+            Err(Error::input(format!("has coordinates that are not finite: {:?}", mesh.points[v.index()]))
+                .at(format!("vertex {v}"))
+                .remedy("repair the coordinates in the file"))
+        }
     }
 }
 
@@ -559,9 +563,8 @@ pub fn mesh_velocity(from: &[Point], to: &[Point], dt: f64) -> Result<Vec<Point>
         return Err(Error::input(format!("{} points before, {} after", from.len(), to.len())));
     }
     if !(dt > 0.0 && dt.is_finite()) {
-        return Err(
-            Error::options(format!("a time step of {dt} gives no velocity")).remedy("give a positive one")
-        );
+        return Err(Error::options(format!("the time step must be positive and finite; got {dt}"))
+            .remedy("give a positive time step"));
     }
     Ok(from.iter().zip(to).map(|(&a, &b)| sub(b, a).map(|x| x / dt)).collect())
 }

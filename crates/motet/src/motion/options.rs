@@ -129,8 +129,8 @@ impl MethodWords {
         if self.factor_gib >= 0.0 {
             return Ok(());
         }
-        Err(Error::options(format!("{} gibibytes for a factor", self.factor_gib))
-            .remedy("give a number from 0 on"))
+        Err(Error::options(format!("the memory for a factor must be 0 or more GiB; got {}", self.factor_gib))
+            .remedy("give 0 or a positive number"))
     }
 }
 
@@ -195,25 +195,25 @@ impl Method {
             Self::Elastic(law) => {
                 if !(0.0..0.5).contains(&law.poisson) {
                     return Err(Error::options(format!(
-                        "{} is no ratio of Poisson that can be solved with",
+                        "Poisson's ratio must be in [0, 0.5); got {}",
                         law.poisson
                     ))
-                    .remedy("give one from 0 to below 0.5, such as 0.3"));
+                    .remedy("give a number such as 0.3"));
                 }
                 (law.stiffening, law.tolerance)
             }
             Self::Laplace(law) => (law.exponent, law.tolerance),
         };
         if !power.is_finite() {
-            return Err(Error::options(format!("{power} is no power that stiffness could follow"))
-                .remedy("give 1; 0 makes all as stiff"));
+            return Err(Error::options(format!("the exponent of the stiffness must be finite; got {power}"))
+                .remedy("give 1, or 0 for uniform stiffness"));
         }
         if !(tolerance.residual > 0.0 && tolerance.residual < 1.0) {
             return Err(Error::options(format!(
-                "{} is no part of a residual that could be reached",
+                "the relative residual must be between 0 and 1; got {}",
                 tolerance.residual
             ))
-            .remedy("give one between 0 and 1, such as 1e-6"));
+            .remedy("give a number such as 1e-6"));
         }
         Ok(())
     }
@@ -262,15 +262,15 @@ impl Options {
         let SlideTolerance(tolerance) = self.slide_tolerance;
         if !(0.0..1.0).contains(&tolerance) {
             return Err(Error::options(format!(
-                "the tolerance of sliding patches must be in [0, 1), a part of their radius; got {tolerance}"
+                "the tolerance of sliding patches must be a fraction of their radius in [0, 1); got {tolerance}"
             ))
             .remedy("give a number such as 0.05"));
         }
         match self.rigid_layer.as_ref().map(|layer| layer.extent) {
-            Some(Extent::Distance(distance)) if !(0.0..=LARGEST).contains(&distance) => {
-                Err(Error::options(format!("a rigid layer of {distance}, expected a length from 0"))
-                    .remedy("give one in the unit of the mesh, or leave it out"))
-            }
+            Some(Extent::Distance(distance)) if !(0.0..=LARGEST).contains(&distance) => Err(Error::options(
+                format!("the thickness of the rigid layer must be 0 or more; got {distance}"),
+            )
+            .remedy("give a length in the unit of the mesh, or leave it out")),
             _ => Ok(()),
         }
     }

@@ -33,7 +33,7 @@ impl PointMover {
         check_finite(nodes, "node")?;
         check_finite(points, "point")?;
         if nodes.len().max(points.len()) > VertexId::MAX_COUNT {
-            return Err(Error::input(format!("{} points are more than there are ids", points.len())));
+            return Err(Error::input(format!("{} points exceed the number of vertex ids", points.len())));
         }
         let mut representatives: Vec<u32> = (0..nodes.len() as u32).collect();
         // -0.0 counts as 0.0.

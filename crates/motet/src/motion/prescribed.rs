@@ -62,7 +62,7 @@ impl Prescribed {
             Self::Shift(by) => finite(by),
             Self::Turn { axis, angle, centre } => {
                 if norm(*axis) == 0.0 {
-                    return Err(Error::options("the axis of a turn has no length"));
+                    return Err(Error::options("the axis of a rotation must not be zero"));
                 }
                 finite(axis) && angle.is_finite() && finite(centre)
             }
@@ -77,7 +77,7 @@ impl Prescribed {
             }
             Self::Sequence(motions) => return motions.iter().try_for_each(Self::check),
         };
-        if fine { Ok(()) } else { Err(Error::options("a motion with a number that is not finite")) }
+        if fine { Ok(()) } else { Err(Error::options("a number of a prescribed motion is not finite")) }
     }
 
     /// Where `fraction` of the motion takes a point: 0 leaves it in place, 1 is the whole motion. A rotation

@@ -77,7 +77,7 @@ impl Walls {
         let filled = constrain(&nodes, &self.triangles, EdgePoints::MoveInside, threads).map_err(|e| {
             let what = format!("the graph cannot be kept within the walls: {}", e.what());
             Error::input(what)
-                .remedy("look with `motet info` for facets that cross or touch; or let the graph cross walls")
+                .remedy("find facets that cross or touch with `motet info`, or let the graph cross walls")
         })?;
         let Constrained { points: places, tets, .. } = filled;
         let embedding = embed(&places, &tets, points, threads);

@@ -2,8 +2,8 @@
 //! the bit, and a band about one edge wide between the two is sheared.
 //!
 //! For bodies that keep moving (Behr and Tezduyar 1999, *The shear-slip mesh update method*, make such a band
-//! by hand). A share is a ramp of the distance from the body: 1 up to [`CLEARANCE`] edges, 0 from [`WIDTH`] edges
-//! farther on, both nearer to the body where another wall is near. Distances are found through the mesh, from
+//! by hand). A share is a ramp of the distance from the body: 1 up to [`CLEARANCE`] edges, 0 from [`WIDTH`]
+//! edges farther on, both nearer to the body where another wall is near. Distances are found through the mesh, from
 //! vertex to vertex, to the facets near those found for the previous vertex: what lies behind a wall is as
 //! far away as the way around it.
 //!

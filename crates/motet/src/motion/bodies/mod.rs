@@ -196,8 +196,12 @@ pub(crate) fn body_vertices(
     let mut owner = vec![None; mesh.points.len()];
     for (i, set) in sets.iter().enumerate() {
         if set.vertices.len() < 3 {
-            return Err(Error::options(format!("the body {} has {} vertices", set.name, set.vertices.len()))
-                .remedy("name patches with facets"));
+            return Err(Error::options(format!(
+                "the body {} has {} vertices; at least 3 are needed",
+                set.name,
+                set.vertices.len()
+            ))
+            .remedy("name patches with facets"));
         }
         for &v in &set.vertices {
             if let Some(other) = owner[v.index()].replace(i).filter(|other| *other != i) {
@@ -205,12 +209,15 @@ pub(crate) fn body_vertices(
                     "the bodies {} and {} share vertex {v}",
                     sets[other].name, set.name
                 ))
-                .remedy("what hangs together moves together: name both as one body, or only one of them"));
+                .remedy("connected patches move together: name both as one body, or only one of them"));
             }
             if !is_moved[v.index()] {
-                return Err(Error::options(format!("the body {} has a vertex inside the volume", set.name))
-                    .at(format!("vertex {v}"))
-                    .remedy("name patches of the boundary, or inside ones whose vertices are moved, too"));
+                return Err(Error::options(format!(
+                    "the body {} has an interior vertex that is not moved",
+                    set.name
+                ))
+                .at(format!("vertex {v}"))
+                .remedy("name patches of the boundary, or interior patches whose vertices are also moved"));
             }
         }
     }
@@ -247,8 +254,8 @@ fn inner_parts(mesh: &Mesh, boundary: &Boundary, is_moved: &[bool]) -> Result<Ve
     let extents: Vec<f64> = parts.iter().map(extent).collect();
     let outer = (1..parts.len()).fold(0, |i, j| if extents[j] > extents[i] { j } else { i });
     if parts.len() < 2 {
-        return Err(Error::options("the walls are all in one piece: no part of them is a body inside")
-            .remedy("name the patches that move as bodies, move a patch inside, or use another method"));
+        return Err(Error::options("all walls are connected: no part of them is a separate body")
+            .remedy("name the patches that move as bodies, move an interior patch, or use another method"));
     }
     parts.remove(outer);
     Ok(parts)

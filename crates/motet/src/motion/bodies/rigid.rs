@@ -14,8 +14,8 @@ pub(super) struct Rigid {
     axis: Point,
     /// Half the angle of rotation, which is from 0 to pi.
     half_angle: f64,
-    /// Sine and cosine of `k / TABLE_SIZE` of the half angle, for each `k` up to [`TABLE_SIZE`]; empty where nothing
-    /// rotates.
+    /// Sine and cosine of `k / TABLE_SIZE` of the half angle, for each `k` up to [`TABLE_SIZE`]; empty where
+    /// nothing rotates.
     angle_table: Vec<[f64; 2]>,
 }
 

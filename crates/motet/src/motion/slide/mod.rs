@@ -128,7 +128,7 @@ fn in_plane(
     let flat: Vec<Point> = sliding.iter().map(|v| plane.flatten(place(v))).collect();
     let graph = triangulate(&nodes, threads).map_err(|_| {
         Error::input(format!(
-            "{} vertices on its rim, not all in a line, are needed for others to follow; it has {}",
+            "at least {} vertices on its rim that are not collinear are needed; it has {}",
             3,
             sources.len()
         ))

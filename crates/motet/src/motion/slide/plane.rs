@@ -32,12 +32,13 @@ impl Plane {
         let normal = scale(area, 1.0 / norm(area));
         if !in_range(normal) {
             return Err(Error::input(format!("its {} facets have no area", set.rings.len()))
-                .remedy("name a patch that the mesh has"));
+                .remedy("name a patch of the mesh that has facets with an area"));
         }
         let deviation = corners.map(|p| dot(normal, sub(p, centre)).abs()).fold(0.0, f64::max);
         if deviation > tolerance * radius {
             return Err(Error::input(format!(
-                "is not flat: {deviation:.3e} off its plane, {:.3e} of its radius of {radius:.3e}; {tolerance} of it is allowed",
+                "is not flat: vertices are up to {deviation:.3e} off its plane, {:.3e} of its radius {radius:.3e}; \
+                 a fraction of {tolerance} is allowed",
                 deviation / radius
             ))
             .remedy(

@@ -25,8 +25,8 @@ use crate::motion::smooth::star::Star;
 const FADE_EAS: f64 = 0.225;
 /// A sweep moves a vertex by no more than this fraction of the mean edge at it.
 const MAX_STEP: f64 = 0.3;
-/// Number of shorter steps that are tried where the whole one does not help, each [`BACKTRACK_FACTOR`] times the one
-/// before.
+/// Number of shorter steps that are tried where the whole one does not help, each [`BACKTRACK_FACTOR`] times
+/// the one before.
 const BACKTRACKS: usize = 3;
 const BACKTRACK_FACTOR: f64 = 0.4;
 

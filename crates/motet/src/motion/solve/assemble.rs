@@ -115,7 +115,7 @@ impl<B: Block> System<B> {
             }
         }
         *sweeps = Sgs::new(inner).map_err(|_| {
-            Error::input("a vertex that is to follow has no cell with a volume at its corner")
+            Error::input("a vertex that should follow is a corner of no cell with a volume")
                 .remedy("use the method `delaunay`, which needs no cells; or write the mesh with linear cells, none of them flat")
         })?;
         Ok(())

@@ -70,7 +70,7 @@ impl LinearMethod {
                 (Kind::Laplace(Solver::new(system, &places, law.factor_bytes, threads)?), law.tolerance)
             }
             _ => {
-                return Err(Error::options("this method has no system to be solved"));
+                return Err(Error::options("this method does not solve a linear system"));
             }
         };
         let last = Mutex::new(vec![[0.0; 3]; free.len()]);
