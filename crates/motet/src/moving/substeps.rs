@@ -157,7 +157,7 @@ impl StepRun<'_> {
             now.mover.step(&driven, &mut self.points, self.threads)?;
             self.seconds.motion += begin.elapsed().as_secs_f64();
             let begin = Instant::now();
-            let is_upright = now.mover.check.turned_over(&self.points, self.threads).is_empty();
+            let is_upright = now.mover.check.newly_inverted(&self.points, self.threads).is_empty();
             self.seconds.quality += begin.elapsed().as_secs_f64();
             if is_upright {
                 let shape = self.shape_at(now);

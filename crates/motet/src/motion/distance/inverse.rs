@@ -10,7 +10,7 @@ use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot, norm, scale, sub};
 use crate::mesh::bounds;
 use crate::motion::options::FacetSet;
-use crate::motion::rotation::{Wall, change};
+use crate::motion::rotation::{Wall, rotation_change};
 use crate::motion::update::Displacements;
 
 /// The corners of the boundary, set up for one position of the mesh.
@@ -84,7 +84,7 @@ impl InverseDistance {
                 let near = self.extent * self.extent / dot(arm, arm);
                 let cubed = near * near.sqrt();
                 let weight = corner.area * (cubed + NEAR.powi(5) * cubed * near);
-                sum = add(sum, scale(add(d, change(q, arm)), weight));
+                sum = add(sum, scale(add(d, rotation_change(q, arm)), weight));
                 weights += weight;
             }
             if weights > 0.0 && weights.is_finite() { add(p, scale(sum, 1.0 / weights)) } else { p }
