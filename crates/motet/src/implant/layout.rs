@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::devices::Devices;
 use super::gap::Gap;
 use super::zone::Draft;
-use crate::base::{CellId, Id, VertexId, rising};
+use crate::base::{CellId, Id, VertexId, sorted_ids};
 use crate::mesh::{CellKind, Cells, Mesh, TetPart};
 
 /// Everything that is to be joined.
@@ -38,9 +38,10 @@ impl Layout {
         for (&cell, &removed) in part.tet_to_cell.iter().zip(&draft.is_removed) {
             is_removed[cell.index()] = removed;
         }
-        let dropped: HashSet<[VertexId; 3]> = gap.dropped.iter().map(|face| rising(face.vertices)).collect();
+        let dropped: HashSet<[VertexId; 3]> =
+            gap.dropped.iter().map(|face| sorted_ids(face.vertices)).collect();
         for (&cell, triangle) in part.triangle_to_cell.iter().zip(&part.mesh.triangles) {
-            is_removed[cell.index()] = dropped.contains(&rising(*triangle));
+            is_removed[cell.index()] = dropped.contains(&sorted_ids(*triangle));
         }
         let mut layout =
             Self { cells: Cells::new(), to_old: Vec::new(), host_to_cell: Vec::new(), n_host_cells: 0 };

@@ -26,7 +26,7 @@ impl FirstMesh {
         let mover = Mover::new(&mesh, &run.options.motion.of(&mesh), threads)?;
         let mut now = Current::of(mesh, mover, self.records.clone(), self.left.clone(), run.wall, threads)?;
         now.mover.step(&now.target(run.displacement), &mut now.mesh.points, threads)?;
-        let is_upright = now.mover.check.turned_over(&now.mesh.points, threads).is_empty();
+        let is_upright = now.mover.check.newly_inverted(&now.mesh.points, threads).is_empty();
         let shape = now.tets.shape(&now.mesh.points, run.options.limit(), threads);
         Ok((is_upright && shape.bad.len() <= self.n_bad).then_some((now, shape)))
     }
@@ -103,7 +103,7 @@ impl StepRun<'_> {
         for _ in 0..MAX_ATTEMPTS {
             let points: Vec<Point> =
                 is_first.iter().zip(&self.points).map(|(place, here)| place.unwrap_or(*here)).collect();
-            let turned = now.mover.check.turned_over(&points, self.threads);
+            let turned = now.mover.check.newly_inverted(&points, self.threads);
             if turned.is_empty() {
                 return points;
             }

@@ -23,7 +23,11 @@ impl Repair {
         let mut inserted = Vec::new();
         let n_slots = self.complex.n_vertex_slots();
         for vertex in (0..n_slots).rev().map(VertexId::new) {
-            self.watch.report_and_check("removing superfluous vertices", n_slots - vertex.index(), n_slots)?;
+            self.watch.report_and_check(
+                "removing superfluous vertices",
+                n_slots - vertex.index(),
+                n_slots,
+            )?;
             if self.complex.is_inserted(vertex)
                 && self.complex.is_used(vertex)
                 && self.closeness(vertex) < CLOSE
