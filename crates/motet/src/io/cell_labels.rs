@@ -4,14 +4,14 @@ use crate::io::select::lost_arrays;
 use crate::mesh::{CellKind, Field, Labels, Mesh};
 
 /// Arrays that may hold labels of curves and points.
-const LOW_ARRAYS: &[&str] = &["gmsh:physical", "medit:ref", "tetgen:ref"];
+const LOW_DIM_LABEL_ARRAYS: &[&str] = &["gmsh:physical", "medit:ref", "tetgen:ref"];
 
 /// The label of each cell: its region or patch, or for curves and points the value of `gmsh:physical` or a
-/// similar array; 0 where there is none, and where the label could only come from the array `but_not`.
-pub(super) fn cell_labels(mesh: &Mesh, but_not: Option<&str>) -> Vec<i32> {
+/// similar array; 0 where there is none, and where the label could only come from the array `except`.
+pub(super) fn cell_labels(mesh: &Mesh, except: Option<&str>) -> Vec<i32> {
     let mut labels = vec![0; mesh.cells.len()];
-    let low = LOW_ARRAYS.iter().find_map(|name| int_column(mesh, name));
-    let ids = |labels: Option<Labels>| labels.filter(|l| but_not != Some(l.array.as_str())).map(|l| l.ids);
+    let low = LOW_DIM_LABEL_ARRAYS.iter().find_map(|name| int_column(mesh, name));
+    let ids = |labels: Option<Labels>| labels.filter(|l| except != Some(l.array.as_str())).map(|l| l.ids);
     let sources = [(ids(mesh.regions()), &[3][..]), (ids(mesh.patches()), &[2]), (low, &[0, 1])];
     for (ids, dims) in sources {
         for ((label, kind), id) in labels.iter_mut().zip(mesh.cells.kinds()).zip(ids.into_iter().flatten()) {
@@ -30,11 +30,11 @@ pub(super) fn int_column(mesh: &Mesh, name: &str) -> Option<Vec<i32>> {
 }
 
 /// Whether `labels` hold everything that a cell array holds.
-pub(super) fn say_all(labels: &[i32], mesh: &Mesh, field: &Field) -> bool {
+pub(super) fn labels_cover(labels: &[i32], mesh: &Mesh, field: &Field) -> bool {
     let dim = match field.name.as_str() {
         "region" => Some(3),
         "patch" => Some(2),
-        name if LOW_ARRAYS.contains(&name) => None,
+        name if LOW_DIM_LABEL_ARRAYS.contains(&name) => None,
         _ => return false,
     };
     let said = |(&label, kind): (&i32, &CellKind)| {
@@ -46,7 +46,7 @@ pub(super) fn say_all(labels: &[i32], mesh: &Mesh, field: &Field) -> bool {
 
 /// A message that lists the cell arrays with more information than `labels`.
 pub(super) fn lost_cell_arrays(format: &str, mesh: &Mesh, labels: &[i32]) -> Option<String> {
-    lost_arrays(format, "cell", mesh.cell_data.iter().filter(|f| !say_all(labels, mesh, f)))
+    lost_arrays(format, "cell", mesh.cell_data.iter().filter(|f| !labels_cover(labels, mesh, f)))
 }
 
 /// A message that lists the names of labels, for formats without such names.

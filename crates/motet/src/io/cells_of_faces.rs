@@ -55,8 +55,8 @@ fn corners(kind: CellKind, faces: &[Vec<VertexId>]) -> Option<Vec<VertexId>> {
     }
     for (&place, &v) in shape.iter().zip(base) {
         let rings = shapes.iter().map(|shape| shape.corners());
-        let beyond = along_edges(rings, place).find(|p| !shape.contains(p))?;
-        let found = along_edges(faces.iter().map(Vec::as_slice), v).find(|v| !base.contains(v))?;
+        let beyond = successors(rings, place).find(|p| !shape.contains(p))?;
+        let found = successors(faces.iter().map(Vec::as_slice), v).find(|v| !base.contains(v))?;
         let known = &mut vertices[beyond as usize];
         if known.is_some_and(|known| known != found) {
             return None;
@@ -72,7 +72,7 @@ fn corners(kind: CellKind, faces: &[Vec<VertexId>]) -> Option<Vec<VertexId>> {
 }
 
 /// The successors of `of` in the rings that contain it.
-fn along_edges<'a, T: Copy + PartialEq + 'a>(
+fn successors<'a, T: Copy + PartialEq + 'a>(
     rings: impl Iterator<Item = &'a [T]>,
     of: T,
 ) -> impl Iterator<Item = T> {

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::base::{Error, Result};
 
 /// A foreign file type and how to convert it; `FILE` in the remedy stands for the name of the file.
-struct Foreign {
+struct ForeignFormat {
     name: &'static str,
     endings: &'static [&'static str],
     remedy: &'static str,
@@ -20,60 +20,76 @@ const CAD: &str = "it has to be meshed first: gmsh -2 -format stl FILE -o surfac
 const GEOMETRY: &str = "a geometry has to be meshed first: gmsh -3 -format msh41 FILE -o mesh.msh";
 const TRIMESH: &str = "convert it with trimesh (pip install trimesh) or Blender, to .stl, .obj or .ply";
 
-const FOREIGN: &[Foreign] = &[
-    Foreign { name: "a mesh of Ansys Fluent", endings: &[".cas", ".cas.gz"], remedy: FLUENT },
-    Foreign {
+const FOREIGN: &[ForeignFormat] = &[
+    ForeignFormat { name: "a mesh of Ansys Fluent", endings: &[".cas", ".cas.gz"], remedy: FLUENT },
+    ForeignFormat {
         name: "a case of Ansys Fluent (HDF5)",
         endings: &[".cas.h5", ".msh.h5", ".dat.h5"],
         remedy: PARAVIEW,
     },
-    Foreign {
+    ForeignFormat {
         name: "an Exodus II file",
         endings: &[".e", ".ex2", ".exo", ".exii", ".g", ".gen"],
         remedy: MESHIO_HDF,
     },
-    Foreign { name: "an XDMF file", endings: &[".xdmf", ".xmf", ".xdmf2", ".xdmf3"], remedy: MESHIO_HDF },
-    Foreign { name: "a Nastran file", endings: &[".bdf", ".nas", ".fem", ".nastran"], remedy: MESHIO },
-    Foreign { name: "a MED file (Salome, Code_Aster)", endings: &[".med"], remedy: MESHIO_HDF },
-    Foreign { name: "a MOAB file", endings: &[".h5m"], remedy: MESHIO_HDF },
-    Foreign { name: "an SU2 mesh", endings: &[".su2"], remedy: MESHIO },
-    Foreign { name: "a Netgen mesh", endings: &[".vol", ".vol.gz"], remedy: MESHIO },
-    Foreign { name: "a UGRID file", endings: &[".ugrid"], remedy: MESHIO },
-    Foreign { name: "a FLAC3D grid", endings: &[".f3grid"], remedy: MESHIO },
-    Foreign { name: "a Kratos model part", endings: &[".mdpa"], remedy: MESHIO },
-    Foreign { name: "an AVS-UCD file", endings: &[".avs"], remedy: MESHIO },
-    Foreign { name: "a Permas file", endings: &[".post", ".post.gz", ".dato", ".dato.gz"], remedy: MESHIO },
-    Foreign { name: "a Tecplot file", endings: &[".plt", ".szplt", ".tec"], remedy: PARAVIEW },
-    Foreign { name: "a file of EnSight", endings: &[".case", ".encas", ".geo.ensight"], remedy: PARAVIEW },
-    Foreign { name: "a file of LS-DYNA", endings: &[".k", ".key", ".dyn", ".d3plot"], remedy: PARAVIEW },
-    Foreign {
+    ForeignFormat {
+        name: "an XDMF file",
+        endings: &[".xdmf", ".xmf", ".xdmf2", ".xdmf3"],
+        remedy: MESHIO_HDF,
+    },
+    ForeignFormat { name: "a Nastran file", endings: &[".bdf", ".nas", ".fem", ".nastran"], remedy: MESHIO },
+    ForeignFormat { name: "a MED file (Salome, Code_Aster)", endings: &[".med"], remedy: MESHIO_HDF },
+    ForeignFormat { name: "a MOAB file", endings: &[".h5m"], remedy: MESHIO_HDF },
+    ForeignFormat { name: "an SU2 mesh", endings: &[".su2"], remedy: MESHIO },
+    ForeignFormat { name: "a Netgen mesh", endings: &[".vol", ".vol.gz"], remedy: MESHIO },
+    ForeignFormat { name: "a UGRID file", endings: &[".ugrid"], remedy: MESHIO },
+    ForeignFormat { name: "a FLAC3D grid", endings: &[".f3grid"], remedy: MESHIO },
+    ForeignFormat { name: "a Kratos model part", endings: &[".mdpa"], remedy: MESHIO },
+    ForeignFormat { name: "an AVS-UCD file", endings: &[".avs"], remedy: MESHIO },
+    ForeignFormat {
+        name: "a Permas file",
+        endings: &[".post", ".post.gz", ".dato", ".dato.gz"],
+        remedy: MESHIO,
+    },
+    ForeignFormat { name: "a Tecplot file", endings: &[".plt", ".szplt", ".tec"], remedy: PARAVIEW },
+    ForeignFormat {
+        name: "a file of EnSight",
+        endings: &[".case", ".encas", ".geo.ensight"],
+        remedy: PARAVIEW,
+    },
+    ForeignFormat {
+        name: "a file of LS-DYNA",
+        endings: &[".k", ".key", ".dyn", ".d3plot"],
+        remedy: PARAVIEW,
+    },
+    ForeignFormat {
         name: "an I-DEAS universal file",
         endings: &[".unv"],
         remedy: "open it in Gmsh or Salome: gmsh -3 -format msh41 FILE -o mesh.msh",
     },
-    Foreign {
+    ForeignFormat {
         name: "an archive of Ansys Mechanical",
         endings: &[".cdb", ".rst"],
         remedy: "convert it with ansys-mapdl-reader (pip install ansys-mapdl-reader), which saves .vtk",
     },
-    Foreign {
+    ForeignFormat {
         name: "a file of COMSOL",
         endings: &[".mphtxt", ".mphbin"],
         remedy: "export it from COMSOL as .nas, and convert that with meshio",
     },
-    Foreign { name: "a geometry of Gmsh", endings: &[".geo", ".geo_unrolled"], remedy: GEOMETRY },
-    Foreign { name: "a CAD model", endings: &[".step", ".stp", ".iges", ".igs", ".brep"], remedy: CAD },
-    Foreign {
+    ForeignFormat { name: "a geometry of Gmsh", endings: &[".geo", ".geo_unrolled"], remedy: GEOMETRY },
+    ForeignFormat { name: "a CAD model", endings: &[".step", ".stp", ".iges", ".igs", ".brep"], remedy: CAD },
+    ForeignFormat {
         name: "a surface of a 3D scene",
         endings: &[".3mf", ".glb", ".gltf", ".dae", ".fbx", ".usd", ".usdz", ".x3d", ".wrl", ".3ds", ".amf"],
         remedy: TRIMESH,
     },
-    Foreign {
+    ForeignFormat {
         name: "an image",
         endings: &[".nii", ".nii.gz", ".nrrd", ".mha", ".mhd", ".dcm", ".tif", ".tiff"],
         remedy: "segment it first, such as with 3D Slicer, and save the surface as .stl or .vtp",
     },
-    Foreign {
+    ForeignFormat {
         name: "a packed file",
         endings: &[".gz", ".zip", ".bz2", ".xz", ".zst", ".tar", ".7z"],
         remedy: "unpack it first",
@@ -81,15 +97,15 @@ const FOREIGN: &[Foreign] = &[
 ];
 
 /// The error for a file of another program, recognized by its extension; `None` for other extensions.
-pub(super) fn by_ending(path: &Path) -> Option<Error> {
+pub(super) fn by_extension(path: &Path) -> Option<Error> {
     let name = path.file_name()?.to_string_lossy().to_lowercase();
     FOREIGN
         .iter()
         .find(|f| f.endings.iter().any(|e| name.ends_with(e)))
-        .map(|f| unread(f.name, f.remedy, path))
+        .map(|f| not_supported(f.name, f.remedy, path))
 }
 
-fn unread(what: &str, remedy: &str, path: &Path) -> Error {
+fn not_supported(what: &str, remedy: &str, path: &Path) -> Error {
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     Error::input(format!("is {what}, which motet does not read"))
         .in_file(path)
@@ -100,7 +116,7 @@ fn unread(what: &str, remedy: &str, path: &Path) -> Error {
 pub(super) fn refuse(path: &Path, bytes: &[u8], endings: &[&str]) -> Result<()> {
     let is = |ending: &str| endings.contains(&ending);
     let start = bytes.trim_ascii_start();
-    let named = |what: &str, remedy: &str| Err(unread(what, remedy, path));
+    let named = |what: &str, remedy: &str| Err(not_supported(what, remedy, path));
     if bytes.starts_with(b"CDF\x01") || bytes.starts_with(b"CDF\x02") || bytes.starts_with(b"CDF\x05") {
         return named("a netCDF file, perhaps Exodus II", MESHIO_HDF);
     }
@@ -139,7 +155,7 @@ mod tests {
 
     #[test]
     fn files_of_others_are_named_with_what_converts_them() {
-        let of = |name: &str| by_ending(Path::new(name)).map(|e| e.to_string()).unwrap_or_default();
+        let of = |name: &str| by_extension(Path::new(name)).map(|e| e.to_string()).unwrap_or_default();
         assert!(
             of("a/Wing.EXO").contains("Exodus II")
                 && of("a/Wing.EXO").contains("meshio convert Wing.EXO mesh.vtu")
@@ -149,7 +165,7 @@ mod tests {
                 && of("x.step").contains("gmsh")
                 && of("x.cas.h5").contains("ParaView")
         );
-        assert!(by_ending(Path::new("x.docx")).is_none());
+        assert!(by_extension(Path::new("x.docx")).is_none());
     }
 
     #[test]

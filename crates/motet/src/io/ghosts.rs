@@ -3,7 +3,7 @@
 
 use crate::base::{CellId, VertexId};
 use crate::io::format::Notes;
-use crate::io::select::of_cells;
+use crate::io::select::restricted_to_cells;
 use crate::io::weld::keep_points;
 use crate::mesh::Mesh;
 
@@ -11,10 +11,10 @@ use crate::mesh::Mesh;
 const TYPE: &str = "vtkGhostType";
 const LEVELS: &str = "vtkGhostLevels";
 /// The flags `DUPLICATECELL` and `HIDDENCELL`.
-const LEFT_OUT: i64 = 1 | 32;
+const GHOST_OR_HIDDEN: i64 = 1 | 32;
 
 /// Removes ghost cells and the points that only they use, and adds a note.
-pub(super) fn leave_out(mesh: &mut Mesh, notes: &Notes) {
+pub(super) fn remove_ghosts(mesh: &mut Mesh, notes: &Notes) {
     let Some(is_ghost) = ghosts(mesh) else { return };
     let n = is_ghost.iter().filter(|&&is| is).count();
     if n == 0 {
@@ -26,7 +26,7 @@ pub(super) fn leave_out(mesh: &mut Mesh, notes: &Notes) {
         let used = if is_ghost[cell.index()] { &mut by_ghosts } else { &mut by_others };
         vertices.iter().for_each(|v| used[v.index()] = true);
     }
-    *mesh = of_cells(mesh, |cell: CellId| !is_ghost[cell.index()]);
+    *mesh = restricted_to_cells(mesh, |cell: CellId| !is_ghost[cell.index()]);
     let kept: Vec<usize> = (0..n_points).filter(|&v| by_others[v] || !by_ghosts[v]).collect();
     let mut new = vec![VertexId::default(); n_points];
     kept.iter().enumerate().for_each(|(i, &v)| new[v] = VertexId::new(i));
@@ -44,7 +44,7 @@ fn ghosts(mesh: &Mesh) -> Option<Vec<bool>> {
         let field = mesh.cell_field(name).filter(|f| f.components == 1)?;
         field.values.to_i64().filter(|numbers| numbers.len() == mesh.cells.len())
     };
-    let by_type = numbers(TYPE).map(|bits| bits.iter().map(|b| b & LEFT_OUT != 0).collect());
+    let by_type = numbers(TYPE).map(|bits| bits.iter().map(|b| b & GHOST_OR_HIDDEN != 0).collect());
     by_type.or_else(|| numbers(LEVELS).map(|levels| levels.iter().map(|&l| l > 0).collect()))
 }
 
@@ -71,7 +71,7 @@ mod tests {
             mesh.points.push([9.0; 3]);
             mesh.point_data = vec![Field::scalars("p", vec![0.5; mesh.points.len()])];
             let notes = Notes::default();
-            leave_out(&mut mesh, &notes);
+            remove_ghosts(&mut mesh, &notes);
             mesh.validate().unwrap();
             assert!((volume(&mesh) - 0.5).abs() < 1e-12, "{}", volume(&mesh));
             assert_eq!(mesh.points.last(), Some(&[9.0; 3]), "an unused point is no ghost's");
@@ -86,7 +86,7 @@ mod tests {
         let mut mesh = shapes::box_grid([1; 3], [[0.0; 3], [1.0; 3]]);
         mesh.set_cell_field(Field::scalars(TYPE, vec![0u8; mesh.cells.len()]));
         let (before, notes) = (mesh.clone(), Notes::default());
-        leave_out(&mut mesh, &notes);
+        remove_ghosts(&mut mesh, &notes);
         assert_eq!(mesh, before);
         assert!(notes.into_vec().is_empty());
     }

@@ -5,24 +5,24 @@ use std::io::Read as _;
 use flate2::read::MultiGzDecoder;
 
 use crate::base::{Error, Result};
-use crate::io::room::Room;
+use crate::io::memory_budget::MemoryBudget;
 
 /// Whether the bytes begin with the gzip signature.
-pub(super) fn is_packed(bytes: &[u8]) -> bool {
+pub(super) fn is_gzip(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
 /// The decompressed content of a gzip file.
 ///
 /// Fails if the file is damaged, or decompresses to more than files of its size may.
-pub(super) fn unpack(bytes: &[u8]) -> Result<Vec<u8>> {
-    let room = Room::of(bytes.len() as u64);
-    let most = room.left();
+pub(super) fn decompress(bytes: &[u8]) -> Result<Vec<u8>> {
+    let budget = MemoryBudget::of(bytes.len() as u64);
+    let limit = budget.remaining();
     let mut content = Vec::new();
-    MultiGzDecoder::new(bytes).take(most.saturating_add(1)).read_to_end(&mut content).map_err(|e| {
+    MultiGzDecoder::new(bytes).take(limit.saturating_add(1)).read_to_end(&mut content).map_err(|e| {
         Error::input(format!("cannot be unpacked: {e}"))
             .at(format!("after {} unpacked bytes", content.len()))
             .remedy("the file is cut off or damaged: get it again")
     })?;
-    if content.len() as u64 > most { Err(room.exceeded()) } else { Ok(content) }
+    if content.len() as u64 > limit { Err(budget.exceeded()) } else { Ok(content) }
 }

@@ -23,7 +23,7 @@ pub(super) fn label_fields(mesh: &Mesh) -> (Vec<Field>, Vec<Field>) {
 
 /// Moves the names of labels from the field data to `label_names`. Labels may have any integer type, as other
 /// programs may write them with more or fewer bytes.
-pub(super) fn take_label_names(mesh: &mut Mesh) {
+pub(super) fn extract_label_names(mesh: &mut Mesh) {
     let names = &mut mesh.label_names;
     mesh.field_data.retain(|field| {
         let is_whole = !matches!(field.values, Values::Text(_) | Values::F64(_) | Values::F32(_));

@@ -9,7 +9,7 @@ use crate::base::{Error, Result};
 use crate::io::replace::{DRAFT, folder_of};
 
 /// Attempts to take a lock: its holder removes the lock file on release, so a file just opened may be gone.
-const TRIES: usize = 16;
+const MAX_ATTEMPTS: usize = 16;
 
 /// A lock on an output, held until it is dropped.
 #[derive(Debug)]
@@ -29,7 +29,7 @@ impl OutputLock {
         let name = output.file_name().unwrap_or_default().to_string_lossy();
         let path = folder_of(output).join(format!("{DRAFT}{name}.lock"));
         let failed = |e: std::io::Error| Error::output(&path, e);
-        for _ in 0..TRIES {
+        for _ in 0..MAX_ATTEMPTS {
             let open = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
             let mut file = open.map_err(failed)?;
             match file.try_lock() {
@@ -40,7 +40,7 @@ impl OutputLock {
                 }
                 Err(TryLockError::Error(e)) => return Err(failed(e)),
             }
-            if is_at(&file, &path) {
+            if still_at(&file, &path) {
                 file.set_len(0).map_err(failed)?;
                 writeln!(file, "{}", std::process::id()).map_err(failed)?;
                 return Ok(Self { path, file: Some(file) });
@@ -81,14 +81,14 @@ fn busy(output: &Path, file: &mut File) -> Error {
 }
 
 #[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> bool {
+fn still_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let key = |m: &std::fs::Metadata| (m.dev(), m.ino());
     matches!((file.metadata(), path.metadata()), (Ok(a), Ok(b)) if key(&a) == key(&b))
 }
 
 #[cfg(not(unix))]
-fn is_at(_: &File, _: &Path) -> bool {
+fn still_at(_: &File, _: &Path) -> bool {
     true
 }
 
@@ -102,8 +102,8 @@ mod tests {
         let output = folder.path().join("run.pvd");
         let held = OutputLock::take(&output).unwrap();
         assert!(held.is_held());
-        let told = OutputLock::take(&output).unwrap_err().to_string();
-        assert!(told.contains("run.pvd") && told.contains(&std::process::id().to_string()), "{told}");
+        let error = OutputLock::take(&output).unwrap_err().to_string();
+        assert!(error.contains("run.pvd") && error.contains(&std::process::id().to_string()), "{error}");
         assert!(OutputLock::take(&folder.path().join("other.pvd")).is_ok());
         drop(held);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);

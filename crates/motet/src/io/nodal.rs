@@ -99,15 +99,15 @@ impl NodalSeries {
     /// If the file cannot be written; its previous content is then unchanged.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<()> {
         let mut out = Vec::new();
-        let tell = "writing into memory does not fail";
-        writeln!(out, "{} {} {}", self.components, self.times.len(), self.ids.len()).expect(tell);
+        let infallible = "writing into memory does not fail";
+        writeln!(out, "{} {} {}", self.components, self.times.len(), self.ids.len()).expect(infallible);
         for &time in &self.times {
             push_floats(&mut out, &[time]);
             out.push(b'\n');
         }
         let of_node = self.values.chunks_exact((self.times.len() * self.components).max(1));
         for (id, rows) in self.ids.iter().zip(of_node) {
-            writeln!(out, "{id}").expect(tell);
+            writeln!(out, "{id}").expect(infallible);
             for row in rows.chunks_exact(self.components) {
                 push_floats(&mut out, row);
                 out.push(b'\n');
@@ -195,7 +195,7 @@ mod tests {
         for len in 0..whole.len() - 24 {
             assert!(NodalSeries::parse(&whole[..len]).is_err(), "cut off at {len}");
         }
-        for (from, to, told) in [
+        for (from, to, expected) in [
             ("2   2   3", "2   2   900", "line 1: 900 nodes are announced"),
             ("2   2   3", "2   2   2", "behind the last node"),
             ("2   2   3", "9000000000000000000 2 3", "components are announced"),
@@ -207,7 +207,7 @@ mod tests {
         ] {
             assert!(GUIDE.contains(from));
             let error = NodalSeries::parse(GUIDE.replacen(from, to, 1).as_bytes()).unwrap_err().to_string();
-            assert!(error.contains(told), "{error}");
+            assert!(error.contains(expected), "{error}");
         }
     }
 }

@@ -26,7 +26,7 @@ struct Reader {
     names: Vec<String>,
     label: i32,
     /// The largest vertex used before it was defined, and the line of its use.
-    ahead: Option<(usize, usize)>,
+    forward_reference: Option<(usize, usize)>,
 }
 
 fn read(input: &Input<'_>) -> Result<Mesh> {
@@ -41,7 +41,7 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
             b"g" | b"o" => reader.group(&mut text),
             _ if is_known(statement) => {
                 input.notes.add(format!("statements {} are passed over", quoted(statement)));
-                while in_line(&mut text).is_some() {}
+                while next_word(&mut text).is_some() {}
             }
             _ => {
                 return Err(text
@@ -94,7 +94,7 @@ fn is_known(statement: &[u8]) -> bool {
 }
 
 /// The next word of the statement, which a backslash continues on the next line.
-fn in_line<'a>(text: &mut Text<'a>) -> Option<&'a [u8]> {
+fn next_word<'a>(text: &mut Text<'a>) -> Option<&'a [u8]> {
     loop {
         match text.word_in_line() {
             Some(b"\\") => text.line(),
@@ -132,13 +132,13 @@ impl Reader {
     fn vertex(&mut self, text: &mut Text<'_>, input: &Input<'_>) -> Result<()> {
         let mut point = [0.0; 3];
         for x in &mut point {
-            let word = in_line(text).ok_or_else(|| {
+            let word = next_word(text).ok_or_else(|| {
                 text.error("a vertex has three coordinates").remedy("the file is damaged: get it again")
             })?;
             *x = parse_float(word).ok_or_else(|| text.unexpected("coordinate", "a number", word))?;
         }
         let mut n_further = 0;
-        while in_line(text).is_some() {
+        while next_word(text).is_some() {
             n_further += 1;
         }
         if n_further > 0 {
@@ -150,7 +150,7 @@ impl Reader {
 
     fn element(&mut self, text: &mut Text<'_>, kind: fn(usize) -> Option<CellKind>) -> Result<()> {
         let mut vertices = Vec::with_capacity(4);
-        while let Some(word) = in_line(text) {
+        while let Some(word) = next_word(text) {
             let id = word.split(|&b| b == b'/').next().unwrap_or_default();
             let id = parse_int(id).ok_or_else(|| text.unexpected("vertex", "a whole number", word))?;
             vertices.push(self.vertex_id(id, text)?);
@@ -175,15 +175,15 @@ impl Reader {
                 .error(format!("vertex {id} is named, but {n} vertices come before"))
                 .remedy("ids of vertices begin at 1; the file is damaged: get it again"));
         };
-        if place >= n && self.ahead.is_none_or(|(largest, _)| place > largest) {
-            self.ahead = Some((place, text.line_number()));
+        if place >= n && self.forward_reference.is_none_or(|(largest, _)| place > largest) {
+            self.forward_reference = Some((place, text.line_number()));
         }
         Ok(VertexId::new(place))
     }
 
     fn group(&mut self, text: &mut Text<'_>) {
         let mut words = Vec::new();
-        while let Some(word) = in_line(text) {
+        while let Some(word) = next_word(text) {
             words.push(String::from_utf8_lossy(word));
         }
         let name = words.join(" ");
@@ -195,7 +195,7 @@ impl Reader {
     }
 
     fn into_mesh(self) -> Result<Mesh> {
-        if let Some((place, line)) = self.ahead.filter(|(place, _)| *place >= self.points.len()) {
+        if let Some((place, line)) = self.forward_reference.filter(|(place, _)| *place >= self.points.len()) {
             return Err(Error::input(format!(
                 "vertex {} is named, but the file has {}",
                 place + 1,

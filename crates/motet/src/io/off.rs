@@ -146,8 +146,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told() {
-        for (text, told) in [
+    fn what_is_wrong_is_reported() {
+        for (text, expected) in [
             ("", "empty"),
             ("OFF BINARY\n", "binary"),
             ("4OFF\n1 0 0\n", "expected `OFF`"),
@@ -158,7 +158,7 @@ mod tests {
             ("OFF\n0 0 0\n", "without a point"),
         ] {
             let error = parse(text).0.unwrap_err().to_string();
-            assert!(error.contains(told), "{text}: {error}");
+            assert!(error.contains(expected), "{text}: {error}");
         }
     }
 }

@@ -32,7 +32,7 @@ const NORMAL_ARRAY: &str = "normal";
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// Maximum length of messages that quote the file, whose lines may have any length.
-const LONGEST: usize = 200;
+const MAX_MESSAGE_LENGTH: usize = 200;
 
 /// The properties of a row of an element, in the order of the header.
 #[derive(Debug, Default)]
@@ -52,12 +52,12 @@ impl PropertyAccess for Row {
 fn read(input: &Input<'_>) -> Result<Mesh> {
     let mut reader = Reader::new(Cursor::new(input.bytes));
     let parser = Parser::<Row>::new();
-    let header = parser.read_header(&mut reader).map_err(told)?;
+    let header = parser.read_header(&mut reader).map_err(parse_error)?;
     let mut mesh = Mesh::default();
     let mut faces = None;
     for element in header.elements.values() {
         check_count(element, input.bytes.len(), header.encoding == PlyEncoding::Ascii)?;
-        let rows = parser.read_payload_for_element(&mut reader, element, &header).map_err(told)?;
+        let rows = parser.read_payload_for_element(&mut reader, element, &header).map_err(parse_error)?;
         match element.name.as_str() {
             "vertex" => points(&mut mesh, element, &rows)?,
             "face" => faces = Some((element, rows)),
@@ -77,12 +77,12 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
 }
 
 /// Converts an error of the library, without its list of expected tokens.
-fn told(error: ParseError) -> Error {
+fn parse_error(error: ParseError) -> Error {
     let told = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     let told = told.split(" Error: ParseError {").next().unwrap_or_default();
     let told =
         told.strip_prefix("Line ").and_then(|rest| rest.split_once(": ")).map_or(told, |(_, what)| what);
-    let what: String = told.chars().take(LONGEST).collect();
+    let what: String = told.chars().take(MAX_MESSAGE_LENGTH).collect();
     let found = Error::input(what).remedy("the file is cut off, damaged or no PLY: get it again");
     match error.line() {
         Some(line) => found.at(format!("line {line}")),
@@ -114,13 +114,14 @@ fn check_count(element: &ElementDef, n_bytes: usize, is_text: bool) -> Result<()
 }
 
 /// The index of a property in each row.
-fn place(element: &ElementDef, name: &str) -> Option<usize> {
+fn property_index(element: &ElementDef, name: &str) -> Option<usize> {
     element.properties.keys().position(|key| key == name)
 }
 
 fn points(mesh: &mut Mesh, element: &ElementDef, rows: &[Row]) -> Result<()> {
     let axis = |name: &str| {
-        let column = place(element, name).and_then(|i| column(element, rows, i)).and_then(|v| v.to_f64());
+        let column =
+            property_index(element, name).and_then(|i| column(element, rows, i)).and_then(|v| v.to_f64());
         column.ok_or_else(|| {
             Error::input(format!("its points have no number `{name}`")).remedy("export the surface again")
         })
@@ -132,7 +133,7 @@ fn points(mesh: &mut Mesh, element: &ElementDef, rows: &[Row]) -> Result<()> {
 }
 
 fn cells(mesh: &mut Mesh, element: &ElementDef, rows: &[Row], input: &Input<'_>) -> Result<()> {
-    let corners = CORNERS.iter().find_map(|name| place(element, name));
+    let corners = CORNERS.iter().find_map(|name| property_index(element, name));
     let corners = corners.ok_or_else(|| {
         Error::input("its faces have no list `vertex_indices`").remedy("export the surface again")
     })?;
@@ -186,7 +187,7 @@ fn fields(element: &ElementDef, rows: &[Row], used: &[&str]) -> Vec<Field> {
     let mut fields: Vec<Field> = Vec::new();
     let mut i = 0;
     while i < names.len() {
-        let (name, k) = run(&names[i..]);
+        let (name, k) = array_at(&names[i..]);
         let own: Option<Vec<Values>> = (i..i + k).map(|i| column(element, rows, i)).collect();
         let own = own
             .filter(|own| own.iter().all(|v| std::mem::discriminant(v) == std::mem::discriminant(&own[0])));
@@ -206,7 +207,7 @@ fn fields(element: &ElementDef, rows: &[Row], used: &[&str]) -> Vec<Field> {
 }
 
 /// The name of the array formed by the first properties, and their number.
-fn run<'a>(names: &[&'a str]) -> (&'a str, usize) {
+fn array_at<'a>(names: &[&'a str]) -> (&'a str, usize) {
     if names.starts_with(&NORMAL) {
         return (NORMAL_ARRAY, 3);
     }
@@ -238,14 +239,14 @@ fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
         return Err(Error::options("coordinates that are no finite numbers, which PLY has no text for")
             .remedy("write it with --encoding binary"));
     }
-    let is_held =
-        |field: &&Field| type_of(&field.values).is_some() && !(is_text && has_strange(&field.values));
+    let is_written =
+        |field: &&Field| type_of(&field.values).is_some() && !(is_text && has_non_finite(&field.values));
     for (what, fields) in [("point", &mesh.point_data), ("cell", &mesh.cell_data)] {
-        let told = lost_arrays("PLY", what, fields.iter().filter(|field| !is_held(field)));
+        let told = lost_arrays("PLY", what, fields.iter().filter(|field| !is_written(field)));
         lost.extend(
             told.map(|told| format!("{told} (texts, 64-bit whole numbers, in text what is not finite)")),
         );
-        let renamed = fields.iter().filter(is_held).filter(|field| name_of(field) != field.name);
+        let renamed = fields.iter().filter(is_written).filter(|field| name_of(field) != field.name);
         lost.extend(
             renamed.map(|field| format!("{what} array {} is called {} in PLY", field.name, name_of(field))),
         );
@@ -255,7 +256,7 @@ fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     if !regions.is_empty() {
         lost.push(format!("PLY has no names of regions: {}", regions.join(", ")));
     }
-    let held = |fields: &'_ [Field]| fields.iter().filter(is_held).cloned().collect::<Vec<_>>();
+    let held = |fields: &'_ [Field]| fields.iter().filter(is_written).cloned().collect::<Vec<_>>();
     let (of_points, of_cells) = (held(&mesh.point_data), held(&mesh.cell_data));
 
     let mut ply = Ply::<DefaultElement>::new();
@@ -323,7 +324,7 @@ fn type_of(values: &Values) -> Option<ScalarType> {
 }
 
 /// Whether there is a value that is not finite.
-fn has_strange(values: &Values) -> bool {
+fn has_non_finite(values: &Values) -> bool {
     !values.is_integer() && (0..values.len()).any(|i| values.get_f64(i).is_some_and(|x| !x.is_finite()))
 }
 
@@ -420,7 +421,7 @@ mod tests {
     }
 
     #[test]
-    fn what_others_write_is_read_and_what_is_passed_over_is_told() {
+    fn what_others_write_is_read_and_what_is_passed_over_is_reported() {
         let head = "ply\r\nformat ascii 1.0\r\nobj_info scanned\r\nelement vertex 3\r\nproperty float x\r\nproperty float y\r\n\
                     property float z\r\nproperty uchar red\r\nelement face 1\r\nproperty list uchar int vertex_index\r\n\
                     property list uchar float texcoord\r\nelement edge 1\r\nproperty int vertex1\r\nproperty int vertex2\r\nend_header\r\n";
@@ -442,7 +443,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told() {
+    fn what_is_wrong_is_reported() {
         let head = |rest: &str| format!("ply\nformat ascii 1.0\n{rest}");
         let xyz = "property float x\nproperty float y\nproperty float z\n";
         let face = "property list uchar int vertex_indices\n";

@@ -9,10 +9,10 @@ pub(super) fn next_polyhedron(stream: &mut &[u32]) -> Option<Csr<VertexId>> {
     let (&n_faces, mut rest) = stream.split_first()?;
     let mut faces = Csr::default();
     for _ in 0..n_faces {
-        let (&n, behind) = rest.split_first()?;
-        let (face, behind) = behind.split_at_checked(n as usize)?;
+        let (&n, tail) = rest.split_first()?;
+        let (face, tail) = tail.split_at_checked(n as usize)?;
         faces.push(face.iter().map(|&v| VertexId(v)));
-        rest = behind;
+        rest = tail;
     }
     *stream = rest;
     Some(faces)

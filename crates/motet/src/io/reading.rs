@@ -29,7 +29,7 @@ pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
             .in_file(input.path));
     };
     if !format.is_folder() {
-        refuse_stand_ins(input.bytes).map_err(|e| e.in_file(input.path))?;
+        refuse_non_meshes(input.bytes).map_err(|e| e.in_file(input.path))?;
         foreign::refuse(input.path, input.bytes, format.endings)?;
     }
     checked(read(input), input.path, input.notes)
@@ -37,15 +37,16 @@ pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
 
 /// Validates the result of a reader and removes ghost cells; adds the file and a remedy to errors.
 pub(super) fn checked(mesh: Result<Mesh>, path: &Path, notes: &Notes) -> Result<Mesh> {
-    let told = |e: Error| e.in_file(path).remedy("the file is damaged, or was written wrong: write it again");
-    let mut mesh = mesh.map_err(told)?;
-    mesh.validate().map_err(told)?;
-    ghosts::leave_out(&mut mesh, notes);
+    let damaged =
+        |e: Error| e.in_file(path).remedy("the file is damaged, or was written wrong: write it again");
+    let mut mesh = mesh.map_err(damaged)?;
+    mesh.validate().map_err(damaged)?;
+    ghosts::remove_ghosts(&mut mesh, notes);
     Ok(mesh)
 }
 
 /// Rejects content that cannot be a mesh in any format.
-fn refuse_stand_ins(bytes: &[u8]) -> Result<()> {
+fn refuse_non_meshes(bytes: &[u8]) -> Result<()> {
     if bytes.is_empty() {
         return Err(Error::input("is empty (0 bytes)").remedy("get the file again"));
     }
@@ -63,7 +64,7 @@ pub fn is_same_file(a: impl AsRef<Path>, b: impl AsRef<Path>) -> bool {
 }
 
 /// The content of a file that may be missing, such as a companion of the file being read.
-pub(super) fn read_beside(path: &Path) -> Result<Option<Vec<u8>>> {
+pub(super) fn read_if_exists(path: &Path) -> Result<Option<Vec<u8>>> {
     match std::fs::read(path) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),

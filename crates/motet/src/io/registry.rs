@@ -43,11 +43,11 @@ const FORMATS: &[Format] = &[
 /// Formats that are only recognized to reject them with advice.
 const REFUSED: &[Format] = &[vtkxml::OTHERS];
 
-fn by_ending(path: &Path) -> Result<&'static Format> {
+fn by_extension(path: &Path) -> Result<&'static Format> {
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let mut all = FORMATS.iter().chain(REFUSED);
     all.find(|f| f.endings.iter().any(|e| name.ends_with(e))).ok_or_else(|| {
-        if let Some(error) = foreign::by_ending(path) {
+        if let Some(error) = foreign::by_extension(path) {
             return error;
         }
         let known: Vec<_> = FORMATS.iter().flat_map(|f| f.endings).copied().collect();
@@ -61,13 +61,13 @@ fn by_ending(path: &Path) -> Result<&'static Format> {
 fn for_writing(path: &Path) -> Result<&'static Format> {
     let ends_with_slash =
         path.as_os_str().as_encoded_bytes().last().is_some_and(|&b| std::path::is_separator(b.into()));
-    if polymesh::is_to_be_one(path) {
+    if polymesh::is_polymesh_name(path) {
         return Ok(&polymesh::FORMAT);
     }
     if ends_with_slash {
         return Ok(&simvascular::FORMAT);
     }
-    let format = by_ending(path);
+    let format = by_extension(path);
     if path.is_dir() {
         return match format {
             Ok(format) if !format.is_folder() => {
@@ -150,7 +150,7 @@ pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
         let mesh = checked(vtkhdf::read_step(&step, &notes), path, &notes)?;
         return Ok((mesh, notes.into_vec()));
     }
-    let format = if path.is_dir() { folder_format(path) } else { by_ending(path)? };
+    let format = if path.is_dir() { folder_format(path) } else { by_extension(path)? };
     let mesh = read_file(format, path, &notes)?;
     Ok((mesh, notes.into_vec()))
 }

@@ -59,7 +59,7 @@ pub(super) fn replace_with<T>(
 /// Writes a folder of files beside `path`, then renames it. `path` must not exist or be an empty folder.
 pub(super) fn replace_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
     let failed = |e: std::io::Error| Error::output(path, e);
-    let place = if path.is_dir() { path.canonicalize().map_err(failed)? } else { followed(path)? };
+    let place = if path.is_dir() { path.canonicalize().map_err(failed)? } else { resolve_links(path)? };
     let folder = tempfile::Builder::new().prefix(".motet-").tempdir_in(folder_of(&place)).map_err(failed)?;
     // The temporary folder is private to its owner; the folder inside, which is renamed, has permissions from
     // the umask.
@@ -87,7 +87,7 @@ enum Draft {
 impl Draft {
     fn new(path: &Path) -> Result<Self> {
         let failed = |e: std::io::Error| Error::output(path, e);
-        let place = followed(path)?;
+        let place = resolve_links(path)?;
         let old = match place.metadata() {
             Err(e) if e.kind() == ErrorKind::NotFound => None,
             Err(e) => return Err(failed(e)),
@@ -121,7 +121,7 @@ impl Draft {
     fn persist(self, path: &Path) -> Result<Option<String>> {
         let Self::Beside(file, place, old) = self else { return Ok(None) };
         if let Some(old) = &old {
-            keep_rights(file.as_file(), old).map_err(|e| Error::output(path, e))?;
+            keep_permissions(file.as_file(), old).map_err(|e| Error::output(path, e))?;
         }
         file.persist(&place).map_err(|e| Error::output(path, e.error))?;
         Ok(old.as_deref().map_or(1, hard_links).checked_sub(1).filter(|&n| n > 0).map(|n| {
@@ -133,11 +133,11 @@ impl Draft {
     }
 }
 
-/// Prefix of the name of a temporary file; [`RANDOM`] characters follow.
+/// Prefix of the name of a temporary file; [`RANDOM_CHARS`] characters follow.
 fn draft_prefix(place: &Path) -> String {
     let name = place.file_name().unwrap_or_default().to_string_lossy();
     // File names have at most 255 bytes.
-    let end = (0..=name.len().min(LONGEST)).rev().find(|&i| name.is_char_boundary(i)).unwrap_or(0);
+    let end = (0..=name.len().min(MAX_NAME_BYTES)).rev().find(|&i| name.is_char_boundary(i)).unwrap_or(0);
     format!("{DRAFT}{}-", &name[..end])
 }
 
@@ -145,10 +145,10 @@ fn draft_prefix(place: &Path) -> String {
 pub(super) const DRAFT: &str = ".motet-";
 
 /// Number of random characters at the end of such a name.
-const RANDOM: usize = 6;
+const RANDOM_CHARS: usize = 6;
 
 /// Maximum number of bytes of the target's name in such a name.
-const LONGEST: usize = 160;
+const MAX_NAME_BYTES: usize = 160;
 
 /// Removes temporary files left by killed processes, for those targets whose names `is_own` accepts. The
 /// caller must ensure that no other process is writing files with these names. Files that cannot be removed
@@ -157,7 +157,7 @@ pub fn remove_drafts(folder: &Path, is_own: impl Fn(&str) -> bool) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         let of = name.to_str().and_then(|name| name.strip_prefix(DRAFT)).and_then(|rest| {
-            let (of, random) = rest.split_at_checked(rest.len().checked_sub(RANDOM + 1)?)?;
+            let (of, random) = rest.split_at_checked(rest.len().checked_sub(RANDOM_CHARS + 1)?)?;
             random.starts_with('-').then_some(of)
         });
         if of.is_some_and(&is_own) {
@@ -204,7 +204,7 @@ pub(super) fn folder_of(path: &Path) -> &Path {
 }
 
 /// The target of a path after following symbolic links; the last link may dangle.
-fn followed(path: &Path) -> Result<PathBuf> {
+fn resolve_links(path: &Path) -> Result<PathBuf> {
     let mut place = path.to_owned();
     for _ in 0..MAX_LINKS {
         match place.read_link() {
@@ -216,7 +216,7 @@ fn followed(path: &Path) -> Result<PathBuf> {
 }
 
 #[cfg(unix)]
-fn keep_rights(file: &File, old: &Metadata) -> std::io::Result<()> {
+fn keep_permissions(file: &File, old: &Metadata) -> std::io::Result<()> {
     use std::os::unix::fs::MetadataExt;
     let new = file.metadata()?;
     if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
@@ -227,7 +227,7 @@ fn keep_rights(file: &File, old: &Metadata) -> std::io::Result<()> {
 }
 
 #[cfg(not(unix))]
-fn keep_rights(file: &File, old: &Metadata) -> std::io::Result<()> {
+fn keep_permissions(file: &File, old: &Metadata) -> std::io::Result<()> {
     file.set_permissions(old.permissions())
 }
 

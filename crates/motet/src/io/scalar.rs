@@ -147,13 +147,13 @@ pub(super) fn write_lines<T: std::fmt::Debug>(out: &mut Vec<u8>, values: &[T]) {
 
 /// Reverses the bytes of every number of `size` bytes.
 pub(super) fn swap_all(bytes: &mut [u8], size: usize) {
-    fn turn<const N: usize>(bytes: &mut [u8]) {
+    fn reverse_each<const N: usize>(bytes: &mut [u8]) {
         bytes.as_chunks_mut::<N>().0.iter_mut().for_each(|number| number.reverse());
     }
     match size {
-        2 => turn::<2>(bytes),
-        4 => turn::<4>(bytes),
-        8 => turn::<8>(bytes),
+        2 => reverse_each::<2>(bytes),
+        4 => reverse_each::<4>(bytes),
+        8 => reverse_each::<8>(bytes),
         _ => {}
     }
 }

@@ -22,16 +22,16 @@ pub(super) fn keep_cells<'m>(
     if lost.is_empty() {
         return (Cow::Borrowed(mesh), lost);
     }
-    (Cow::Owned(of_kinds(mesh, holds)), lost)
+    (Cow::Owned(restricted_to_kinds(mesh, holds)), lost)
 }
 
 /// The mesh with only those cells whose kind satisfies `holds`, and with all its points.
-pub(super) fn of_kinds(mesh: &Mesh, holds: impl Fn(CellKind) -> bool) -> Mesh {
-    of_cells(mesh, |cell| holds(mesh.cells.kind(cell)))
+pub(super) fn restricted_to_kinds(mesh: &Mesh, holds: impl Fn(CellKind) -> bool) -> Mesh {
+    restricted_to_cells(mesh, |cell| holds(mesh.cells.kind(cell)))
 }
 
 /// The mesh with only those cells for which `keeps` is true, and with all its points.
-pub(super) fn of_cells(mesh: &Mesh, keeps: impl Fn(CellId) -> bool) -> Mesh {
+pub(super) fn restricted_to_cells(mesh: &Mesh, keeps: impl Fn(CellId) -> bool) -> Mesh {
     let kept: Vec<usize> = (0..mesh.cells.len()).filter(|&i| keeps(CellId::new(i))).collect();
     let mut cells = Cells::new();
     let mut all_faces = mesh.cells.polyhedron_faces().iter();
@@ -76,7 +76,7 @@ pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Ve
         (kind, ring)
     });
     let cell_rows: Vec<usize> = boundary.cells.iter().map(|c| c.index()).collect();
-    let mut surface = facets_alone(mesh, &boundary.vertices, facets, &cell_rows);
+    let mut surface = facet_mesh(mesh, &boundary.vertices, facets, &cell_rows);
     surface.field_data.clone_from(&mesh.field_data);
     surface.label_names.clone_from(&mesh.label_names);
     let note = format!(
@@ -86,7 +86,7 @@ pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Ve
 }
 
 /// A mesh of facets with only the points `used`, in ascending order; cell arrays take the rows `cell_rows`.
-pub(super) fn facets_alone<'m>(
+pub(super) fn facet_mesh<'m>(
     mesh: &Mesh,
     used: &[VertexId],
     facets: impl IntoIterator<Item = (CellKind, &'m [VertexId])>,

@@ -26,7 +26,7 @@ pub fn can_write_series(path: impl AsRef<Path>) -> bool {
 
 /// Whether [`write_series`] supports this extension.
 pub fn can_be_series(path: impl AsRef<Path>) -> bool {
-    can_write_series(&path) || vtkhdf::is_named_so(path.as_ref())
+    can_write_series(&path) || vtkhdf::is_vtkhdf_name(path.as_ref())
 }
 
 /// The file that holds a path of [`read_series`]: the path itself, or the file whose step it names.
@@ -48,8 +48,8 @@ pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
         return vtkhdf::times(path).map_err(|e| e.in_file(path));
     }
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
-    let told = |e: Error| e.in_file(path).remedy("the file is damaged, or no PVD file: write it again");
-    let frames = parse_series(&bytes).map_err(told)?;
+    let damaged = |e: Error| e.in_file(path).remedy("the file is damaged, or no PVD file: write it again");
+    let frames = parse_series(&bytes).map_err(damaged)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     Ok(frames.into_iter().map(|(time, file)| (time, folder.join(file))).collect())
 }
@@ -136,7 +136,7 @@ pub fn write_series(
         }
         return Ok(lost);
     }
-    if !vtkhdf::is_named_so(path) {
+    if !vtkhdf::is_vtkhdf_name(path) {
         return Err(Error::options("a series is written as .pvd or as .vtkhdf").in_file(path));
     }
     let mut steps = vtkhdf::Steps::default();
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_series_is_told() {
+    fn what_is_no_series_is_reported() {
         let refused = |text: &str| parse_series(text.as_bytes()).unwrap_err().to_string();
         assert!(refused("").contains("no series"));
         assert!(refused("<VTKFile type=\"Collection\"/>").contains("names no file"));

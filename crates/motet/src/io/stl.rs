@@ -31,7 +31,7 @@ const MAX_NORMAL_WORDS: usize = 4;
 
 fn read(input: &Input<'_>) -> Result<Mesh> {
     let bytes = input.bytes;
-    if let Some(triangles) = with_payload(bytes) {
+    if let Some(triangles) = triangles_with_payload(bytes) {
         input.notes.add("what another program has put behind each triangle is passed over");
         let mut mesh = binary(triangles.into_iter())?;
         // These attributes were byte counts.
@@ -45,12 +45,12 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
             // A nonzero attribute may be the count of bytes after its triangle, so these are not consecutive
             // triangles.
             if triangles.chunks_exact(TRIANGLE_BYTES).any(|t| t[TRIANGLE_BYTES - 2..] != [0, 0]) {
-                return Err(neither(bytes));
+                return Err(not_stl(bytes));
             }
             input.notes.add(format!("{} bytes behind the last triangle are passed over", behind.len()));
             binary(triangles.chunks_exact(TRIANGLE_BYTES))?
         }
-        (None, _) => return Err(neither(bytes)),
+        (None, _) => return Err(not_stl(bytes)),
     };
     if mesh.cells.is_empty() {
         return Err(Error::input("a surface without a triangle").remedy("export the surface again"));
@@ -67,7 +67,7 @@ fn binary_body(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
 
 /// The triangles of a binary file whose attributes state how many bytes follow each triangle; `None` unless
 /// these fill the file exactly.
-fn with_payload(bytes: &[u8]) -> Option<Vec<&[u8]>> {
+fn triangles_with_payload(bytes: &[u8]) -> Option<Vec<&[u8]>> {
     let n = u32::from_le_bytes(*bytes.get(80..)?.first_chunk()?) as usize;
     let mut rest = &bytes[HEAD_BYTES..];
     if n == 0 || n > rest.len() / TRIANGLE_BYTES || n * TRIANGLE_BYTES == rest.len() {
@@ -83,7 +83,7 @@ fn with_payload(bytes: &[u8]) -> Option<Vec<&[u8]>> {
     rest.is_empty().then_some(triangles)
 }
 
-fn neither(bytes: &[u8]) -> Error {
+fn not_stl(bytes: &[u8]) -> Error {
     let error = match bytes.get(80..).and_then(|b| b.first_chunk()) {
         Some(n) => Error::input(format!(
             "a binary STL with {} triangles has {} bytes, this file {}",

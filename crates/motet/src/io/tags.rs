@@ -9,13 +9,13 @@ use crate::base::{Error, Result};
 pub(super) enum Tags {
     /// Index `i` has the number `first + i`, as in most files.
     Running { first: u64, n: usize },
-    /// The index of number `first + i`, [`NOWHERE`] if it is not used.
+    /// The index of number `first + i`, [`NO_PLACE`] if it is not used.
     Dense { first: u64, places: Vec<u32> },
     /// Numbers with wide gaps.
     Sparse(HashMap<u64, u32>),
 }
 
-const NOWHERE: u32 = u32::MAX;
+const NO_PLACE: u32 = u32::MAX;
 /// Maximum array size per number for the dense form.
 const DENSE_LIMIT: usize = 8;
 
@@ -33,10 +33,10 @@ impl Tags {
             Error::input(format!("{what} {number} occurs twice")).remedy("give each its own number")
         };
         if span < (DENSE_LIMIT * numbers.len()) as u64 {
-            let mut places = vec![NOWHERE; span as usize + 1];
+            let mut places = vec![NO_PLACE; span as usize + 1];
             for (place, &number) in (0u32..).zip(numbers) {
                 let slot = &mut places[(number - first) as usize];
-                if std::mem::replace(slot, place) != NOWHERE {
+                if std::mem::replace(slot, place) != NO_PLACE {
                     return Err(twice(number));
                 }
             }
@@ -60,7 +60,7 @@ impl Tags {
             }
             Self::Dense { first, places } => {
                 let place = *places.get(usize::try_from(number.checked_sub(*first)?).ok()?)?;
-                (place != NOWHERE).then_some(place)
+                (place != NO_PLACE).then_some(place)
             }
             Self::Sparse(places) => places.get(&number).copied(),
         }

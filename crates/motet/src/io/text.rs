@@ -14,7 +14,7 @@ pub(super) struct Text<'a> {
 }
 
 /// Minimum size of a number in a text: a digit and a separator.
-const BYTES_A_NUMBER: usize = 2;
+const MIN_NUMBER_BYTES: usize = 2;
 
 impl<'a> Text<'a> {
     /// A text without comments.
@@ -90,7 +90,7 @@ impl<'a> Text<'a> {
     pub(super) fn expect(&mut self, what: &str) -> Result<&'a [u8]> {
         match self.word() {
             Some(word) => Ok(word),
-            None => Err(self.ends(what)),
+            None => Err(self.unexpected_end(what)),
         }
     }
 
@@ -110,7 +110,7 @@ impl<'a> Text<'a> {
     /// that it is safe to allocate memory for them.
     pub(super) fn count(&mut self, what: &str, numbers_each: usize) -> Result<usize> {
         let n = self.int(&format!("the number of {what}"))?;
-        let bytes_each = BYTES_A_NUMBER * numbers_each;
+        let bytes_each = MIN_NUMBER_BYTES * numbers_each;
         // The last number of a file may lack a separator.
         let room = (self.rest().len() + 1) / bytes_each.max(1);
         match usize::try_from(n) {
@@ -152,7 +152,7 @@ impl<'a> Text<'a> {
     }
 
     /// The error for a text that ends too early.
-    pub(super) fn ends(&self, what: &str) -> Error {
+    pub(super) fn unexpected_end(&self, what: &str) -> Error {
         self.error(format!("the file ends where {what} should follow"))
             .remedy("the file is cut off: get it again")
     }
@@ -164,7 +164,7 @@ pub(super) fn find(bytes: &[u8], byte: u8) -> Option<usize> {
 }
 
 /// The first position of `pattern`.
-pub(super) fn find_all(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
+pub(super) fn find_subslice(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
     bytes.windows(pattern.len()).position(|w| w == pattern)
 }
 

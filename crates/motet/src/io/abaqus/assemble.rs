@@ -7,7 +7,7 @@ use super::labels::{Named, NamedSets, Rank, set_arrays, set_labels};
 use super::line::Label;
 use super::model::Model;
 use super::scope::{Scope, Set};
-use super::sets::{Around, Members, Numbering, Placed, Runs, Sort};
+use super::sets::{Context, Members, Numbering, Placed, Runs, SetKind};
 use super::surfaces::Facets;
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::Notes;
@@ -21,8 +21,8 @@ pub(super) fn assemble(model: Model<'_>, notes: &Notes) -> Result<Mesh> {
     let mut instance_of_key = HashMap::new();
     for scope in instances.iter().chain([&top]) {
         let mut here = put(&mut mesh, scope)?;
-        for sort in [Sort::Elements, Sort::Nodes] {
-            let around = Around {
+        for sort in [SetKind::Elements, SetKind::Nodes] {
+            let around = Context {
                 here: &here,
                 instances: &placed,
                 instance_of_key: &instance_of_key,
@@ -30,8 +30,8 @@ pub(super) fn assemble(model: Model<'_>, notes: &Notes) -> Result<Mesh> {
                 notes,
             };
             match sort {
-                Sort::Elements => here.element_sets = around.members(&scope.element_sets, sort)?,
-                Sort::Nodes => here.node_sets = around.members(&scope.node_sets, sort)?,
+                SetKind::Elements => here.element_sets = around.members(&scope.element_sets, sort)?,
+                SetKind::Nodes => here.node_sets = around.members(&scope.node_sets, sort)?,
             }
         }
         if let Some(name) = &scope.name
@@ -49,8 +49,13 @@ pub(super) fn assemble(model: Model<'_>, notes: &Notes) -> Result<Mesh> {
     let mut facets = Facets::new(&mesh.cells, notes);
     let mut collected = Collected { are_several: instances.len() > 1, ..Collected::default() };
     for (scope, here) in instances.iter().chain([&top]).zip(&placed) {
-        let around =
-            Around { here, instances: &placed, instance_of_key: &instance_of_key, cells: &mesh.cells, notes };
+        let around = Context {
+            here,
+            instances: &placed,
+            instance_of_key: &instance_of_key,
+            cells: &mesh.cells,
+            notes,
+        };
         collected.take(scope, &around, &mut facets)?;
     }
     if collected.n_internal > 0 {
@@ -78,8 +83,8 @@ fn put(mesh: &mut Mesh, scope: &Scope) -> Result<Placed> {
     let first = mesh.cells.len() as u32;
     let mut rest = scope.nodes.as_slice();
     for (id, &kind) in scope.element_ids.iter().zip(&scope.kinds) {
-        let (ids, behind) = rest.split_at(kind.n_vertices().unwrap_or(0));
-        rest = behind;
+        let (ids, tail) = rest.split_at(kind.n_vertices().unwrap_or(0));
+        rest = tail;
         let vertex = |&node: &u64| {
             nodes.place(node).map(VertexId).ok_or_else(|| {
                 Error::input(format!("element {id} names node {node}, which there is not"))
@@ -103,7 +108,7 @@ struct Collected {
 }
 
 impl Collected {
-    fn take(&mut self, scope: &Scope, around: &Around<'_>, facets: &mut Facets<'_>) -> Result<()> {
+    fn take(&mut self, scope: &Scope, around: &Context<'_>, facets: &mut Facets<'_>) -> Result<()> {
         let here = around.here;
         for (set, runs) in scope.element_sets.all.iter().zip(&here.element_sets.runs) {
             let has_section = scope.with_section.contains(&set.label.key);

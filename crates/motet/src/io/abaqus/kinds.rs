@@ -71,7 +71,7 @@ pub(super) struct ElementType {
     pub(super) kind: CellKind,
     pub(super) n_nodes: usize,
     /// Whether one more node may follow, which gives the orientation of a beam.
-    pub(super) may_have_direction: bool,
+    pub(super) may_have_orientation_node: bool,
 }
 
 impl ElementType {
@@ -90,8 +90,8 @@ impl ElementType {
             Digits::Face => face(number),
             Digits::Curve | Digits::Beam => curve(digits, number),
         }?;
-        let may_have_direction = matches!(digits, Digits::Beam);
-        Some(Self { kind, n_nodes: kind.n_vertices()?, may_have_direction })
+        let may_have_orientation_node = matches!(digits, Digits::Beam);
+        Some(Self { kind, n_nodes: kind.n_vertices()?, may_have_orientation_node })
     }
 }
 

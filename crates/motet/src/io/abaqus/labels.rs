@@ -26,7 +26,7 @@ pub(super) enum Rank {
 }
 
 /// Maximum number of arrays for sets that labels do not express; each takes a byte per cell.
-const MOST_ARRAYS: usize = 1000;
+const MAX_ARRAYS: usize = 1000;
 
 impl Named {
     fn places(&self) -> impl Iterator<Item = usize> + '_ {
@@ -62,16 +62,16 @@ impl NamedSets {
 /// `n_own` on were added for surfaces.
 pub(super) fn set_labels(mesh: &mut Mesh, n_own: usize, sets: &[Named], notes: &Notes) {
     let dims: Vec<usize> = mesh.cells.kinds().iter().map(|kind| kind.dim().unwrap_or(0)).collect();
-    let regions = chosen(sets, &dims[..n_own], 3);
-    let mut patches = chosen(sets, &dims[..n_own], 2);
+    let regions = labelling_sets(sets, &dims[..n_own], 3);
+    let mut patches = labelling_sets(sets, &dims[..n_own], 2);
     patches.resize(dims.len(), NONE);
     let surfaces: Vec<usize> = (0..sets.len()).filter(|&i| sets[i].rank == Rank::Surface).collect();
-    take_in_turn(&mut patches, &surfaces, sets, &dims, 2);
+    label_greedily(&mut patches, &surfaces, sets, &dims, 2);
     let mut labels = regions;
     labels.resize(dims.len(), NONE);
     let in_surfaces = dims.iter().zip(&patches).enumerate().filter(|(_, (dim, _))| **dim == 2);
     in_surfaces.for_each(|(i, (_, &set))| labels[i] = set);
-    let said: Vec<bool> = sets.iter().map(|set| is_said(set, sets, &labels, &dims)).collect();
+    let expressed: Vec<bool> = sets.iter().map(|set| is_expressed(set, sets, &labels, &dims)).collect();
     for which in [(3, REGION, "region"), (2, PATCH, "patch")] {
         let Some(labels) = numbered(sets, &labels, &dims, which) else { continue };
         let names = if which.0 == 3 { &mut mesh.label_names.regions } else { &mut mesh.label_names.patches };
@@ -80,9 +80,11 @@ pub(super) fn set_labels(mesh: &mut Mesh, n_own: usize, sets: &[Named], notes: &
     }
     let n = mesh.cells.len();
     for (prefix, is_surface) in [(ELSET, false), (SURFACE, true)] {
-        let unsaid =
-            sets.iter().zip(&said).filter(|(set, said)| !**said && (set.rank == Rank::Surface) == is_surface);
-        set_arrays(&mut mesh.cell_data, prefix, unsaid.map(|(set, _)| set), n, notes);
+        let unexpressed = sets
+            .iter()
+            .zip(&expressed)
+            .filter(|(set, expressed)| !**expressed && (set.rank == Rank::Surface) == is_surface);
+        set_arrays(&mut mesh.cell_data, prefix, unexpressed.map(|(set, _)| set), n, notes);
     }
 }
 
@@ -90,7 +92,7 @@ pub(super) fn set_labels(mesh: &mut Mesh, n_own: usize, sets: &[Named], notes: &
 const NONE: u32 = u32::MAX;
 
 /// The set that labels each cell of dimension `dim`, chosen from the rank that reaches most cells.
-fn chosen(sets: &[Named], dims: &[usize], dim: usize) -> Vec<u32> {
+fn labelling_sets(sets: &[Named], dims: &[usize], dim: usize) -> Vec<u32> {
     let n_cells = dims.iter().filter(|&&d| d == dim).count();
     let n_of = |set: &Named| set.places().filter(|&place| dims.get(place) == Some(&dim)).count();
     // A set of all cells carries the least information, unless it has a section.
@@ -102,7 +104,7 @@ fn chosen(sets: &[Named], dims: &[usize], dim: usize) -> Vec<u32> {
         let of_rank: Vec<usize> =
             (0..sets.len()).filter(|&i| sets[i].rank == rank && is_whole[i] == whole).collect();
         let mut labels = vec![NONE; dims.len()];
-        let n = take_in_turn(&mut labels, &of_rank, sets, dims, dim);
+        let n = label_greedily(&mut labels, &of_rank, sets, dims, dim);
         if n > most {
             (best, most) = (labels, n);
         }
@@ -115,7 +117,7 @@ fn chosen(sets: &[Named], dims: &[usize], dim: usize) -> Vec<u32> {
 
 /// For each set in turn, labels its cells if none of them has a label yet; returns the number of labelled
 /// cells.
-fn take_in_turn(labels: &mut [u32], order: &[usize], sets: &[Named], dims: &[usize], dim: usize) -> usize {
+fn label_greedily(labels: &mut [u32], order: &[usize], sets: &[Named], dims: &[usize], dim: usize) -> usize {
     let mut n = 0;
     for &i in order {
         let places = || sets[i].places().filter(|&place| dims[place] == dim);
@@ -130,7 +132,7 @@ fn take_in_turn(labels: &mut [u32], order: &[usize], sets: &[Named], dims: &[usi
 }
 
 /// Whether the labels with the name of a set cover exactly the cells of the set.
-fn is_said(set: &Named, sets: &[Named], labels: &[u32], dims: &[usize]) -> bool {
+fn is_expressed(set: &Named, sets: &[Named], labels: &[u32], dims: &[usize]) -> bool {
     let has_name = |place: usize| sets.get(labels[place] as usize).is_some_and(|s| s.name == set.name);
     let mut found = [0usize; 4];
     for place in set.places() {
@@ -183,7 +185,7 @@ pub(super) fn set_arrays<'s>(
 ) {
     let mut n_left_out = 0;
     for set in sets {
-        if fields.len() >= MOST_ARRAYS {
+        if fields.len() >= MAX_ARRAYS {
             n_left_out += 1;
             continue;
         }
@@ -196,6 +198,6 @@ pub(super) fn set_arrays<'s>(
         });
     }
     if n_left_out > 0 {
-        notes.add(format!("{n_left_out} sets beyond the first {MOST_ARRAYS} are passed over"));
+        notes.add(format!("{n_left_out} sets beyond the first {MAX_ARRAYS} are passed over"));
     }
 }

@@ -14,10 +14,10 @@ impl Keyword {
     /// Parses a keyword line without its leading star.
     pub(super) fn parse(line: &str) -> Self {
         let mut words = split(line).into_iter();
-        let name = squeezed(words.next().unwrap_or_default());
+        let name = normalized(words.next().unwrap_or_default());
         let parameter = |word: &str| match word.split_once('=') {
-            Some((key, value)) => (squeezed(key), value.trim().to_owned()),
-            None => (squeezed(word), String::new()),
+            Some((key, value)) => (normalized(key), value.trim().to_owned()),
+            None => (normalized(word), String::new()),
         };
         Self { name, parameters: words.map(parameter).filter(|p| !p.0.is_empty()).collect() }
     }
@@ -56,7 +56,7 @@ impl Label {
         match text.strip_prefix('"').and_then(|t| t.strip_suffix('"')) {
             Some(inner) => Self { key: inner.to_owned(), shown: inner.to_owned() },
             None => Self {
-                key: squeezed(text),
+                key: normalized(text),
                 shown: text.chars().filter(|c| !c.is_ascii_whitespace()).collect(),
             },
         }
@@ -128,7 +128,7 @@ fn split(line: &str) -> Vec<&str> {
 }
 
 /// The text in capitals and without blanks, which carry no meaning.
-fn squeezed(text: &str) -> String {
+fn normalized(text: &str) -> String {
     text.chars().filter(|c| !c.is_ascii_whitespace()).map(|c| c.to_ascii_uppercase()).collect()
 }
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use super::kinds::{ElementType, vtk_to_abaqus};
 use super::line::{Keyword, Label, Reference, Target, fields, float, id};
-use super::scope::{Entry, Placement, Scope, Sets, SurfaceText};
+use super::scope::{Entry, Placement, Scope, Sets, SurfaceDefinition};
 use crate::base::{Error, Result};
 use crate::io::format::Notes;
 
@@ -61,7 +61,7 @@ struct Elements {
 }
 
 /// Bound in bytes on the copies made for instances, since a small file could request any amount of memory.
-const MOST_COPIED: usize = 1 << 30;
+const MAX_COPIED_BYTES: usize = 1 << 30;
 
 /// Keywords that generate or move nodes or elements; without them the mesh would be a different one.
 const REFUSED: &[&str] =
@@ -178,7 +178,7 @@ impl<'n> Model<'n> {
         }
         let is_internal = keyword.get("INTERNAL").is_some();
         let surfaces = &mut self.scope().surfaces;
-        surfaces.push(SurfaceText { label, is_internal, faces: Vec::new() });
+        surfaces.push(SurfaceDefinition { label, is_internal, faces: Vec::new() });
         Ok(Block::Surface(surfaces.len() - 1))
     }
 
@@ -210,9 +210,9 @@ impl<'n> Model<'n> {
         if std::mem::replace(&mut self.is_used[place], true) {
             self.n_copied += part.n_bytes();
         }
-        if self.n_copied > MOST_COPIED {
+        if self.n_copied > MAX_COPIED_BYTES {
             return Err(Error::input(format!(
-                "the instances of its parts take more than {MOST_COPIED} bytes"
+                "the instances of its parts take more than {MAX_COPIED_BYTES} bytes"
             ))
             .remedy("read the parts one by one"));
         }
@@ -260,7 +260,7 @@ impl<'n> Model<'n> {
 
     fn end_block(&mut self) -> Result<()> {
         match std::mem::replace(&mut self.block, Block::Ignored) {
-            Block::Elements(elements) if !elements.pending.is_empty() => Err(elements.misfit()),
+            Block::Elements(elements) if !elements.pending.is_empty() => Err(elements.wrong_node_count()),
             _ => Ok(()),
         }
     }
@@ -302,12 +302,12 @@ impl Elements {
             self.pending.push(id(field, "number of an element or of its nodes")?);
         }
         let n = self.of.n_nodes;
-        if self.of.may_have_direction && self.pending.len() == n + 2 {
+        if self.of.may_have_orientation_node && self.pending.len() == n + 2 {
             notes.add("nodes that tell how beams are turned are passed over");
             self.pending.pop();
         }
         if self.pending.len() > n + 1 {
-            return Err(self.misfit());
+            return Err(self.wrong_node_count());
         }
         if self.pending.len() == n + 1 {
             let number = self.pending[0];
@@ -322,7 +322,7 @@ impl Elements {
         Ok(())
     }
 
-    fn misfit(&self) -> Error {
+    fn wrong_node_count(&self) -> Error {
         let (of, n) = (&self.name, self.of.n_nodes);
         let number = self.pending.first().copied().unwrap_or_default();
         let found = self.pending.len().saturating_sub(1);
@@ -368,13 +368,13 @@ fn place(placement: &mut Placement, line: usize, row: &[&str]) -> Result<()> {
     let numbers: Vec<f64> = row.iter().map(|f| float(f, "how an instance lies")).collect::<Result<_>>()?;
     let at = |i: usize| numbers.get(i).copied().unwrap_or(0.0);
     match line {
-        1 => placement.shift = [at(0), at(1), at(2)],
+        1 => placement.translation = [at(0), at(1), at(2)],
         2 => {
             let (a, b) = ([at(0), at(1), at(2)], [at(3), at(4), at(5)]);
             if a == b {
                 return Err(Error::input("the two points of an axis are one").remedy("write the file again"));
             }
-            placement.turn = Some((a, b, at(6)));
+            placement.rotation = Some((a, b, at(6)));
         }
         _ => return Err(Error::input("a third line on how an instance lies").remedy("write the file again")),
     }

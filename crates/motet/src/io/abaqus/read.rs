@@ -12,9 +12,9 @@ use crate::io::{Input, is_same_file};
 use crate::mesh::Mesh;
 
 /// Maximum depth of nested includes.
-const MOST_DEEP: usize = 16;
+const MAX_INCLUDE_DEPTH: usize = 16;
 /// Maximum number of included files.
-const MOST_INCLUDED: usize = 10_000;
+const MAX_INCLUDED_FILES: usize = 10_000;
 
 pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let mut reader =
@@ -75,7 +75,7 @@ impl Reader<'_> {
             return Err(refuse("which includes the file that names it"));
         }
         self.n_included += 1;
-        if self.open.len() > MOST_DEEP || self.n_included > MOST_INCLUDED {
+        if self.open.len() > MAX_INCLUDE_DEPTH || self.n_included > MAX_INCLUDED_FILES {
             return Err(refuse("but too many are already"));
         }
         // Reading a device or pipe might never end.

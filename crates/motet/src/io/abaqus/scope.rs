@@ -18,7 +18,7 @@ pub(super) struct Scope {
     pub(super) nodes: Vec<u64>,
     pub(super) node_sets: Sets,
     pub(super) element_sets: Sets,
-    pub(super) surfaces: Vec<SurfaceText>,
+    pub(super) surfaces: Vec<SurfaceDefinition>,
     /// Keys of the element sets that have a section.
     pub(super) with_section: HashSet<String>,
     pub(super) placement: Placement,
@@ -84,7 +84,7 @@ impl Sets {
 
 /// A surface as defined in the file: elements or element sets, each with the name of a face.
 #[derive(Clone)]
-pub(super) struct SurfaceText {
+pub(super) struct SurfaceDefinition {
     pub(super) label: Label,
     pub(super) is_internal: bool,
     pub(super) faces: Vec<(Reference, String)>,
@@ -93,18 +93,18 @@ pub(super) struct SurfaceText {
 /// The placement of an instance: a translation, then a rotation about an axis.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Placement {
-    pub(super) shift: [f64; 3],
+    pub(super) translation: [f64; 3],
     /// Two points of the axis and the angle in degrees, right-handed about the direction from the first to
     /// the second.
-    pub(super) turn: Option<([f64; 3], [f64; 3], f64)>,
+    pub(super) rotation: Option<([f64; 3], [f64; 3], f64)>,
 }
 
 impl Placement {
     pub(super) fn apply(&self, p: [f64; 3]) -> [f64; 3] {
         // Adding zero would change the sign of a negative zero.
-        let is_shifted = self.shift != [0.0; 3];
-        let p = if is_shifted { std::array::from_fn(|i| p[i] + self.shift[i]) } else { p };
-        let Some((a, b, degrees)) = self.turn else { return p };
+        let is_shifted = self.translation != [0.0; 3];
+        let p = if is_shifted { std::array::from_fn(|i| p[i] + self.translation[i]) } else { p };
+        let Some((a, b, degrees)) = self.rotation else { return p };
         let axis: [f64; 3] = std::array::from_fn(|i| b[i] - a[i]);
         let length = dot(axis, axis).sqrt();
         let k = axis.map(|x| x / length);
@@ -140,8 +140,8 @@ mod tests {
 
     #[test]
     fn an_instance_is_shifted_and_then_turned_by_the_right_hand() {
-        let turn = Some(([1.0, 0.0, 0.0], [1.0, 0.0, 2.0], 90.0));
-        let p = Placement { shift: [0.0, 0.0, 5.0], turn }.apply([2.0, 0.0, 0.0]);
+        let rotation = Some(([1.0, 0.0, 0.0], [1.0, 0.0, 2.0], 90.0));
+        let p = Placement { translation: [0.0, 0.0, 5.0], rotation }.apply([2.0, 0.0, 0.0]);
         for (x, y) in p.into_iter().zip([1.0, 1.0, 5.0]) {
             assert!((x - y).abs() < 1e-15, "{p:?}");
         }

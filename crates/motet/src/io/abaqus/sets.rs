@@ -14,7 +14,7 @@ use crate::mesh::Cells;
 pub(super) type Runs = Vec<Range<u32>>;
 
 /// Maximum total number of runs, since sets of sets may repeat each other without limit.
-pub(super) const MOST_RUNS: usize = 1 << 26;
+pub(super) const MAX_RUNS: usize = 1 << 26;
 
 /// Maps the numbers of a scope to indices in the mesh.
 pub(super) struct Numbering {
@@ -71,13 +71,13 @@ impl Members {
 
 /// Whether sets hold nodes or elements.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Sort {
+pub(super) enum SetKind {
     Nodes,
     Elements,
 }
 
 /// Everything that the sets of a scope may refer to.
-pub(super) struct Around<'a> {
+pub(super) struct Context<'a> {
     pub(super) here: &'a Placed,
     pub(super) instances: &'a [Placed],
     pub(super) instance_of_key: &'a HashMap<String, usize>,
@@ -85,7 +85,7 @@ pub(super) struct Around<'a> {
     pub(super) notes: &'a Notes,
 }
 
-impl<'a> Around<'a> {
+impl<'a> Context<'a> {
     /// The scope of an instance, or this scope if `instance` is `None`.
     pub(super) fn scope(&self, instance: Option<&String>) -> Result<&'a Placed> {
         let Some(key) = instance else { return Ok(self.here) };
@@ -96,7 +96,7 @@ impl<'a> Around<'a> {
     }
 
     /// Resolves the members of all sets of one kind, in the order of the file.
-    pub(super) fn members(&self, sets: &Sets, sort: Sort) -> Result<Members> {
+    pub(super) fn members(&self, sets: &Sets, kind: SetKind) -> Result<Members> {
         let mut found: Vec<Gathered> = sets.all.iter().map(|_| Gathered::default()).collect();
         let mut n_runs = 0;
         for entries in sets.entries.chunk_by(|a, b| a.0 == b.0) {
@@ -109,11 +109,11 @@ impl<'a> Around<'a> {
                 match entry {
                     Entry::Ids { first, last, step, instance } => {
                         let scope = self.scope(instance.as_ref())?;
-                        gathered.add_ids(sort.numbering(scope), *first, *last, *step);
+                        gathered.add_ids(kind.numbering(scope), *first, *last, *step);
                     }
                     Entry::Set(reference) => {
                         if known.insert((reference.instance.clone(), key_of(reference))) {
-                            gathered.runs.extend(self.other(sets, &found, reference, sort)?.iter().cloned());
+                            gathered.runs.extend(self.other(sets, &found, reference, kind)?.iter().cloned());
                         }
                     }
                     Entry::NodesOf(key) => {
@@ -126,7 +126,7 @@ impl<'a> Around<'a> {
             }
             gathered.runs = merged(gathered.runs);
             n_runs += gathered.runs.len();
-            if n_runs > MOST_RUNS {
+            if n_runs > MAX_RUNS {
                 return Err(
                     Error::input("its sets repeat each other too often").remedy("write the file again")
                 );
@@ -138,7 +138,7 @@ impl<'a> Around<'a> {
         }
         for (set, gathered) in sets.all.iter().zip(&found).filter(|(_, gathered)| gathered.n_missing > 0) {
             let n = gathered.n_missing;
-            self.notes.add(format!("set {} names {n} {} that there are not", set.label.shown, sort.what()));
+            self.notes.add(format!("set {} names {n} {} that there are not", set.label.shown, kind.what()));
         }
         let by_key = sets.all.iter().zip(0..).map(|(set, i)| (set.label.key.clone(), i)).collect();
         Ok(Members { runs: found.into_iter().map(|gathered| gathered.runs).collect(), by_key })
@@ -150,12 +150,12 @@ impl<'a> Around<'a> {
         sets: &Sets,
         found: &'f [Gathered],
         reference: &Reference,
-        sort: Sort,
+        kind: SetKind,
     ) -> Result<&'f Runs> {
         let key = key_of(reference);
         if reference.instance.is_some() {
             let scope = self.scope(reference.instance.as_ref())?;
-            let members = if sort == Sort::Nodes { &scope.node_sets } else { &scope.element_sets };
+            let members = if kind == SetKind::Nodes { &scope.node_sets } else { &scope.element_sets };
             return members.find(&key).ok_or_else(|| no_set(&key));
         }
         sets.find(&key).map(|set| &found[set].runs).ok_or_else(|| no_set(&key))
@@ -185,7 +185,7 @@ impl Gathered {
     }
 }
 
-impl Sort {
+impl SetKind {
     fn numbering(self, scope: &Placed) -> &Numbering {
         if self == Self::Nodes { &scope.nodes } else { &scope.elements }
     }

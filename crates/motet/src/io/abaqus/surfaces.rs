@@ -4,8 +4,8 @@ use std::collections::{HashMap, HashSet};
 
 use super::kinds::faces;
 use super::line::Target;
-use super::scope::SurfaceText;
-use super::sets::{Around, MOST_RUNS, Runs, merged, no_set};
+use super::scope::SurfaceDefinition;
+use super::sets::{Context, MAX_RUNS, Runs, merged, no_set};
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::Notes;
 use crate::mesh::facets::facet_shapes;
@@ -44,7 +44,7 @@ impl<'m> Facets<'m> {
     }
 
     /// The cells of a surface.
-    pub(super) fn surface(&mut self, surface: &SurfaceText, around: &Around<'_>) -> Result<Runs> {
+    pub(super) fn surface(&mut self, surface: &SurfaceDefinition, around: &Context<'_>) -> Result<Runs> {
         let mut all = Runs::new();
         let mut known = HashSet::new();
         for (reference, face) in &surface.faces {
@@ -69,7 +69,7 @@ impl<'m> Facets<'m> {
             }
             runs = merged(runs);
             self.n_runs += runs.len();
-            if self.n_runs > MOST_RUNS {
+            if self.n_runs > MAX_RUNS {
                 return Err(
                     Error::input("its surfaces repeat each other too often").remedy("write the file again")
                 );

@@ -16,7 +16,7 @@ fn parse(text: &str) -> (Mesh, Vec<String>) {
     (mesh.unwrap(), notes)
 }
 
-fn told(text: &str) -> String {
+fn error_of(text: &str) -> String {
     parse_at(Path::new("in.inp"), text.as_bytes()).0.unwrap_err().to_string()
 }
 
@@ -93,8 +93,8 @@ fn a_flat_file_is_read_whatever_its_spelling() {
 }
 
 #[test]
-fn what_is_not_held_is_told() {
-    assert!(told(FLAT).contains("names face `S9999` of a solid that has S1 to S4"), "{}", told(FLAT));
+fn what_is_not_held_is_reported() {
+    assert!(error_of(FLAT).contains("names face `S9999` of a solid that has S1 to S4"), "{}", error_of(FLAT));
     let text = flat()
         + "*Element, type=MASS, elset=m\n77, 9\n*Material, name=steel\n*Elastic\n1.,2.\n*Surface, name=s, type=NODE\nends\n\
            *Surface, name=e\n33, E1\n77, \n*Elset, elset=gone\n33, 78\n*Nset, nset=_x, internal\n9\n\
@@ -197,17 +197,19 @@ fn instances_lie_where_they_are_put() {
     // A part without an instance is used as it is, and a single instance needs no name prefix.
     let alone = &PARTS[..PARTS.find("*Assembly").unwrap()];
     assert_eq!(parse(alone).0.label_names.regions[&1], "body");
-    assert!(told(&PARTS.replace("part=BAR", "part=none")).contains("part `none`, which was not there yet"));
-    assert!(told(&PARTS.replace("name=Two", "name=one")).contains("a second instance `one`"));
-    assert!(told(&PARTS.replace("One.2", "Three.2")).contains("instance `THREE` is named"));
-    assert!(told(&PARTS.replace("10., 0., 1., 90.", "10., 0., 0., 90.")).contains("are one"));
+    assert!(
+        error_of(&PARTS.replace("part=BAR", "part=none")).contains("part `none`, which was not there yet")
+    );
+    assert!(error_of(&PARTS.replace("name=Two", "name=one")).contains("a second instance `one`"));
+    assert!(error_of(&PARTS.replace("One.2", "Three.2")).contains("instance `THREE` is named"));
+    assert!(error_of(&PARTS.replace("10., 0., 1., 90.", "10., 0., 0., 90.")).contains("are one"));
 }
 
 #[test]
 fn copies_without_end_are_refused() {
     let nodes: String = (1..1000).map(|i| format!("{i},{i}\n")).collect();
     let instances: String = (0..60_000).map(|i| format!("*INSTANCE,NAME=i{i},PART=p\n")).collect();
-    let error = told(&format!("*PART,NAME=p\n*NODE\n{nodes}*END PART\n{instances}"));
+    let error = error_of(&format!("*PART,NAME=p\n*NODE\n{nodes}*END PART\n{instances}"));
     assert!(error.contains("take more than"), "{error}");
 }
 
@@ -246,10 +248,10 @@ fn elements_of_many_nodes_go_on_over_lines() {
     assert_eq!(mesh.cells.connectivity().list(0), std::array::from_fn::<_, 20, _>(|i| VertexId(i as u32)));
     // Abaqus numbers the nodes from end to end; VTK puts the middle node last.
     assert_eq!(mesh.cells.connectivity().list(2), [0, 2, 1].map(VertexId));
-    let error = told(&text.replace(",19,20\n2", ",19,20,21\n2"));
+    let error = error_of(&text.replace(",19,20\n2", ",19,20,21\n2"));
     assert!(error.contains("element 1 of type C3D20R has 20 nodes, but 21 are given"), "{error}");
     assert!(error.contains("line 25"), "{error}");
-    let error = told(&text.replace("7,6,5,4,3,2,1\n", ""));
+    let error = error_of(&text.replace("7,6,5,4,3,2,1\n", ""));
     assert!(error.contains("element 2 of type C3D20R has 20 nodes, but 13 are given"), "{error}");
 }
 
@@ -337,7 +339,7 @@ fn what_is_wrong_is_told_with_its_line() {
         ("*NODE\n1\n*NGEN\n1,9\n", "line 3: *NGEN makes or moves nodes"),
         ("*PART,NAME=a\n*PART,NAME=A\n", "a second part `A`"),
     ] {
-        let error = told(text);
+        let error = error_of(text);
         assert!(error.contains(words), "{text:?}: {error}");
     }
     // However large its stated end, a range holds only the nodes that exist.
@@ -403,7 +405,7 @@ fn a_mesh_comes_back_with_its_labels_and_sets() {
 }
 
 #[test]
-fn what_a_file_cannot_hold_is_told() {
+fn what_a_file_cannot_hold_is_reported() {
     let mut mesh = labelled();
     mesh.set_point_field(Field::scalars("p", vec![0.5; 5]));
     mesh.set_point_field(Field::scalars("nset:two", vec![2u8; 5]));
@@ -428,7 +430,7 @@ fn what_a_file_cannot_hold_is_told() {
 }
 
 #[test]
-fn labels_that_a_file_would_make_one_are_told() {
+fn labels_that_a_file_would_make_one_are_reported() {
     let mut mesh = labelled();
     mesh.label_names.regions.insert(1, "the wall".into());
     mesh.label_names.patches.insert(4, "x".repeat(81));

@@ -8,7 +8,7 @@ use super::names::{PATCH, REGION, numbers, one_line, written};
 use super::surfaces::{FacetKey, facet_key};
 use super::{ELSET, NSET, SURFACE};
 use crate::base::{Result, VertexId};
-use crate::io::cell_labels::{cell_labels, say_all};
+use crate::io::cell_labels::{cell_labels, labels_cover};
 use crate::io::format::Written;
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::io::text::push_float;
@@ -16,10 +16,10 @@ use crate::mesh::facets::facet_shapes;
 use crate::mesh::{CellKind, Field, Labels, Mesh, corners, unused_name};
 
 /// Maximum number of entries in a line.
-const MOST_IN_LINE: usize = 16;
+const MAX_PER_LINE: usize = 16;
 
 /// Maximum number of characters in a name.
-const LONGEST_NAME: usize = 80;
+const MAX_NAME_LENGTH: usize = 80;
 
 /// Set names with the indices of their members.
 type Sets = Vec<(String, Vec<usize>)>;
@@ -33,13 +33,13 @@ pub(super) fn write(mesh: &Mesh) -> Result<Written> {
     elements(&mut out, &mesh);
     let patches = by_label(mesh.patches(), PATCH);
     let element_sets = element_sets(&mesh, &patches, &mut lost);
-    let node_sets = of_arrays(&mesh.point_data, NSET);
+    let node_sets = sets_from_arrays(&mesh.point_data, NSET);
     sets(&mut out, "ELSET", &element_sets);
     sets(&mut out, "NSET", &node_sets);
     let mut named: Sets = patches.into_values().collect();
-    named.extend(of_arrays(&mesh.cell_data, SURFACE));
+    named.extend(sets_from_arrays(&mesh.cell_data, SURFACE));
     surfaces(&mut out, &mesh, &named, &mut lost);
-    say_what_is_lost(&mesh, &mut lost);
+    report_losses(&mesh, &mut lost);
     Ok(Written { files: vec![(String::new(), out)], lost })
 }
 
@@ -82,7 +82,7 @@ fn abaqus_to_vtk(kind: CellKind) -> Vec<usize> {
 fn rows(out: &mut Vec<u8>, numbers: impl Iterator<Item = usize>) {
     for (i, number) in numbers.enumerate() {
         if i > 0 {
-            out.extend(if i % MOST_IN_LINE == 0 { b",\n" } else { b", " });
+            out.extend(if i % MAX_PER_LINE == 0 { b",\n" } else { b", " });
         }
         push(out, number);
     }
@@ -128,7 +128,7 @@ fn element_sets(mesh: &Mesh, patches: &ByLabel, lost: &mut Vec<String>) -> Sets 
             lost.push(format!("{what} of one name come back as one"));
         }
     }
-    for (name, cells) in of_arrays(&mesh.cell_data, ELSET) {
+    for (name, cells) in sets_from_arrays(&mesh.cell_data, ELSET) {
         // The array holds the cells of a label, and curves besides: both are one set.
         let can_have_label = |&&cell: &&usize| mesh.cells.kinds()[cell].dim() > Some(1);
         if let Some(&place) = place_of.get(&name)
@@ -154,7 +154,7 @@ fn sorted(cells: &[usize]) -> Vec<usize> {
 }
 
 /// The sets marked by arrays of 0 and 1, under the array names without the prefix.
-fn of_arrays(fields: &[Field], prefix: &str) -> Sets {
+fn sets_from_arrays(fields: &[Field], prefix: &str) -> Sets {
     let name = |f: &Field| f.name.strip_prefix(prefix).unwrap_or_default().to_owned();
     let marked =
         |f: &Field| marks(f, prefix).map(|marks| (0..marks.len()).filter(|&i| marks[i] == 1).collect());
@@ -216,7 +216,7 @@ struct Side {
     cell: usize,
     number: usize,
     /// Whether the facet has the orientation of the surface cell.
-    turns_alike: bool,
+    same_orientation: bool,
 }
 
 fn key(mesh: &Mesh, cell: usize) -> FacetKey {
@@ -241,9 +241,9 @@ fn sides_of(mesh: &Mesh) -> HashMap<FacetKey, (usize, Option<Side>)> {
             let facet: Vec<VertexId> =
                 shapes[place].corners().iter().map(|&i| vertices[usize::from(i)]).collect();
             let Some((on, side)) = sides.get_mut(&facet_key(facet.iter().copied())) else { continue };
-            let turns_alike = turn_alike(ring(mesh, *on), &facet);
-            if side.is_none_or(|side: Side| turns_alike && !side.turns_alike) {
-                *side = Some(Side { cell: cell.index(), number, turns_alike });
+            let same_orientation = have_same_orientation(ring(mesh, *on), &facet);
+            if side.is_none_or(|side: Side| same_orientation && !side.same_orientation) {
+                *side = Some(Side { cell: cell.index(), number, same_orientation });
             }
         }
     }
@@ -251,18 +251,18 @@ fn sides_of(mesh: &Mesh) -> HashMap<FacetKey, (usize, Option<Side>)> {
 }
 
 /// Whether two rings of the same vertices have the same orientation.
-fn turn_alike(a: &[VertexId], b: &[VertexId]) -> bool {
+fn have_same_orientation(a: &[VertexId], b: &[VertexId]) -> bool {
     b.iter().position(|v| *v == a[0]).is_some_and(|at| b[(at + 1) % b.len()] == a[1])
 }
 
-fn say_what_is_lost(mesh: &Mesh, lost: &mut Vec<String>) {
+fn report_losses(mesh: &Mesh, lost: &mut Vec<String>) {
     let mut labels = cell_labels(mesh, None);
     // Sets of curves would be read back as arrays of another name.
     let kinds = mesh.cells.kinds();
     labels.iter_mut().zip(kinds).filter(|(_, kind)| kind.dim() < Some(2)).for_each(|(label, _)| *label = 0);
     let is_set = |f: &&Field, prefixes: &[&str]| prefixes.iter().any(|p| marks(f, p).is_some());
     let cell_arrays = mesh.cell_data.iter().filter(|f| !is_set(f, &[ELSET, SURFACE]));
-    let unsaid = cell_arrays.filter(|f| !say_all(&labels, mesh, f));
+    let unsaid = cell_arrays.filter(|f| !labels_cover(&labels, mesh, f));
     lost.extend(lost_arrays("Abaqus", "cell", unsaid));
     lost.extend(lost_arrays("Abaqus", "point", mesh.point_data.iter().filter(|f| !is_set(f, &[NSET]))));
     lost.extend(lost_arrays("Abaqus", "field", &mesh.field_data));
@@ -271,9 +271,9 @@ fn say_what_is_lost(mesh: &Mesh, lost: &mut Vec<String>) {
         if one_line(name) != *name {
             lost.push(format!("the name {name:?} is written as {:?}", one_line(name)));
         }
-        if name.chars().count() > LONGEST_NAME {
+        if name.chars().count() > MAX_NAME_LENGTH {
             lost.push(format!(
-                "the name {name:?} has more than {LONGEST_NAME} characters: Abaqus refuses it"
+                "the name {name:?} has more than {MAX_NAME_LENGTH} characters: Abaqus refuses it"
             ));
         }
     }

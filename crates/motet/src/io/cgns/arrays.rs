@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::base::Result;
-use crate::io::cgns::cells::{NOWHERE, Span};
+use crate::io::cgns::cells::{NO_CELL, Span};
 use crate::io::cgns::conditions::{Numbers, is_on_points};
 use crate::io::cgns::node::Node;
 use crate::io::format::Notes;
 use crate::mesh::{CellKind, Field, Values};
 
 /// Maximum number of arrays: each takes a value for each point or cell, however few the file holds.
-const MOST_ARRAYS: usize = 1000;
+const MAX_ARRAYS: usize = 1000;
 
 /// The indices in the mesh of the points and cells of a zone.
 pub(super) struct Places<'a> {
@@ -55,15 +55,15 @@ impl Solutions {
             let rows = if is_on_points { places.points(some.as_ref()) } else { places.cells(some.as_ref()) };
             let arrays = if is_on_points { &mut self.points } else { &mut self.cells };
             for node in solution.children_of("DataArray_t")? {
-                let Some(array) = node.array()?.filter(|array| array.is_known()) else {
-                    notes.add(format!("{} holds no numbers: passed over", node.place()));
+                let Some(array) = node.array()?.filter(|array| array.is_supported()) else {
+                    notes.add(format!("{} holds no numbers: passed over", node.path()));
                     continue;
                 };
                 let values = array.all()?;
                 if values.len() != rows.len() {
                     notes.add(format!(
                         "{} has {} values for {} {}: passed over",
-                        node.place(),
+                        node.path(),
                         values.len(),
                         rows.len(),
                         if is_on_points { "points" } else { "cells" }
@@ -90,7 +90,7 @@ impl Places<'_> {
         match some {
             Some(numbers) => {
                 let of = |span: &Span| -> Vec<u32> {
-                    let cell = |number| span.cell(number).map_or(NOWHERE, |cell| cell as u32);
+                    let cell = |number| span.cell(number).map_or(NO_CELL, |cell| cell as u32);
                     numbers.within(span.first, span.last()).map(cell).collect()
                 };
                 self.spans.iter().flat_map(of).collect()
@@ -105,11 +105,11 @@ impl Places<'_> {
 
 impl Arrays {
     fn take(&mut self, node: Node, values: Values, rows: &[u32], notes: &Notes) {
-        if self.by_name.len() >= MOST_ARRAYS && !self.by_name.contains_key(&node.name) {
-            notes.add(format!("arrays beyond the first {MOST_ARRAYS} are passed over"));
+        if self.by_name.len() >= MAX_ARRAYS && !self.by_name.contains_key(&node.name) {
+            notes.add(format!("arrays beyond the first {MAX_ARRAYS} are passed over"));
             return;
         }
-        let place = node.place().to_owned();
+        let place = node.path().to_owned();
         match self.by_name.get_mut(&node.name) {
             None => {
                 self.by_name.insert(node.name, Column { values, rows: rows.to_vec() });
@@ -156,7 +156,7 @@ impl Column {
         let mut values = self.values;
         let _ = values.append(&blank_of(&values));
         let mut from = vec![blank; n];
-        for (i, &row) in self.rows.iter().enumerate().rev().filter(|(_, row)| **row != NOWHERE) {
+        for (i, &row) in self.rows.iter().enumerate().rev().filter(|(_, row)| **row != NO_CELL) {
             from[row as usize] = i;
         }
         Field { name: String::new(), components: 1, values }.pick(from).values

@@ -8,14 +8,14 @@ use crate::io::cgns::zone::Zone;
 use crate::mesh::{CellKind, Cells};
 
 /// Marks an element without a cell.
-pub(super) const NOWHERE: u32 = u32::MAX;
+pub(super) const NO_CELL: u32 = u32::MAX;
 
 /// The cells made of the elements of a section.
 pub(super) struct Span {
     pub(super) name: String,
     /// The number of the first element.
     pub(super) first: i64,
-    /// The cell of each element, [`NOWHERE`] for elements that are not cells.
+    /// The cell of each element, [`NO_CELL`] for elements that are not cells.
     pub(super) places: Vec<u32>,
 }
 
@@ -27,45 +27,45 @@ impl Span {
 
     /// The cells of those elements that have one.
     pub(super) fn cells(&self) -> impl Iterator<Item = usize> + '_ {
-        self.places.iter().filter(|&&place| place != NOWHERE).map(|&place| place as usize)
+        self.places.iter().filter(|&&place| place != NO_CELL).map(|&place| place as usize)
     }
 
     /// The cell of an element of this section, if it has one.
     pub(super) fn cell(&self, number: i64) -> Option<usize> {
         let place = *self.places.get(usize::try_from(number - self.first).ok()?)?;
-        (place != NOWHERE).then_some(place as usize)
+        (place != NO_CELL).then_some(place as usize)
     }
 }
 
-/// Appends the elements of a zone to `cells`; `shift` points precede those of the zone.
-pub(super) fn place(zone: &Zone, shift: u32, cells: &mut Cells) -> Result<Vec<Span>> {
+/// Appends the elements of a zone to `cells`; `first_point` points precede those of the zone.
+pub(super) fn place(zone: &Zone, first_point: u32, cells: &mut Cells) -> Result<Vec<Span>> {
     let faces = Faces { zone };
-    let mut room = faces.room();
+    let mut node_budget = faces.node_budget();
     let mut spans = Vec::new();
     for (section, is_cell) in zone.sections.iter().zip(faces.are_cells()) {
         let mut places = Vec::with_capacity(section.len());
-        let here = |cells: &Cells, is_cell: bool| if is_cell { cells.len() as u32 } else { NOWHERE };
+        let here = |cells: &Cells, is_cell: bool| if is_cell { cells.len() as u32 } else { NO_CELL };
         match &section.body {
             Body::Cells(kinds, nodes) => {
                 for (kind, nodes) in kinds.iter().zip(nodes.iter()) {
                     places.push(here(cells, kind.is_some()));
-                    kind.iter().for_each(|&kind| cells.push(kind, shifted(nodes, shift)));
+                    kind.iter().for_each(|&kind| cells.push(kind, shifted(nodes, first_point)));
                 }
             }
             Body::Faces(lists) => {
                 for (nodes, is_cell) in lists.iter().zip(is_cell) {
                     places.push(here(cells, is_cell));
-                    let told = || format!("section {}: a polygon of {} nodes", section.name, nodes.len());
-                    let kind = polygon(nodes.len()).ok_or_else(|| zone.node.error(told()))?;
+                    let message = || format!("section {}: a polygon of {} nodes", section.name, nodes.len());
+                    let kind = polygon(nodes.len()).ok_or_else(|| zone.node.error(message()))?;
                     if is_cell {
-                        cells.push(kind, shifted(nodes, shift));
+                        cells.push(kind, shifted(nodes, first_point));
                     }
                 }
             }
             Body::Polyhedra(lists) => {
                 for list in lists.iter() {
                     places.push(here(cells, true));
-                    cells_of_faces::push(cells, &faces.rings(list, shift, &mut room)?);
+                    cells_of_faces::push(cells, &faces.rings(list, first_point, &mut node_budget)?);
                 }
             }
         }
@@ -77,8 +77,8 @@ pub(super) fn place(zone: &Zone, shift: u32, cells: &mut Cells) -> Result<Vec<Sp
     Ok(spans)
 }
 
-fn shifted(nodes: &[u32], shift: u32) -> impl Iterator<Item = VertexId> + '_ {
-    nodes.iter().map(move |&node| VertexId(node + shift))
+fn shifted(nodes: &[u32], first_point: u32) -> impl Iterator<Item = VertexId> + '_ {
+    nodes.iter().map(move |&node| VertexId(node + first_point))
 }
 
 fn polygon(n_nodes: usize) -> Option<CellKind> {
@@ -121,7 +121,7 @@ impl Faces<'_> {
     }
 
     /// Upper bound on the nodes of the faces of all polyhedra together: at most two polyhedra share a face.
-    fn room(&self) -> usize {
+    fn node_budget(&self) -> usize {
         let items = |section: &Section| match &section.body {
             Body::Faces(lists) => lists.items().len(),
             _ => 0,
@@ -129,8 +129,13 @@ impl Faces<'_> {
         self.zone.sections.iter().map(items).sum::<usize>().saturating_mul(2)
     }
 
-    /// The faces of a polyhedron, oriented outward. Subtracts their nodes from `room`.
-    fn rings(&self, numbers: &[i64], shift: u32, room: &mut usize) -> Result<Vec<Vec<VertexId>>> {
+    /// The faces of a polyhedron, oriented outward. Subtracts their nodes from `node_budget`.
+    fn rings(
+        &self,
+        numbers: &[i64],
+        first_point: u32,
+        node_budget: &mut usize,
+    ) -> Result<Vec<Vec<VertexId>>> {
         if numbers.len() < 4 {
             return Err(self.zone.node.error(format!("a polyhedron of {} polygons", numbers.len())));
         }
@@ -139,10 +144,10 @@ impl Faces<'_> {
             let nodes = self.face(number.saturating_abs()).ok_or_else(|| {
                 self.zone.node.error(format!("a polyhedron names element {number}, which is no polygon"))
             })?;
-            *room = room
+            *node_budget = node_budget
                 .checked_sub(nodes.len())
                 .ok_or_else(|| self.zone.node.error("polyhedra name polygons more often than twice"))?;
-            let mut ring: Vec<VertexId> = shifted(nodes, shift).collect();
+            let mut ring: Vec<VertexId> = shifted(nodes, first_point).collect();
             if number < 0 {
                 ring.reverse();
             }

@@ -67,7 +67,7 @@ pub(super) fn conditions(zone: &Node, notes: &Notes) -> Result<Vec<Condition>> {
                     name: node.name,
                     members,
                 }),
-                None => notes.add(format!("{} names neither elements nor points: passed over", node.place())),
+                None => notes.add(format!("{} names neither elements nor points: passed over", node.path())),
             }
         }
     }

@@ -38,7 +38,7 @@ impl Section {
     pub(super) fn read(node: &Node, n_points: usize, notes: &Notes) -> Result<Self> {
         let number = node.ints()?.first().copied().unwrap_or(0);
         let (first, n) = range(node)?;
-        let source = Source { node, n, n_points, ids: node.needed("ElementConnectivity")?.ints()? };
+        let source = Source { node, n, n_points, ids: node.required_child("ElementConnectivity")?.ints()? };
         let body = match number {
             MIXED => source.mixed(notes)?,
             NGON => Body::Faces(source.lists(|id| source.point(id))?),
@@ -51,7 +51,7 @@ impl Section {
 
 /// The number of the first element, and the number of elements.
 fn range(node: &Node) -> Result<(i64, usize)> {
-    let ends = node.needed("ElementRange")?.ints()?;
+    let ends = node.required_child("ElementRange")?.ints()?;
     let &[first, last] = ends.as_slice() else {
         return Err(node.error("the range of elements is no pair of numbers"));
     };
@@ -164,14 +164,14 @@ impl Source<'_> {
 struct Cells {
     kinds: Vec<Option<CellKind>>,
     nodes: Csr<u32>,
-    n_passed: std::collections::BTreeMap<&'static str, usize>,
+    n_unsupported: std::collections::BTreeMap<&'static str, usize>,
     order: Option<(ElementType, Vec<usize>)>,
 }
 
 impl Cells {
     fn push(&mut self, source: &Source<'_>, element: ElementType, ids: &[i64]) -> Result<()> {
         if element.kind.is_none() {
-            *self.n_passed.entry(element.name).or_default() += 1;
+            *self.n_unsupported.entry(element.name).or_default() += 1;
         }
         if self.order.as_ref().is_none_or(|(of, _)| *of != element) {
             self.order = Some((element, element.vtk_to_cgns()));
@@ -184,7 +184,7 @@ impl Cells {
     }
 
     fn finish(self, notes: &Notes) -> Result<Body> {
-        for (name, n) in self.n_passed {
+        for (name, n) in self.n_unsupported {
             notes.add(format!("{n} elements of type {name} are passed over: motet has no such cells"));
         }
         Ok(Body::Cells(self.kinds, self.nodes))

@@ -64,7 +64,7 @@ impl Faces {
             });
             for facet in uses {
                 let number = place as i64 + 1;
-                let outward = turn_alike(rings.list(place), &ring_of(facet));
+                let outward = have_same_orientation(rings.list(place), &ring_of(facet));
                 of_cells[facet.cell.index()].push(if outward { number } else { -number });
             }
         });
@@ -89,6 +89,6 @@ fn key(ring: &[u32]) -> Vec<u32> {
 }
 
 /// Whether two rings of the same corners have the same orientation.
-fn turn_alike(a: &[u32], b: &[u32]) -> bool {
+fn have_same_orientation(a: &[u32], b: &[u32]) -> bool {
     b.iter().position(|v| *v == a[0]).is_some_and(|at| b[(at + 1) % b.len()] == a[1])
 }

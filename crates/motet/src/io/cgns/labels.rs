@@ -7,12 +7,12 @@ use crate::base::VertexId;
 use crate::io::cgns::cells::Span;
 use crate::io::cgns::conditions::{Condition, Members, Numbers};
 use crate::io::cgns::families::{Families, Family};
-use crate::io::cgns::names::bare;
+use crate::io::cgns::names::default_name;
 use crate::io::format::Notes;
 use crate::mesh::{CellKind, Field, Mesh};
 
 /// The parts of a zone that give labels to its cells.
-pub(super) struct Labelled<'a> {
+pub(super) struct LabelSources<'a> {
     pub(super) zone: &'a str,
     pub(super) family: Option<&'a str>,
     pub(super) conditions: &'a [Condition],
@@ -37,7 +37,7 @@ struct Labels {
 /// Labels the cells of a mesh that was joined from zones.
 pub(super) fn set_labels(
     mesh: &mut Mesh,
-    zones: &[Labelled<'_>],
+    zones: &[LabelSources<'_>],
     families: &Families,
     cell_dim: usize,
     notes: &Notes,
@@ -54,9 +54,9 @@ pub(super) fn set_labels(
             for condition in zone.conditions {
                 labels.take_condition(mesh, zone, condition, families, notes);
             }
-            labels.take_rest(mesh, zone, zones.len() > 1, families);
+            labels.label_by_section(mesh, zone, zones.len() > 1, families);
         }
-        labels.put(mesh, array);
+        labels.store(mesh, array);
     }
 }
 
@@ -71,14 +71,14 @@ impl Labels {
     }
 
     /// Whether a cell has the dimension of these labels.
-    fn is_ours(&self, mesh: &Mesh, cell: usize) -> bool {
+    fn has_dim(&self, mesh: &Mesh, cell: usize) -> bool {
         mesh.cells.kinds()[cell].dim() == Some(self.dim)
     }
 
     fn take_condition(
         &mut self,
         mesh: &Mesh,
-        zone: &Labelled<'_>,
+        zone: &LabelSources<'_>,
         condition: &Condition,
         families: &Families,
         notes: &Notes,
@@ -88,7 +88,7 @@ impl Labels {
                 let of = |span: &Span| -> Vec<usize> {
                     numbers.within(span.first, span.last()).filter_map(|number| span.cell(number)).collect()
                 };
-                zone.spans.iter().flat_map(of).filter(|&cell| self.is_ours(mesh, cell)).collect()
+                zone.spans.iter().flat_map(of).filter(|&cell| self.has_dim(mesh, cell)).collect()
             }
             // Points only identify a surface.
             Members::Points(_) if self.dim == 3 => return,
@@ -118,21 +118,27 @@ impl Labels {
     }
 
     /// The unlabelled cells of this dimension all of whose vertices are among the given points.
-    fn on_points(&self, mesh: &Mesh, zone: &Labelled<'_>, numbers: &Numbers) -> Vec<usize> {
+    fn on_points(&self, mesh: &Mesh, zone: &LabelSources<'_>, numbers: &Numbers) -> Vec<usize> {
         let (shift, n) = zone.points;
         let mut is_named = vec![false; n];
         numbers.within(1, n as i64).for_each(|number| is_named[number as usize - 1] = true);
-        let is_on = |v: &VertexId| is_named[v.index() - shift];
-        let cells = zone.spans.iter().flat_map(Span::cells).filter(|&cell| self.is_ours(mesh, cell));
+        let is_on_patch = |v: &VertexId| is_named[v.index() - shift];
+        let cells = zone.spans.iter().flat_map(Span::cells).filter(|&cell| self.has_dim(mesh, cell));
         cells
             .filter(|&cell| {
-                self.of_cells[cell] == NONE && mesh.cells.connectivity().list(cell).iter().all(is_on)
+                self.of_cells[cell] == NONE && mesh.cells.connectivity().list(cell).iter().all(is_on_patch)
             })
             .collect()
     }
 
     /// Labels the cells of sections that no condition touches.
-    fn take_rest(&mut self, mesh: &Mesh, zone: &Labelled<'_>, are_several: bool, families: &Families) {
+    fn label_by_section(
+        &mut self,
+        mesh: &Mesh,
+        zone: &LabelSources<'_>,
+        are_several: bool,
+        families: &Families,
+    ) {
         let ours = |span: &Span| -> Vec<usize> {
             span.cells().filter(|&cell| mesh.cells.kinds()[cell].dim() == Some(self.dim)).collect()
         };
@@ -140,7 +146,7 @@ impl Labels {
             zone.spans.iter().map(|span| (span, ours(span))).filter(|(_, cells)| !cells.is_empty()).collect();
         let of_zone = zone.family.map(|name| families.named(name));
         let of_zone = of_zone.or_else(|| are_several.then(|| families.named(zone.zone)));
-        let by_section = if self.fills { spans.len() > 1 && !are_by_kind(mesh, &spans) } else { true };
+        let by_section = if self.fills { spans.len() > 1 && !sections_are_kinds(mesh, &spans) } else { true };
         for (span, cells) in spans {
             if cells.iter().any(|&cell| self.of_cells[cell] != NONE) {
                 continue;
@@ -158,22 +164,22 @@ impl Labels {
     }
 
     /// Stores the labels in the mesh, if there are any.
-    fn put(self, mesh: &mut Mesh, array: &str) {
+    fn store(self, mesh: &mut Mesh, array: &str) {
         if self.families.is_empty() {
             return;
         }
         let mut taken = BTreeSet::from([0]);
-        let said: Vec<Option<i32>> = self
+        let given: Vec<Option<i32>> = self
             .families
             .iter()
             .map(|family| family.number.filter(|&number| number == 0 || taken.insert(number)))
             .collect();
         let mut free = (1..).filter(|number| !taken.contains(number));
         let numbers: Vec<i32> =
-            said.into_iter().map(|number| number.or_else(|| free.next()).unwrap_or_default()).collect();
+            given.into_iter().map(|number| number.or_else(|| free.next()).unwrap_or_default()).collect();
         let names = if self.dim == 3 { &mut mesh.label_names.regions } else { &mut mesh.label_names.patches };
         for (family, &number) in self.families.iter().zip(&numbers) {
-            if number != 0 && family.name != bare(self.dim, number) {
+            if number != 0 && family.name != default_name(self.dim, number) {
                 names.insert(number, family.name.clone());
             }
         }
@@ -187,7 +193,7 @@ impl Labels {
 
 /// Whether each section holds a single kind of cells, different from those of the others; such sections carry
 /// no label information.
-fn are_by_kind(mesh: &Mesh, spans: &[(&Span, Vec<usize>)]) -> bool {
+fn sections_are_kinds(mesh: &Mesh, spans: &[(&Span, Vec<usize>)]) -> bool {
     let mut seen: Vec<CellKind> = Vec::new();
     spans.iter().all(|(_, cells)| {
         let kind = mesh.cells.kinds()[cells[0]];

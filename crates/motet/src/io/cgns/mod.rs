@@ -27,9 +27,9 @@
 //! | `labels` | regions and patches from conditions, families, sections and zones |
 //! | `arrays` | solutions as arrays |
 //! | `seams` | points where zones meet |
-//! | `bare` | files written by meshio |
+//! | `meshio` | files written by meshio |
 //! | `read` | reads a mesh |
-//! | `tree` | nodes for writing |
+//! | `tree` | nodes for writing, and the width of their integers |
 //! | `parts` | the cells of a mesh, label by label |
 //! | `faces` | a mesh with polyhedra as faces and cells of faces |
 //! | `names` | names that CGNS can hold |
@@ -37,7 +37,6 @@
 //! | `write` | writes a mesh |
 
 mod arrays;
-mod bare;
 mod cells;
 mod conditions;
 mod elements;
@@ -45,6 +44,7 @@ mod faces;
 mod families;
 mod kinds;
 mod labels;
+mod meshio;
 mod names;
 mod node;
 mod parts;

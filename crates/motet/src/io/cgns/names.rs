@@ -3,10 +3,10 @@
 use crate::mesh::unused_name;
 
 /// Maximum length of a name in bytes.
-pub(super) const LONGEST: usize = 32;
+pub(super) const MAX_NAME_LENGTH: usize = 32;
 
 /// The default name of a label without a name.
-pub(super) fn bare(dim: usize, number: i32) -> String {
+pub(super) fn default_name(dim: usize, number: i32) -> String {
     format!("{}_{number}", if dim == 3 { "Region" } else { "Patch" })
 }
 
@@ -15,11 +15,11 @@ pub(super) fn valid(name: &str, taken: &[String]) -> String {
     let clean: String = name.chars().map(|c| if matches!(c, '/' | '\0') { '_' } else { c }).collect();
     let clean = clean.trim();
     let clean = if clean.is_empty() || clean == "." || clean == ".." { "unnamed" } else { clean };
-    let mut longest = LONGEST;
+    let mut longest = MAX_NAME_LENGTH;
     loop {
         // Leave space for the number that makes the name unique.
-        let name = unused_name(cut(clean, longest), |name| taken.iter().any(|t| t == name));
-        if name.len() <= LONGEST {
+        let name = unused_name(truncated(clean, longest), |name| taken.iter().any(|t| t == name));
+        if name.len() <= MAX_NAME_LENGTH {
             return name;
         }
         longest -= 1;
@@ -27,7 +27,7 @@ pub(super) fn valid(name: &str, taken: &[String]) -> String {
 }
 
 /// The name, truncated to at most `most` bytes.
-pub(super) fn cut(name: &str, most: usize) -> &str {
+pub(super) fn truncated(name: &str, most: usize) -> &str {
     let end = (0..=most.min(name.len())).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
     &name[..end]
 }
@@ -45,6 +45,6 @@ mod tests {
         let first = valid(&long, &[]);
         assert_eq!(first, "é".repeat(16));
         let second = valid(&long, std::slice::from_ref(&first));
-        assert!(second.len() <= LONGEST && second != first, "{second}");
+        assert!(second.len() <= MAX_NAME_LENGTH && second != first, "{second}");
     }
 }

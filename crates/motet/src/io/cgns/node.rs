@@ -30,8 +30,8 @@ impl Node {
     }
 
     /// The path of the node in the file.
-    pub(super) fn place(&self) -> &str {
-        self.group.place()
+    pub(super) fn path(&self) -> &str {
+        self.group.path()
     }
 
     /// All children, sorted by name.
@@ -57,7 +57,7 @@ impl Node {
         let Some(group) = self.group.group(name)? else { return Ok(None) };
         if group.text("type") == Some("LK") {
             return Err(Error::input("is a link to a node elsewhere: links are not followed")
-                .at(group.place())
+                .at(group.path())
                 .remedy("put what is linked in its place: cgnsconvert -f -h -l linked.cgns whole.cgns"));
         }
         let label = group.text("label").unwrap_or_default().to_owned();
@@ -65,7 +65,7 @@ impl Node {
     }
 
     /// The child with a name; an error if it is missing.
-    pub(super) fn needed(&self, name: &str) -> Result<Self> {
+    pub(super) fn required_child(&self, name: &str) -> Result<Self> {
         self.child(name)?.ok_or_else(|| self.error(format!("the node {name} is missing")))
     }
 
@@ -103,7 +103,7 @@ impl Node {
 
     /// An error that names this node.
     pub(super) fn error(&self, what: impl Into<String>) -> Error {
-        Error::input(what).at(self.place()).remedy(
+        Error::input(what).at(self.path()).remedy(
             "the file is damaged, or was written wrong: look at it with cgnscheck, and write it again",
         )
     }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::io::cgns::kinds::ElementType;
-use crate::io::cgns::names::{bare, valid};
+use crate::io::cgns::names::{default_name, valid};
 use crate::mesh::{CellKind, Labels, Mesh};
 
 /// Names of nodes beside those of sections, families and conditions.
@@ -55,7 +55,7 @@ pub(super) fn parts(mesh: &Mesh, lost: &mut Vec<String>) -> Vec<Part> {
             let wanted = match (number, called) {
                 (0, _) => rest.to_owned(),
                 (_, Some(name)) => name.clone(),
-                (number, None) => bare(dim, number),
+                (number, None) => default_name(dim, number),
             };
             let name = valid(&wanted, &taken);
             if number != 0 && name != wanted {

@@ -2,10 +2,10 @@
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::cgns::arrays::{Places, Solutions};
-use crate::io::cgns::bare;
 use crate::io::cgns::cells::{Span, place};
 use crate::io::cgns::families::Families;
-use crate::io::cgns::labels::{Labelled, set_labels};
+use crate::io::cgns::labels::{LabelSources, set_labels};
+use crate::io::cgns::meshio;
 use crate::io::cgns::node::Node;
 use crate::io::cgns::seams::{Seam, join_points, seams};
 use crate::io::cgns::zone::Zone;
@@ -16,7 +16,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let root = Node::root(input.bytes)?;
     let bases = root.children_of("CGNSBase_t")?;
     if bases.is_empty()
-        && let Some(mesh) = bare::read(&root)?
+        && let Some(mesh) = meshio::read(&root)?
     {
         return Ok(mesh);
     }
@@ -40,7 +40,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     }
     mesh.point_data = solutions.points.finish(mesh.points.len());
     mesh.cell_data = solutions.cells.finish(mesh.cells.len());
-    let labelled: Vec<Labelled<'_>> = zones.iter().map(Joined::labelled).collect();
+    let labelled: Vec<LabelSources<'_>> = zones.iter().map(Joined::labelled).collect();
     set_labels(&mut mesh, &labelled, &families, cell_dim, input.notes);
     join_zones(&mut mesh, &zones, input.notes);
     Ok(mesh)
@@ -55,8 +55,8 @@ struct Joined {
 }
 
 impl Joined {
-    fn labelled(&self) -> Labelled<'_> {
-        Labelled {
+    fn labelled(&self) -> LabelSources<'_> {
+        LabelSources {
             zone: &self.zone.node.name,
             family: self.zone.family.as_deref(),
             conditions: &self.zone.conditions,

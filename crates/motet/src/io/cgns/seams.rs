@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 
 /// Maximum distance of identical points, relative to the extent of the mesh: files may have seven-digit
 /// coordinates.
-const FARTHEST: f64 = 1e-6;
+const MERGE_TOLERANCE: f64 = 1e-6;
 
 /// Points of a zone and the identical points of another zone.
 pub(super) struct Seam {
@@ -66,7 +66,7 @@ impl Seam {
 /// Merges each pair of points that coincide; returns the number of pairs that do not.
 pub(super) fn join_points(mesh: &mut Mesh, pairs: &[[u32; 2]]) -> usize {
     let Some([low, high]) = mesh.bounds() else { return pairs.len() };
-    let farthest = FARTHEST * distance(low, high);
+    let farthest = MERGE_TOLERANCE * distance(low, high);
     let mut sets = DisjointSets::new(mesh.points.len());
     let mut n_apart = 0;
     for &[a, b] in pairs {

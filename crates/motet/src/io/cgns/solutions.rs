@@ -1,10 +1,9 @@
 //! Arrays as solutions: each scalar is an array, each vector three.
 
-use crate::io::cell_labels::{cell_labels, say_all};
-use crate::io::cgns::names::{LONGEST, cut, valid};
+use crate::io::cell_labels::{cell_labels, labels_cover};
+use crate::io::cgns::names::{MAX_NAME_LENGTH, truncated, valid};
 use crate::io::cgns::parts::{CELL_DATA, FACE_DATA, POINT_DATA, Part};
-use crate::io::cgns::tree::Tree;
-use crate::io::cgns::write::Ints;
+use crate::io::cgns::tree::{Ints, Tree};
 use crate::io::select::lost_arrays;
 use crate::mesh::{Field, Mesh, Values};
 
@@ -17,14 +16,15 @@ pub(super) fn solutions(
     lost: &mut Vec<String>,
 ) -> Vec<Tree> {
     let mut all = Vec::new();
-    let points: Vec<Field> = mesh.point_data.iter().filter_map(|f| known(f, "point", lost)).collect();
+    let points: Vec<Field> = mesh.point_data.iter().filter_map(|f| converted(f, "point", lost)).collect();
     all.extend(solution(POINT_DATA, "Vertex", None, &points, lost));
     let labels = cell_labels(mesh, None);
-    let is_label = |f: &&Field| matches!(f.name.as_str(), "region" | "patch") || say_all(&labels, mesh, f);
-    let unsaid = mesh.cell_data.iter().filter(|f| is_label(f) && !say_all(&labels, mesh, f));
-    lost.extend(lost_arrays("CGNS", "cell", unsaid));
+    let is_label =
+        |f: &&Field| matches!(f.name.as_str(), "region" | "patch") || labels_cover(&labels, mesh, f);
+    let unexpressed = mesh.cell_data.iter().filter(|f| is_label(f) && !labels_cover(&labels, mesh, f));
+    lost.extend(lost_arrays("CGNS", "cell", unexpressed));
     let cells: Vec<Field> =
-        mesh.cell_data.iter().filter(|f| !is_label(f)).filter_map(|f| known(f, "cell", lost)).collect();
+        mesh.cell_data.iter().filter(|f| !is_label(f)).filter_map(|f| converted(f, "cell", lost)).collect();
     let of_dim = |dim: usize| -> Vec<usize> {
         parts.iter().filter(|part| part.dim == dim).flat_map(|part| &part.cells).copied().collect()
     };
@@ -35,13 +35,13 @@ pub(super) fn solutions(
     let mut on_faces = Vec::new();
     if cell_dim == 3 {
         let faces = of_dim(2);
-        on_faces.extend(cells.iter().map(|f| picked(f, &faces)).filter(says_something));
+        on_faces.extend(cells.iter().map(|f| picked(f, &faces)).filter(has_values));
         let range = ints.values([first_face, first_face + faces.len() as i64 - 1]);
         // These arrays have the same names as on the cells, for which losses were already reported.
         all.extend(solution(FACE_DATA, "FaceCenter", Some(range), &on_faces, &mut Vec::new()));
     }
     let lower: Vec<usize> = (0..cell_dim.min(2)).flat_map(of_dim).collect();
-    let of_lower = cells.iter().filter(|f| says_something(&picked(f, &lower)));
+    let of_lower = cells.iter().filter(|f| has_values(&picked(f, &lower)));
     if let Some(names) = lost_arrays("CGNS", "cell", of_lower) {
         lost.push(format!("on curves and points {names}"));
     }
@@ -50,7 +50,7 @@ pub(super) fn solutions(
 }
 
 /// Whether any value differs from the default for missing values (NaN, or 0 for integers).
-fn says_something(field: &Field) -> bool {
+fn has_values(field: &Field) -> bool {
     match &field.values {
         Values::F32(values) => values.iter().any(|x| !x.is_nan()),
         Values::F64(values) => values.iter().any(|x| !x.is_nan()),
@@ -59,7 +59,7 @@ fn says_something(field: &Field) -> bool {
 }
 
 /// The array converted to a type that CGNS supports; `None` if there is no such type.
-fn known(field: &Field, what: &str, lost: &mut Vec<String>) -> Option<Field> {
+fn converted(field: &Field, what: &str, lost: &mut Vec<String>) -> Option<Field> {
     let short = || -> Option<Vec<i32>> {
         field.values.to_i64()?.into_iter().map(|x| i32::try_from(x).ok()).collect()
     };
@@ -118,7 +118,7 @@ fn names(field: &Field, lost: &mut Vec<String>) -> Vec<String> {
     match field.components {
         1 => vec![field.name.clone()],
         3 => {
-            let stem = cut(&field.name, LONGEST - 1);
+            let stem = truncated(&field.name, MAX_NAME_LENGTH - 1);
             if stem != field.name {
                 lost.push(format!("the name {:?} of an array, which is called {stem:?}", field.name));
             }

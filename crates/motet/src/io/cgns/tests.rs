@@ -167,7 +167,7 @@ fn points_without_cells_and_nothing_at_all_come_back() {
 }
 
 #[test]
-fn what_cgns_cannot_hold_is_told() {
+fn what_cgns_cannot_hold_is_reported() {
     let mut mesh = mixed();
     let long = "a name that is longer than names may be here";
     mesh.label_names.regions.insert(7, long.into());

@@ -1,8 +1,8 @@
 //! Nodes for writing, in the form of "SIDS-to-HDF5 File Mapping", "Node Structure".
 
 use crate::base::Result;
-use crate::io::hdf::{Attribute, Node as Group, Packing};
-use crate::mesh::Values;
+use crate::io::hdf::{Attribute, Node as Group, Storage};
+use crate::mesh::{Mesh, Values};
 
 /// Width of a name or label, including a terminating zero.
 const WIDTH: u32 = 33;
@@ -28,14 +28,14 @@ impl Tree {
     /// reversed.
     pub(super) fn shaped(name: &str, label: &str, values: Values, shape: &[usize]) -> Self {
         let mut node = Self::of_type(name, label, type_of(&values));
-        node.group.array(" data", values, shape, Packing::Plain);
+        node.group.array(" data", values, shape, Storage::Plain);
         node
     }
 
     /// A node with a text.
     pub(super) fn with_text(name: &str, label: &str, text: &str) -> Self {
         let mut node = Self::of_type(name, label, "C1");
-        node.group.array(" data", characters(text.as_bytes(), 0), &[text.len()], Packing::Plain);
+        node.group.array(" data", characters(text.as_bytes(), 0), &[text.len()], Storage::Plain);
         node
     }
 
@@ -72,11 +72,11 @@ impl Tree {
     pub(super) fn file(nodes: Vec<Self>) -> Result<Vec<u8>> {
         let mut root = Group::new("");
         head(&mut root, "HDF5 MotherNode", "Root Node of HDF5 File", "MT");
-        root.array(" format", characters(b"IEEE_LITTLE_32", 15), &[15], Packing::Plain);
-        root.array(" hdf5version", characters(b"HDF5 Version 1.8.0", 33), &[33], Packing::Plain);
+        root.array(" format", characters(b"IEEE_LITTLE_32", 15), &[15], Storage::Plain);
+        root.array(" hdf5version", characters(b"HDF5 Version 1.8.0", 33), &[33], Storage::Plain);
         nodes.into_iter().for_each(|node| root.group(node.group));
         // The CGNS libraries reject newer file formats.
-        root.into_file_of_1_8()
+        root.into_file_v1_8()
     }
 }
 
@@ -102,5 +102,26 @@ fn type_of(values: &Values) -> &'static str {
         Values::F32(_) => "R4",
         Values::F64(_) => "R8",
         Values::I8(_) | Values::U8(_) | Values::I16(_) | Values::U16(_) | Values::Text(_) => "C1",
+    }
+}
+
+/// Width of integers: 32 bits where sufficient, which every library reads.
+#[derive(Clone, Copy)]
+pub(super) struct Ints {
+    wide: bool,
+}
+
+impl Ints {
+    pub(super) fn of(mesh: &Mesh) -> Self {
+        // Upper bound for the faces of cells with their corners and a count for each.
+        let upper_bound = mesh.cells.connectivity().items().len().saturating_mul(8).max(mesh.points.len());
+        Self { wide: i32::try_from(upper_bound).is_err() }
+    }
+
+    pub(super) fn values(self, all: impl IntoIterator<Item = i64>) -> Values {
+        match self.wide {
+            true => Values::I64(all.into_iter().collect()),
+            false => Values::I32(all.into_iter().map(|x| x as i32).collect()),
+        }
     }
 }

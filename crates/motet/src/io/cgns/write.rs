@@ -5,7 +5,7 @@ use crate::io::cgns::faces::{self, Faces, needs_faces};
 use crate::io::cgns::kinds::{ElementType, MIXED, NFACE, NGON};
 use crate::io::cgns::parts::{INNER_FACES, Part, ZONE, element_type, parts};
 use crate::io::cgns::solutions::solutions;
-use crate::io::cgns::tree::Tree;
+use crate::io::cgns::tree::{Ints, Tree};
 use crate::io::format::{WriteOptions, Written};
 use crate::io::select::keep_cells;
 use crate::mesh::{Mesh, Values};
@@ -32,7 +32,8 @@ pub(super) fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
         lost.push("the order of the cells: CGNS has those of one region or patch together".into());
     }
     let ints = Ints::of(&mesh);
-    let mut numbered = Numbered { ints, next: 1, sections: Vec::new(), ranges: vec![(0, 0); parts.len()] };
+    let mut numbered =
+        SectionWriter { ints, next: 1, sections: Vec::new(), ranges: vec![(0, 0); parts.len()] };
     match of_faces {
         true => numbered.all_faces(&mesh, &parts)?,
         false => numbered.all_cells(&mesh, &parts),
@@ -45,7 +46,13 @@ pub(super) fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     Ok(Written { lost, ..Written::one(Tree::file(vec![version, base])?) })
 }
 
-fn zone(mesh: &Mesh, parts: &[Part], cell_dim: usize, numbered: Numbered, lost: &mut Vec<String>) -> Tree {
+fn zone(
+    mesh: &Mesh,
+    parts: &[Part],
+    cell_dim: usize,
+    numbered: SectionWriter,
+    lost: &mut Vec<String>,
+) -> Tree {
     let n_cells = mesh.cells.kinds().iter().filter(|kind| kind.dim() == Some(cell_dim)).count();
     let sizes = numbered.ints.values([mesh.points.len() as i64, n_cells as i64, 0]);
     let mut zone = Tree::shaped(ZONE, "Zone_t", sizes, &[3, 1]);
@@ -97,29 +104,8 @@ fn conditions(parts: &[Part], ranges: &[(i64, i64)], ints: Ints) -> Option<Tree>
     Some(all)
 }
 
-/// Width of integers: 32 bits where sufficient, which every library reads.
-#[derive(Clone, Copy)]
-pub(super) struct Ints {
-    wide: bool,
-}
-
-impl Ints {
-    fn of(mesh: &Mesh) -> Self {
-        // Upper bound for the faces of cells with their corners and a count for each.
-        let most = mesh.cells.connectivity().items().len().saturating_mul(8).max(mesh.points.len());
-        Self { wide: i32::try_from(most).is_err() }
-    }
-
-    pub(super) fn values(self, all: impl IntoIterator<Item = i64>) -> Values {
-        match self.wide {
-            true => Values::I64(all.into_iter().collect()),
-            false => Values::I32(all.into_iter().map(|x| x as i32).collect()),
-        }
-    }
-}
-
 /// Sections, whose elements are numbered consecutively.
-struct Numbered {
+struct SectionWriter {
     ints: Ints,
     next: i64,
     sections: Vec<Tree>,
@@ -127,7 +113,7 @@ struct Numbered {
     ranges: Vec<(i64, i64)>,
 }
 
-impl Numbered {
+impl SectionWriter {
     /// Adds a section for each part.
     fn all_cells(&mut self, mesh: &Mesh, parts: &[Part]) {
         for (i, part) in parts.iter().enumerate() {

@@ -23,7 +23,7 @@ impl Zone {
         if kind.as_deref() != Some("Unstructured") {
             let kind = kind.filter(|kind| !kind.is_empty()).unwrap_or_else(|| "Structured".to_owned());
             return Err(Error::input(format!("zone {} is {kind}; unstructured zones are read", node.name))
-                .at(node.place())
+                .at(node.path())
                 .remedy("in ParaView, open it, apply `Merge Blocks` and save the data as .vtu"));
         }
         let n_points = node.ints()?.first().copied().unwrap_or(0);

@@ -28,7 +28,7 @@ pub(super) const FORMAT: Format =
     Format { name: "DOLFIN XML", endings: &[".xml", ".xml.gz"], read: Some(read), write: None };
 
 fn read(input: &Input<'_>) -> Result<Mesh> {
-    let unpacked = gzip::is_packed(input.bytes).then(|| gzip::unpack(input.bytes)).transpose()?;
+    let unpacked = gzip::is_gzip(input.bytes).then(|| gzip::decompress(input.bytes)).transpose()?;
     let document = xml::parse(unpacked.as_deref().unwrap_or(input.bytes), input.notes)?;
     build(document, input.notes)
 }
@@ -37,13 +37,13 @@ fn build(document: Document, notes: &Notes) -> Result<Mesh> {
     let (kind, order) = kind_of(&document.cell_type);
     let n_cells = document.vertices.len() / document.n_vertices;
     let mut cells = Cells::new();
-    for theirs in document.vertices.chunks_exact(document.n_vertices) {
-        let mut ours = [VertexId::default(); 8];
-        order.iter().zip(&mut ours).for_each(|(&k, v)| *v = VertexId(theirs[k]));
-        if kind == CellKind::TETRA && is_negative(&document.points, theirs) {
-            ours.swap(2, 3);
+    for source_vertices in document.vertices.chunks_exact(document.n_vertices) {
+        let mut vtk_vertices = [VertexId::default(); 8];
+        order.iter().zip(&mut vtk_vertices).for_each(|(&k, v)| *v = VertexId(source_vertices[k]));
+        if kind == CellKind::TETRA && is_negative(&document.points, source_vertices) {
+            vtk_vertices.swap(2, 3);
         }
-        cells.push(kind, ours[..theirs.len()].iter().copied());
+        cells.push(kind, vtk_vertices[..source_vertices.len()].iter().copied());
     }
     let mut regions = vec![0; n_cells];
     let mut patches = Patches::default();
@@ -120,7 +120,7 @@ impl Patches {
             let begin = usize::try_from(cell).ok().and_then(|cell| cell.checked_mul(4));
             let tet = begin.and_then(|begin| document.vertices.get(begin..)?.first_chunk::<4>());
             let (Some(mut tet), 0..4) = (tet.copied(), place) else {
-                return Err(collection.beyond(format!("facet {place} of cell {cell}")));
+                return Err(collection.no_such_entity(format!("facet {place} of cell {cell}")));
             };
             tet.sort_unstable();
             let triangle = facet_outward(&document.points, tet, place as usize);
@@ -162,7 +162,7 @@ impl Collection {
         i32::try_from(mark).map_err(|_| Error::input(format!("mark {mark} does not fit in 32 bits")))
     }
 
-    fn beyond(&self, what: String) -> Error {
+    fn no_such_entity(&self, what: String) -> Error {
         Error::input(format!("{what} is marked, which does not exist"))
             .at(format!("marks of dimension {}", self.dim))
             .remedy("the file is damaged: write it again")
@@ -171,7 +171,7 @@ impl Collection {
     fn put_regions(&self, regions: &mut [i32]) -> Result<()> {
         for &[cell, _, label] in &self.marks {
             let region = usize::try_from(cell).ok().and_then(|cell| regions.get_mut(cell));
-            *region.ok_or_else(|| self.beyond(format!("cell {cell}")))? = self.label(label)?;
+            *region.ok_or_else(|| self.no_such_entity(format!("cell {cell}")))? = self.label(label)?;
         }
         Ok(())
     }
@@ -180,7 +180,7 @@ impl Collection {
         let mut values = vec![0; n_points];
         for &[vertex, _, mark] in &self.marks {
             let value = usize::try_from(vertex).ok().and_then(|vertex| values.get_mut(vertex));
-            *value.ok_or_else(|| self.beyond(format!("vertex {vertex}")))? = mark;
+            *value.ok_or_else(|| self.no_such_entity(format!("vertex {vertex}")))? = mark;
         }
         let name = if self.name.is_empty() { "mark" } else { &self.name };
         mesh.set_point_field(Field::scalars(name, values));

@@ -10,7 +10,7 @@ use crate::io::Notes;
 use crate::io::text::{parse_float, quoted};
 
 /// Minimum length of a list element in bytes, such as `<value i="0"/>`.
-const BYTES_AN_ELEMENT: usize = 12;
+const MIN_ELEMENT_BYTES: usize = 12;
 
 /// Cell types: the name in the file and the number of vertices.
 const CELL_TYPES: &[(&str, usize)] = &[
@@ -245,7 +245,7 @@ impl Parser<'_> {
 
     /// The value of a mark. DOLFIN writes the largest number for unset marks; they become 0.
     fn mark_value(&self, e: &BytesStart<'_>) -> Result<i64> {
-        let text = self.needed(e, "value")?;
+        let text = self.required_attribute(e, "value")?;
         if matches!(&*text, "18446744073709551615" | "4294967295") {
             return Ok(0);
         }
@@ -281,7 +281,7 @@ impl Parser<'_> {
     /// The declared number of elements, checked against the remaining bytes of the file.
     fn size(&self, e: &BytesStart<'_>, what: &str) -> Result<usize> {
         let n = self.number::<u64>(e, "size")?;
-        let room = (self.bytes.len() - self.at) / BYTES_AN_ELEMENT;
+        let room = (self.bytes.len() - self.at) / MIN_ELEMENT_BYTES;
         usize::try_from(n).ok().filter(|n| *n <= room).ok_or_else(|| {
             self.error(format!("{n} {what} are announced, but what is left of the file holds at most {room}"))
                 .remedy(CUT_OFF)
@@ -298,7 +298,7 @@ impl Parser<'_> {
         Ok(Some(value.into_owned()))
     }
 
-    fn needed(&self, e: &BytesStart<'_>, name: &str) -> Result<String> {
+    fn required_attribute(&self, e: &BytesStart<'_>, name: &str) -> Result<String> {
         self.text(e, name)?.ok_or_else(|| {
             self.error(format!("element {} has no attribute `{name}`", quoted(e.name().as_ref().as_bytes())))
                 .remedy(CUT_OFF)
@@ -306,7 +306,7 @@ impl Parser<'_> {
     }
 
     fn number<T: FromStr>(&self, e: &BytesStart<'_>, name: &str) -> Result<T> {
-        let text = self.needed(e, name)?;
+        let text = self.required_attribute(e, name)?;
         text.parse().map_err(|_| {
             self.error(format!(
                 "attribute `{name}`: expected a whole number, found {}",

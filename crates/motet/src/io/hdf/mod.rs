@@ -9,4 +9,4 @@ mod read;
 mod write;
 
 pub(super) use read::{Array, Group, is_hdf5, open, open_in_place};
-pub(super) use write::{Attribute, Node, Packing};
+pub(super) use write::{Attribute, Node, Storage};

@@ -9,7 +9,7 @@ use std::rc::Rc;
 use hdf5_pure::{AttrValue, DType, Dataset, File, is_hdf5_bytes};
 
 use crate::base::{Error, Result};
-use crate::io::room::Room;
+use crate::io::memory_budget::MemoryBudget;
 use crate::mesh::Values;
 
 /// Whether the bytes begin with the HDF5 signature.
@@ -23,16 +23,16 @@ pub(in crate::io) fn open(bytes: &[u8]) -> Result<Group> {
         return Err(Error::input("is no HDF5 file: its signature is missing").remedy("get the file again"));
     }
     let file = guarded("/", || File::from_bytes(bytes.to_vec()))?;
-    let room = Rc::new(Room::of(bytes.len() as u64));
-    Group::new(guarded("/", || Ok(file.root()))?, String::new(), room)
+    let budget = Rc::new(MemoryBudget::of(bytes.len() as u64));
+    Group::new(guarded("/", || Ok(file.root()))?, String::new(), budget)
 }
 
 /// Opens a file on disk and returns its root group; only what is requested is read.
 pub(in crate::io) fn open_in_place(path: &Path) -> Result<Group> {
-    let told = |e: std::io::Error| Error::io(path, e);
-    let size = std::fs::metadata(path).map_err(told)?.len();
+    let io_error = |e: std::io::Error| Error::io(path, e);
+    let size = std::fs::metadata(path).map_err(io_error)?.len();
     let file = guarded("/", || File::open_streaming(path))?;
-    Group::new(guarded("/", || Ok(file.root()))?, String::new(), Rc::new(Room::of(size)))
+    Group::new(guarded("/", || Ok(file.root()))?, String::new(), Rc::new(MemoryBudget::of(size)))
 }
 
 /// Calls the library: adds the place to its errors, and turns its panics into errors.
@@ -51,11 +51,11 @@ pub(in crate::io) struct Group {
     attributes: HashMap<String, AttrValue>,
     groups: Vec<String>,
     arrays: Vec<String>,
-    room: Rc<Room>,
+    budget: Rc<MemoryBudget>,
 }
 
 impl Group {
-    fn new(inner: hdf5_pure::Group, path: String, room: Rc<Room>) -> Result<Self> {
+    fn new(inner: hdf5_pure::Group, path: String, budget: Rc<MemoryBudget>) -> Result<Self> {
         let place = if path.is_empty() { "/" } else { &path };
         let attributes = guarded(place, || inner.attrs())?;
         let mut groups = guarded(place, || inner.groups())?;
@@ -63,11 +63,11 @@ impl Group {
         // The library lists them in storage order, which carries no meaning.
         groups.sort_unstable();
         arrays.sort_unstable();
-        Ok(Self { inner, path, attributes, groups, arrays, room })
+        Ok(Self { inner, path, attributes, groups, arrays, budget })
     }
 
     /// The path of the group in the file.
-    pub(in crate::io) fn place(&self) -> &str {
+    pub(in crate::io) fn path(&self) -> &str {
         if self.path.is_empty() { "/" } else { &self.path }
     }
 
@@ -88,7 +88,7 @@ impl Group {
         }
         let path = format!("{}/{name}", self.path);
         let inner = guarded(&path, || self.inner.group(name))?;
-        Self::new(inner, path, self.room.clone()).map(Some)
+        Self::new(inner, path, self.budget.clone()).map(Some)
     }
 
     /// The array with this name, if there is one.
@@ -98,14 +98,14 @@ impl Group {
         }
         let path = format!("{}/{name}", self.path);
         let inner = guarded(&path, || self.inner.dataset(name))?;
-        Array::new(inner, path, &self.room).map(Some)
+        Array::new(inner, path, &self.budget).map(Some)
     }
 
     /// The array with this name; an error if it is missing.
-    pub(in crate::io) fn needed_array(&self, name: &str) -> Result<Array> {
+    pub(in crate::io) fn required_array(&self, name: &str) -> Result<Array> {
         self.array(name)?.ok_or_else(|| {
             Error::input(format!("the array {name} is missing"))
-                .at(self.place())
+                .at(self.path())
                 .remedy("the file is damaged, or not finished: write it again")
         })
     }
@@ -130,7 +130,7 @@ pub(in crate::io) struct Array {
 }
 
 impl Array {
-    fn new(inner: Dataset, path: String, room: &Room) -> Result<Self> {
+    fn new(inner: Dataset, path: String, budget: &MemoryBudget) -> Result<Self> {
         let shape = guarded(&path, || inner.shape())?;
         let kind = guarded(&path, || inner.dtype())?;
         let size = guarded(&path, || inner.element_size())?;
@@ -141,14 +141,14 @@ impl Array {
         // An array with no values but an enormous number of rows is rejected too.
         let bytes = |shape: &[u64]| shape.iter().fold(size, |n, &d| n.saturating_mul(d.max(1)));
         // Values that were never written take no space in the file, but may take much memory.
-        room.take_once(&path, bytes(&shape).max(bytes(&chunk))).map_err(|e| e.at(path.as_str()))?;
+        budget.take_once(&path, bytes(&shape).max(bytes(&chunk))).map_err(|e| e.at(path.as_str()))?;
         let fits = shape.iter().map(|&d| usize::try_from(d).ok()).collect::<Option<Vec<_>>>();
         let shape = fits.ok_or_else(|| Error::input("an array that is too large").at(path.as_str()))?;
         Ok(Self { inner, path, shape, kind })
     }
 
     /// The path of the array in the file.
-    pub(in crate::io) fn place(&self) -> &str {
+    pub(in crate::io) fn path(&self) -> &str {
         &self.path
     }
 
@@ -174,7 +174,7 @@ impl Array {
             return Err(self.error(format!("rows {start} to {end} are asked for, but there are {n}")));
         }
         let expected = rows.len().saturating_mul(self.components());
-        let values = if expected == 0 { self.none()? } else { self.read(rows)? };
+        let values = if expected == 0 { self.empty()? } else { self.read(rows)? };
         match values.len() == expected {
             true => Ok(values),
             false => Err(self.error(format!("{expected} values are expected, {} came", values.len()))),
@@ -212,7 +212,7 @@ macro_rules! reading {
                 guarded(&self.path, read)?.ok_or_else(|| self.unknown())
             }
 
-            fn none(&self) -> Result<Values> {
+            fn empty(&self) -> Result<Values> {
                 match self.kind {
                     $(DType::$kind => Ok(Values::$kind(Vec::<$t>::new())),)*
                     DType::String | DType::VariableLengthString => Ok(Values::Text(Vec::new())),
@@ -221,8 +221,8 @@ macro_rules! reading {
             }
 
             /// Whether the values are numbers or text, rather than records or other types.
-            pub(in crate::io) fn is_known(&self) -> bool {
-                self.none().is_ok()
+            pub(in crate::io) fn is_supported(&self) -> bool {
+                self.empty().is_ok()
             }
         }
     };

@@ -20,7 +20,7 @@ pub(in crate::io) enum Attribute {
 
 /// Storage of an array in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::io) enum Packing {
+pub(in crate::io) enum Storage {
     /// Contiguous and uncompressed.
     Plain,
     /// In chunks, so that rows can be appended.
@@ -39,7 +39,7 @@ const ZLIB_LEVEL: u32 = 4;
 pub(in crate::io) struct Node {
     name: String,
     attributes: Vec<(String, Attribute)>,
-    arrays: Vec<(String, Values, Vec<usize>, Packing)>,
+    arrays: Vec<(String, Values, Vec<usize>, Storage)>,
     groups: Vec<Node>,
 }
 
@@ -55,8 +55,8 @@ impl Node {
     }
 
     /// Adds an array with this shape.
-    pub(in crate::io) fn array(&mut self, name: &str, values: Values, shape: &[usize], packing: Packing) {
-        self.arrays.push((name.to_owned(), values, shape.to_vec(), packing));
+    pub(in crate::io) fn array(&mut self, name: &str, values: Values, shape: &[usize], storage: Storage) {
+        self.arrays.push((name.to_owned(), values, shape.to_vec(), storage));
     }
 
     /// Adds a group.
@@ -71,7 +71,7 @@ impl Node {
 
     /// The bytes of a file in the format of HDF5 1.8, for readers that reject newer ones; all arrays must be
     /// contiguous.
-    pub(in crate::io) fn into_file_of_1_8(self) -> Result<Vec<u8>> {
+    pub(in crate::io) fn into_file_v1_8(self) -> Result<Vec<u8>> {
         let mut file = FileBuilder::new();
         file.with_libver_bounds(LibVer::Earliest, LibVer::V18);
         self.into(file)
@@ -81,22 +81,22 @@ impl Node {
         for (name, value) in self.attributes {
             file.set_attr(&name, attribute(value)?);
         }
-        for (name, values, shape, packing) in self.arrays {
-            fill(file.create_dataset(&name), &values, &shape, packing)?;
+        for (name, values, shape, storage) in self.arrays {
+            fill(file.create_dataset(&name), &values, &shape, storage)?;
         }
         for group in self.groups {
             let builder = file.create_group(&group.name);
             file.add_group(group.finish(builder)?);
         }
-        file.finish().map_err(told)
+        file.finish().map_err(not_storable)
     }
 
     fn finish(self, mut builder: GroupBuilder) -> Result<FinishedGroup> {
         for (name, value) in self.attributes {
             builder.set_attr(&name, attribute(value)?);
         }
-        for (name, values, shape, packing) in self.arrays {
-            fill(builder.create_dataset(&name), &values, &shape, packing)?;
+        for (name, values, shape, storage) in self.arrays {
+            fill(builder.create_dataset(&name), &values, &shape, storage)?;
         }
         for group in self.groups {
             let inner = builder.create_group(&group.name);
@@ -106,21 +106,21 @@ impl Node {
     }
 }
 
-fn told(e: impl std::fmt::Display) -> Error {
+fn not_storable(e: impl std::fmt::Display) -> Error {
     Error::input(format!("HDF5 cannot hold this: {e}"))
 }
 
 fn attribute(value: Attribute) -> Result<AttrValue> {
     Ok(match value {
         Attribute::Text(text) => AttrValue::AsciiString(text),
-        Attribute::Padded(text, width) => AttrValue::ascii_string_sized(text, width).map_err(told)?,
+        Attribute::Padded(text, width) => AttrValue::ascii_string_sized(text, width).map_err(not_storable)?,
         Attribute::Ints(n) => AttrValue::I64Array(n),
         Attribute::ShortInts(n) => AttrValue::I32Array(n),
     })
 }
 
-fn fill(array: &mut DatasetBuilder, values: &Values, shape: &[usize], packing: Packing) -> Result<()> {
-    let bytes_a_value = match values {
+fn fill(array: &mut DatasetBuilder, values: &Values, shape: &[usize], storage: Storage) -> Result<()> {
+    let bytes_per_value = match values {
         Values::I8(v) => (array.with_i8_data(v), 1).1,
         Values::U8(v) => (array.with_u8_data(v), 1).1,
         Values::I16(v) => (array.with_i16_data(v), 2).1,
@@ -138,19 +138,19 @@ fn fill(array: &mut DatasetBuilder, values: &Values, shape: &[usize], packing: P
         }
     };
     array.with_shape(&wide(shape));
-    if packing == Packing::Plain {
+    if storage == Storage::Plain {
         return Ok(());
     }
     let components: usize = shape.iter().skip(1).product::<usize>().max(1);
     let rows =
-        (CHUNK_BYTES / (components * bytes_a_value)).clamp(1, shape.first().copied().unwrap_or(1).max(1));
+        (CHUNK_BYTES / (components * bytes_per_value)).clamp(1, shape.first().copied().unwrap_or(1).max(1));
     let mut chunk = wide(shape);
     let mut most: Vec<MaxExtent> = chunk.iter().map(|&d| MaxExtent::Fixed(d)).collect();
     if let (Some(first), Some(most)) = (chunk.first_mut(), most.first_mut()) {
         (*first, *most) = (rows as u64, MaxExtent::Unlimited);
     }
     array.with_chunks(&chunk).with_maxshape(&most);
-    if packing == Packing::Zlib {
+    if storage == Storage::Zlib {
         array.with_shuffle().with_deflate(ZLIB_LEVEL);
     }
     Ok(())

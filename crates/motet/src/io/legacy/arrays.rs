@@ -1,8 +1,8 @@
 //! Arrays of a legacy VTK file: types, names and metadata.
 
 use crate::base::{Error, Result};
-use crate::io::latin::latin_or_utf8;
-use crate::io::legacy::source::{Source, short};
+use crate::io::latin::decode_utf8_or_latin1;
+use crate::io::legacy::source::{Source, truncated};
 use crate::io::scalar::Scalar;
 use crate::mesh::Values;
 
@@ -34,7 +34,7 @@ impl Type {
             "vtkidtype" => Self::Id,
             "string" | "utf8_string" => Self::Text,
             _ => {
-                return Err(Error::input(format!("values of type `{}` are not known", short(word)))
+                return Err(Error::input(format!("values of type `{}` are not known", truncated(word)))
                     .at(source.place())
                     .remedy(
                         "known: bit, char, short, int, long (all also unsigned_), float, double, string",
@@ -55,7 +55,7 @@ pub(super) fn values(source: &mut Source<'_>, kind: Type, n: usize) -> Result<Va
         Type::Id => source.numbers(Scalar::I64, n),
         Type::Bit if source.binary => {
             source.start_data();
-            let bytes = source.take(n.div_ceil(8))?;
+            let bytes = source.take_bytes(n.div_ceil(8))?;
             Ok(Values::U8((0..n).map(|i| bytes[i / 8] >> (7 - i % 8) & 1).collect()))
         }
         Type::Bit => source.numbers(Scalar::U8, n),
@@ -69,11 +69,11 @@ fn texts(source: &mut Source<'_>, n: usize) -> Result<Values> {
     for _ in 0..n {
         texts.push(if source.binary {
             let n = text_length(source)?;
-            latin_or_utf8(source.take(n)?)
+            decode_utf8_or_latin1(source.take_bytes(n)?)
         } else {
             let line = source.line();
             decode(
-                line.ok_or_else(|| source.fault(format!("{n} texts should stand here, {} do", texts.len())))?,
+                line.ok_or_else(|| source.error(format!("{n} texts should stand here, {} do", texts.len())))?,
             )
         });
     }
@@ -83,14 +83,14 @@ fn texts(source: &mut Source<'_>, n: usize) -> Result<Values> {
 /// Reads the length of a text in a binary file: the two highest bits of the first byte give the number of
 /// bytes of the length (3: one, 2: two, 1: four, 0: eight).
 fn text_length(source: &mut Source<'_>) -> Result<usize> {
-    let first = source.take(1)?[0];
+    let first = source.take_bytes(1)?[0];
     let more = match first >> 6 {
         3 => 0,
         2 => 1,
         1 => 3,
         _ => 7,
     };
-    let rest = source.take(more)?;
+    let rest = source.take_bytes(more)?;
     Ok(rest.iter().fold(usize::from(first & 63), |n, &b| n << 8 | usize::from(b)))
 }
 
@@ -121,7 +121,7 @@ pub(super) fn decode(text: &[u8]) -> String {
             }
         }
     }
-    latin_or_utf8(&bytes)
+    decode_utf8_or_latin1(&bytes)
 }
 
 /// Encodes a text for [`decode`], escaping the same characters as VTK.

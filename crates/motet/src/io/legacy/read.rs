@@ -2,13 +2,13 @@
 
 use crate::base::{Csr, Error, Result, VertexId};
 use crate::io::format::{Input, Notes};
-use crate::io::labels::take_label_names;
+use crate::io::labels::extract_label_names;
 use crate::io::legacy::arrays::{Type, decode, skip_metadata, values};
-use crate::io::legacy::source::{Source, short};
+use crate::io::legacy::source::{Source, truncated};
 use crate::io::polygonal::{SECTIONS, kind_in_section};
 use crate::io::polyhedra::next_polyhedron;
 use crate::io::scalar::{Scalar, to_ids, to_points};
-use crate::io::surplus::trim;
+use crate::io::surplus_points::trim;
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
 const TABLES: &str = "lookup tables were left out: colours are no part of a mesh";
@@ -21,7 +21,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
         Reader { source, notes: input.notes, mesh: Mesh::default(), lists: Default::default(), kinds: None };
     reader.read_sections(grid)?;
     let mut mesh = reader.mesh;
-    take_label_names(&mut mesh);
+    extract_label_names(&mut mesh);
     Ok(mesh)
 }
 
@@ -43,19 +43,21 @@ fn read_header(source: &mut Source<'_>) -> Result<bool> {
         "ASCII" => false,
         "BINARY" => true,
         other => {
-            return Err(source.fault(format!("ASCII or BINARY should stand here, not `{}`", short(other))));
+            return Err(
+                source.error(format!("ASCII or BINARY should stand here, not `{}`", truncated(other)))
+            );
         }
     };
     let word = source.text("DATASET")?;
     if !word.eq_ignore_ascii_case("DATASET") {
-        return Err(source.fault(format!("DATASET should stand here, not `{}`", short(word))));
+        return Err(source.error(format!("DATASET should stand here, not `{}`", truncated(word))));
     }
     match source.text("the kind of data set")?.to_ascii_uppercase().as_str() {
         "UNSTRUCTURED_GRID" => Ok(true),
         "POLYDATA" => Ok(false),
         other => Err(Error::input(format!(
             "the file holds {}, not an UNSTRUCTURED_GRID or POLYDATA",
-            short(other)
+            truncated(other)
         ))
         .at(source.place())
         .remedy("in ParaView, apply `Append Datasets` (or vtkAppendFilter) to turn it into a .vtu")),
@@ -64,7 +66,7 @@ fn read_header(source: &mut Source<'_>) -> Result<bool> {
 
 /// What the next arrays belong to.
 #[derive(Clone, Copy)]
-enum Owner {
+enum AttributeTarget {
     Mesh,
     Points,
     Cells,
@@ -81,7 +83,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn read_sections(&mut self, grid: bool) -> Result<()> {
-        let mut owner = Owner::Mesh;
+        let mut owner = AttributeTarget::Mesh;
         let mut cells_done = false;
         while !self.source.peek().is_empty() {
             let word = self.source.text("a section")?.to_ascii_uppercase();
@@ -97,7 +99,8 @@ impl Reader<'_> {
                     if !std::mem::replace(&mut cells_done, true) {
                         self.build_cells(grid)?;
                     }
-                    owner = if word == "POINT_DATA" { Owner::Points } else { Owner::Cells };
+                    owner =
+                        if word == "POINT_DATA" { AttributeTarget::Points } else { AttributeTarget::Cells };
                     self.check_count(&word, owner)?;
                 }
                 _ => self.read_attribute(&word, owner)?,
@@ -110,11 +113,11 @@ impl Reader<'_> {
         let n = self.source.count("the number of points")?;
         let kind = self.read_type()?;
         if n > VertexId::MAX_COUNT {
-            return Err(self.source.fault(format!("{n} points are more than a mesh can hold")));
+            return Err(self.source.error(format!("{n} points are more than a mesh can hold")));
         }
         let values = values(&mut self.source, kind, 3 * n)?;
         self.mesh.points =
-            to_points(values).ok_or_else(|| self.source.fault("points are texts, not numbers"))?;
+            to_points(values).ok_or_else(|| self.source.error("points are texts, not numbers"))?;
         self.skip_metadata(3);
         Ok(())
     }
@@ -139,19 +142,19 @@ impl Reader<'_> {
             let ids = self.read_named_ids("CONNECTIVITY", size)?;
             return Csr::new(offsets, bytemuck::allocation::cast_vec(ids)).ok_or_else(|| {
                 self.source
-                    .fault(format!("the offsets do not rise from 0 to the {size} ids of the connectivity"))
+                    .error(format!("the offsets do not rise from 0 to the {size} ids of the connectivity"))
             });
         }
         let numbers = self.source.numbers(Scalar::I32, size)?;
         let numbers = self.to_ids(&numbers)?;
-        split_counted(&numbers, n)
-            .ok_or_else(|| self.source.fault(format!("{size} numbers do not make the lists of {n} cells")))
+        split_length_prefixed(&numbers, n)
+            .ok_or_else(|| self.source.error(format!("{size} numbers do not make the lists of {n} cells")))
     }
 
     fn read_named_ids(&mut self, name: &str, n: usize) -> Result<Vec<u32>> {
         let word = self.source.text(name)?;
         if !word.eq_ignore_ascii_case(name) {
-            return Err(self.source.fault(format!("{name} should stand here, not `{}`", short(word))));
+            return Err(self.source.error(format!("{name} should stand here, not `{}`", truncated(word))));
         }
         let kind = self.read_type()?;
         let numbers = values(&mut self.source, kind, n)?;
@@ -159,7 +162,7 @@ impl Reader<'_> {
     }
 
     fn to_ids(&self, numbers: &Values) -> Result<Vec<u32>> {
-        to_ids(numbers).map_err(|bad| self.source.fault(format!("{bad} is no id")))
+        to_ids(numbers).map_err(|bad| self.source.error(format!("{bad} is no id")))
     }
 
     fn read_kinds(&mut self) -> Result<()> {
@@ -167,7 +170,7 @@ impl Reader<'_> {
         let numbers = self.source.numbers(Scalar::I32, n)?;
         let kinds = self.to_ids(&numbers)?.into_iter().map(|k| u8::try_from(k).map(CellKind));
         self.kinds = Some(
-            kinds.collect::<Result<_, _>>().map_err(|_| self.source.fault("a cell type is beyond 255"))?,
+            kinds.collect::<Result<_, _>>().map_err(|_| self.source.error("a cell type is beyond 255"))?,
         );
         Ok(())
     }
@@ -181,29 +184,29 @@ impl Reader<'_> {
                 .map_err(|e| e.at("CELLS").remedy("the file is damaged: write it again"))?
         } else {
             polygonal_cells(&lists)
-                .ok_or_else(|| self.source.fault("more vertex ids than a mesh can hold"))?
+                .ok_or_else(|| self.source.error("more vertex ids than a mesh can hold"))?
         };
         Ok(())
     }
 
-    fn check_count(&mut self, word: &str, owner: Owner) -> Result<()> {
+    fn check_count(&mut self, word: &str, owner: AttributeTarget) -> Result<()> {
         let n = self.source.count(word)?;
         let expected = self.n_rows(owner);
         if n == expected {
             return Ok(());
         }
-        Err(self.source.fault(format!("{word} is for {n}, but there are {expected}")))
+        Err(self.source.error(format!("{word} is for {n}, but there are {expected}")))
     }
 
-    fn n_rows(&self, owner: Owner) -> usize {
+    fn n_rows(&self, owner: AttributeTarget) -> usize {
         match owner {
-            Owner::Mesh => 0,
-            Owner::Points => self.mesh.points.len(),
-            Owner::Cells => self.mesh.cells.len(),
+            AttributeTarget::Mesh => 0,
+            AttributeTarget::Points => self.mesh.points.len(),
+            AttributeTarget::Cells => self.mesh.cells.len(),
         }
     }
 
-    fn read_attribute(&mut self, word: &str, owner: Owner) -> Result<()> {
+    fn read_attribute(&mut self, word: &str, owner: AttributeTarget) -> Result<()> {
         let n = self.n_rows(owner);
         match (word, owner) {
             ("FIELD", _) => return self.read_field(owner),
@@ -212,8 +215,8 @@ impl Reader<'_> {
                 return Ok(());
             }
             ("LOOKUP_TABLE", _) => return self.skip_table(),
-            (_, Owner::Mesh) => {
-                return Err(self.source.fault(format!("the section `{}` is not known", short(word))));
+            (_, AttributeTarget::Mesh) => {
+                return Err(self.source.error(format!("the section `{}` is not known", truncated(word))));
             }
             _ => {}
         }
@@ -229,18 +232,18 @@ impl Reader<'_> {
                 let components = self.source.count("the number of texture coordinates")?;
                 self.read_array(name, components, n)?
             }
-            _ => return Err(self.source.fault(format!("the section `{}` is not known", short(word)))),
+            _ => return Err(self.source.error(format!("the section `{}` is not known", truncated(word)))),
         };
         self.add(owner, field);
         Ok(())
     }
 
-    fn add(&mut self, owner: Owner, field: Field) {
+    fn add(&mut self, owner: AttributeTarget, field: Field) {
         self.skip_metadata(field.components);
         match owner {
-            Owner::Mesh => self.mesh.field_data.push(field),
-            Owner::Points => self.mesh.point_data.push(field),
-            Owner::Cells => self.mesh.cell_data.push(field),
+            AttributeTarget::Mesh => self.mesh.field_data.push(field),
+            AttributeTarget::Points => self.mesh.point_data.push(field),
+            AttributeTarget::Cells => self.mesh.cell_data.push(field),
         }
     }
 
@@ -251,7 +254,7 @@ impl Reader<'_> {
 
     fn read_values(&mut self, name: String, components: usize, n_rows: usize, kind: Type) -> Result<Field> {
         let n = n_rows.checked_mul(components).filter(|_| components > 0);
-        let n = n.ok_or_else(|| self.source.fault(format!("{n_rows} rows of {components} components")))?;
+        let n = n.ok_or_else(|| self.source.error(format!("{n_rows} rows of {components} components")))?;
         let values = values(&mut self.source, kind, n).map_err(|e| e.at(format!("array {name}")))?;
         Ok(Field { name, components, values })
     }
@@ -288,7 +291,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn read_field(&mut self, owner: Owner) -> Result<()> {
+    fn read_field(&mut self, owner: AttributeTarget) -> Result<()> {
         self.source.text("the name of a field")?;
         let n_arrays = self.source.count("the number of arrays")?;
         for _ in 0..n_arrays {
@@ -299,10 +302,10 @@ impl Reader<'_> {
             let components = self.source.count("the number of components")?;
             let n_rows = self.source.count("the number of rows")?;
             let expected = self.n_rows(owner);
-            if !matches!(owner, Owner::Mesh) && n_rows != expected {
+            if !matches!(owner, AttributeTarget::Mesh) && n_rows != expected {
                 return Err(self
                     .source
-                    .fault(format!("the array {name} has {n_rows} rows, {expected} are needed")));
+                    .error(format!("the array {name} has {n_rows} rows, {expected} are needed")));
             }
             let field = self.read_array(name, components, n_rows)?;
             self.add(owner, field);
@@ -312,7 +315,7 @@ impl Reader<'_> {
 }
 
 /// Splits lists in the layout before 5.0: `n id id ...`, list after list.
-fn split_counted(mut numbers: &[u32], n_lists: usize) -> Option<Csr<VertexId>> {
+fn split_length_prefixed(mut numbers: &[u32], n_lists: usize) -> Option<Csr<VertexId>> {
     let mut lists = Csr::default();
     for _ in 0..n_lists {
         let (&n, rest) = numbers.split_first()?;

@@ -33,7 +33,7 @@ impl<'a> Source<'a> {
     }
 
     /// An error at the current position.
-    pub(super) fn fault(&self, what: impl Into<String>) -> Error {
+    pub(super) fn error(&self, what: impl Into<String>) -> Error {
         Error::input(what).at(self.place()).remedy(WRITE_AGAIN)
     }
 
@@ -60,14 +60,14 @@ impl<'a> Source<'a> {
 
     /// The next word as text; `what` names the expected item in messages.
     pub(super) fn text(&mut self, what: &str) -> Result<&'a str> {
-        let word = self.word().ok_or_else(|| self.fault(format!("the file ends where {what} should be")))?;
-        std::str::from_utf8(word).map_err(|_| self.fault(format!("{what} is not text")))
+        let word = self.word().ok_or_else(|| self.error(format!("the file ends where {what} should be")))?;
+        std::str::from_utf8(word).map_err(|_| self.error(format!("{what} is not text")))
     }
 
     /// The next word as a count.
     pub(super) fn count(&mut self, what: &str) -> Result<usize> {
         let text = self.text(what)?;
-        text.parse().map_err(|_| self.fault(format!("{what} should be a count, not `{}`", short(text))))
+        text.parse().map_err(|_| self.error(format!("{what} should be a count, not `{}`", truncated(text))))
     }
 
     /// The rest of this line as a count, consumed only if it is one.
@@ -100,9 +100,9 @@ impl<'a> Source<'a> {
     }
 
     /// Takes the next `n` bytes of binary data; after words, call [`Self::start_data`] first.
-    pub(super) fn take(&mut self, n: usize) -> Result<&'a [u8]> {
+    pub(super) fn take_bytes(&mut self, n: usize) -> Result<&'a [u8]> {
         let Some(bytes) = self.rest().get(..n) else {
-            return Err(self.fault(format!("{n} bytes should follow, {} are left", self.rest().len())));
+            return Err(self.error(format!("{n} bytes should follow, {} are left", self.rest().len())));
         };
         self.at += n;
         Ok(bytes)
@@ -115,24 +115,24 @@ impl<'a> Source<'a> {
         }
         self.end_header();
         let n_bytes = n.saturating_mul(kind.size());
-        kind.numbers(self.take(n_bytes)?, ByteOrder::Big)
+        kind.numbers(self.take_bytes(n_bytes)?, ByteOrder::Big)
     }
 
     fn numbers_as_text(&mut self, kind: Scalar, n: usize) -> Result<Values> {
         // A number takes at least a digit and a blank.
         if n > self.rest().len().div_ceil(2) {
             return Err(
-                self.fault(format!("{n} numbers should follow, {} bytes are left", self.rest().len()))
+                self.error(format!("{n} numbers should follow, {} bytes are left", self.rest().len()))
             );
         }
         let mut words = Words(self);
         let values = kind.parse(n, &mut words).map_err(str::to_owned);
         let values =
-            values.map_err(|bad| self.fault(format!("`{}` is no number of its type", short(&bad))))?;
+            values.map_err(|bad| self.error(format!("`{}` is no number of its type", truncated(&bad))))?;
         if values.len() == n {
             return Ok(values);
         }
-        Err(self.fault(format!("{n} numbers should stand here, {} do", values.len())))
+        Err(self.error(format!("{n} numbers should stand here, {} do", values.len())))
     }
 
     /// Moves to the start of binary data on a new line, before calls to [`Self::take`].
@@ -153,6 +153,6 @@ impl<'a> Iterator for Words<'_, 'a> {
 }
 
 /// The start of a text, for messages.
-pub(super) fn short(text: &str) -> String {
+pub(super) fn truncated(text: &str) -> String {
     text.chars().take(30).collect()
 }

@@ -29,7 +29,7 @@ impl<'a> Binary<'a> {
             _ => return Ok(None),
         };
         let mut binary = Self { bytes, at: 4, swapped, version: 0, next: bytes.len() };
-        binary.version = binary.small("the version")?;
+        binary.version = binary.fixed_i32("the version")?;
         if !(1..=4).contains(&binary.version) {
             return Err(binary
                 .error(format!("version {} of the format; 1 to 4 are read", binary.version))
@@ -43,14 +43,14 @@ impl<'a> Binary<'a> {
         if self.at == self.bytes.len() {
             return Ok(None);
         }
-        let number = self.small("the number of a section")?;
+        let number = self.fixed_i32("the number of a section")?;
         if number == i64::from(END.number) {
             return Ok(Some(Cow::Borrowed(END.name)));
         }
         let next = if self.version < 3 {
-            self.small("where the next section begins")?
+            self.fixed_i32("where the next section begins")?
         } else {
-            self.long("where the next section begins")?
+            self.int64("where the next section begins")?
         };
         self.next = match usize::try_from(next) {
             // The section declares itself the last.
@@ -91,7 +91,7 @@ impl<'a> Binary<'a> {
             .saturating_mul(self.int_size())
             .saturating_add(n_floats.saturating_mul(self.float_size()))
             .max(1);
-        let room = self.left() / bytes_each;
+        let room = self.remaining() / bytes_each;
         usize::try_from(n).ok().filter(|&n| n <= room).ok_or_else(|| {
             self.error(format!(
                 "{n} {what} are announced, but what is left of the section holds at most {room}"
@@ -101,28 +101,28 @@ impl<'a> Binary<'a> {
     }
 
     pub(super) fn int(&mut self, what: &str) -> Result<i64> {
-        if self.version < 4 { self.small(what) } else { self.long(what) }
+        if self.version < 4 { self.fixed_i32(what) } else { self.int64(what) }
     }
 
-    pub(super) fn small(&mut self, what: &str) -> Result<i64> {
+    pub(super) fn fixed_i32(&mut self, what: &str) -> Result<i64> {
         let bits = u32::from_ne_bytes(self.take(what)?);
         Ok(i64::from((if self.swapped { bits.swap_bytes() } else { bits }) as i32))
     }
 
     pub(super) fn float(&mut self, what: &str) -> Result<f64> {
         if self.version > 1 {
-            return self.long(what).map(|bits| f64::from_bits(bits as u64));
+            return self.int64(what).map(|bits| f64::from_bits(bits as u64));
         }
-        self.small(what).map(|bits| f32::from_bits(bits as u32).into())
+        self.fixed_i32(what).map(|bits| f32::from_bits(bits as u32).into())
     }
 
-    fn long(&mut self, what: &str) -> Result<i64> {
+    fn int64(&mut self, what: &str) -> Result<i64> {
         let bits = u64::from_ne_bytes(self.take(what)?);
         Ok((if self.swapped { bits.swap_bytes() } else { bits }) as i64)
     }
 
     /// Number of bytes left in this section.
-    pub(super) fn left(&self) -> usize {
+    pub(super) fn remaining(&self) -> usize {
         self.next - self.at
     }
 

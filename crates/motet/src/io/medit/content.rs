@@ -22,7 +22,7 @@ pub(super) struct Content {
 }
 
 /// Maximum number of vertices of a cell.
-const MOST: usize = 10;
+const MAX_CELL_VERTICES: usize = 10;
 
 impl Content {
     /// Reads a file.
@@ -44,7 +44,7 @@ impl Content {
 
     fn section(&mut self, source: &mut Source<'_>, name: &str, notes: &Notes) -> Result<()> {
         if name == DIMENSION.name {
-            match source.small("dimension")? {
+            match source.fixed_i32("dimension")? {
                 dim @ 2..=3 => self.dim = dim as usize,
                 other => return Err(source.error(format!("{other} dimensions; 2 and 3 are read"))),
             }
@@ -64,7 +64,7 @@ impl Content {
                 return source.end_section();
             }
             if let Some((_, array)) = section.marks.iter().find(|(keyword, _)| keyword.name == name) {
-                self.marks(source, name, i, array)?;
+                self.read_marks(source, name, i, array)?;
                 return source.end_section();
             }
         }
@@ -112,7 +112,7 @@ impl Content {
     ) -> Result<()> {
         let n_cells = source.count(section.list.name, n + 1, 0)?;
         let n_points = self.points.as_ref().map(Vec::len);
-        let mut vertices = [VertexId::default(); MOST];
+        let mut vertices = [VertexId::default(); MAX_CELL_VERTICES];
         for _ in 0..n_cells {
             for vertex in &mut vertices[..n] {
                 let id = source.int("vertex of a cell")?;
@@ -124,7 +124,13 @@ impl Content {
         Ok(())
     }
 
-    fn marks(&mut self, source: &mut Source<'_>, name: &str, of: usize, array: &'static str) -> Result<()> {
+    fn read_marks(
+        &mut self,
+        source: &mut Source<'_>,
+        name: &str,
+        of: usize,
+        array: &'static str,
+    ) -> Result<()> {
         for _ in 0..source.count(name, 1, 0)? {
             let id = source.int("a marked place")?;
             let place = usize::try_from(id).ok().and_then(|id| id.checked_sub(1));

@@ -26,8 +26,8 @@
 //!
 //! No crate in the registry reads this format (the only one that exists is under the LGPL and unreleased).
 
-mod beside;
 mod binary;
+mod companion;
 mod content;
 mod mesh;
 mod sink;
@@ -44,25 +44,25 @@ use crate::mesh::marks::{CORNER, REQUIRED, RIDGE};
 pub(super) const MESH: Format = Format {
     name: "Medit",
     endings: &[".mesh"],
-    read: Some(beside::read_mesh),
+    read: Some(companion::read_mesh),
     write: Some(|mesh, _| write::mesh(mesh, false)),
 };
 pub(super) const MESHB: Format = Format {
     name: "Medit binary",
     endings: &[".meshb"],
-    read: Some(beside::read_mesh),
+    read: Some(companion::read_mesh),
     write: Some(|mesh, _| write::mesh(mesh, true)),
 };
 pub(super) const SOL: Format = Format {
     name: "Medit solution",
     endings: &[".sol"],
-    read: Some(beside::read_solution),
+    read: Some(companion::read_solution),
     write: Some(|mesh, _| write::solution(mesh, false)),
 };
 pub(super) const SOLB: Format = Format {
     name: "Medit binary solution",
     endings: &[".solb"],
-    read: Some(beside::read_solution),
+    read: Some(companion::read_solution),
     write: Some(|mesh, _| write::solution(mesh, true)),
 };
 
@@ -170,7 +170,7 @@ const SECTIONS: &[Section] = &[
 const TEXT_ONLY: i32 = -1;
 
 /// Alternative spellings used by other programs.
-const SPELLINGS: &[(&str, &str)] = &[
+const ALIASES: &[(&str, &str)] = &[
     ("Pentahedra", "Prisms"),
     ("Hexaedra", "Hexahedra"),
     ("Quadrangles", "Quadrilaterals"),
@@ -178,7 +178,7 @@ const SPELLINGS: &[(&str, &str)] = &[
 ];
 
 /// Skipped sections, listed so that notes can name them in binary files too.
-const PASSED_OVER: &[Keyword] = &[
+const SKIPPED_SECTIONS: &[Keyword] = &[
     keyword("TangentAtEdgeVertices", 19),
     keyword("NormalAtVertices", 20),
     keyword("NormalAtTriangleVertices", 21),
@@ -201,6 +201,6 @@ fn name_of(number: i32) -> Option<&'static str> {
     let ours = SECTIONS.iter().flat_map(|s| {
         std::iter::once(&s.list).chain(&s.values).chain(s.marks.iter().map(|(keyword, _)| keyword))
     });
-    let mut all = ours.chain([&DIMENSION, &END]).chain(PASSED_OVER);
+    let mut all = ours.chain([&DIMENSION, &END]).chain(SKIPPED_SECTIONS);
     all.find(|keyword| keyword.number == number).map(|keyword| keyword.name)
 }

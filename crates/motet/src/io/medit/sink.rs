@@ -30,10 +30,10 @@ impl Sink {
         match version {
             None => sink.out.extend(b"MeshVersionFormatted 2\n\nDimension 3\n"),
             Some(version) => {
-                sink.small(1);
-                sink.small(version);
+                sink.fixed_i32(1);
+                sink.fixed_i32(version);
                 sink.begin(&DIMENSION);
-                sink.small(3);
+                sink.fixed_i32(3);
                 sink.end_section();
             }
         }
@@ -74,12 +74,12 @@ impl Sink {
     pub(super) fn int(&mut self, x: i64) {
         match self.version {
             Some(4) => self.out.extend(x.to_le_bytes()),
-            _ => self.small(x as i32),
+            _ => self.fixed_i32(x as i32),
         }
     }
 
     /// Writes the number of arrays, or the type of an array.
-    pub(super) fn small(&mut self, x: i32) {
+    pub(super) fn fixed_i32(&mut self, x: i32) {
         if self.version.is_some() {
             self.out.extend(x.to_le_bytes());
         } else {
@@ -109,7 +109,7 @@ impl Sink {
     /// Writes the number of a section, and a placeholder for the position of the next: 0, as for the last
     /// section.
     fn begin(&mut self, keyword: &Keyword) {
-        self.small(keyword.number);
+        self.fixed_i32(keyword.number);
         self.next_at = self.out.len();
         self.out.extend(vec![0; if self.version == Some(2) { 4 } else { 8 }]);
     }

@@ -21,7 +21,7 @@ struct Rows {
 
 /// Maximum number of arrays: cells without values get NaN, so a file with few values could request any amount
 /// of memory.
-const MOST_ARRAYS: usize = 1000;
+const MAX_ARRAYS: usize = 1000;
 
 /// An array type, with its number in files.
 #[derive(Clone, Copy)]
@@ -32,39 +32,39 @@ pub(super) struct Kind {
     /// For each number of a row in a 3D file, its component in the mesh.
     pub(super) places: &'static [usize],
     /// For each number of a row in a 2D file, its component in the mesh; components not listed are 0.
-    flat_places: &'static [usize],
+    places_2d: &'static [usize],
 }
 
 /// Scalars, vectors, symmetric tensors (stored in VTK's order), full tensors row by row.
 pub(super) const KINDS: &[Kind] = &[
-    Kind { number: 1, components: 1, places: &[0], flat_places: &[0] },
-    Kind { number: 2, components: 3, places: &[0, 1, 2], flat_places: &[0, 1] },
-    Kind { number: 3, components: 6, places: &[0, 3, 1, 5, 4, 2], flat_places: &[0, 3, 1] },
-    Kind { number: 4, components: 9, places: &[0, 1, 2, 3, 4, 5, 6, 7, 8], flat_places: &[0, 1, 3, 4] },
+    Kind { number: 1, components: 1, places: &[0], places_2d: &[0] },
+    Kind { number: 2, components: 3, places: &[0, 1, 2], places_2d: &[0, 1] },
+    Kind { number: 3, components: 6, places: &[0, 3, 1, 5, 4, 2], places_2d: &[0, 3, 1] },
+    Kind { number: 4, components: 9, places: &[0, 1, 2, 3, 4, 5, 6, 7, 8], places_2d: &[0, 1, 3, 4] },
 ];
 
 impl Solution {
     /// Reads a section after its name.
     pub(super) fn read(source: &mut Source<'_>, of: usize, dim: usize) -> Result<Self> {
         let n_rows = source.count("rows of a solution", 0, 1)?;
-        let n_fields = source.small("the number of arrays")?;
-        let n_fields = usize::try_from(n_fields).ok().filter(|&n| n <= MOST_ARRAYS).ok_or_else(|| {
+        let n_fields = source.fixed_i32("the number of arrays")?;
+        let n_fields = usize::try_from(n_fields).ok().filter(|&n| n <= MAX_ARRAYS).ok_or_else(|| {
             source
-                .error(format!("{n_fields} arrays in one section; 0 to {MOST_ARRAYS} are read"))
+                .error(format!("{n_fields} arrays in one section; 0 to {MAX_ARRAYS} are read"))
                 .remedy("the file is damaged: write it again")
         })?;
         let mut kinds = Vec::with_capacity(n_fields);
         for _ in 0..n_fields {
-            let number = source.small("type of an array")?;
+            let number = source.fixed_i32("type of an array")?;
             let kind = KINDS.iter().find(|kind| i64::from(kind.number) == number).ok_or_else(|| {
                 source
                     .error(format!("{number} is no type of an array: 1 to 4 are"))
                     .remedy("the file is damaged: write it again")
             })?;
-            kinds.push((kind, if dim == 2 { kind.flat_places } else { kind.places }));
+            kinds.push((kind, if dim == 2 { kind.places_2d } else { kind.places }));
         }
         let n_each: usize = kinds.iter().map(|(_, places)| places.len()).sum();
-        let room = source.room_for_floats() / n_each.max(1);
+        let room = source.max_floats_left() / n_each.max(1);
         if n_rows > room {
             return Err(source
                 .error(format!(
@@ -104,7 +104,7 @@ pub(super) fn attach(mesh: &mut Mesh, solutions: &[Solution]) -> Result<()> {
     }
     let points = solutions.iter().filter(|s| SECTIONS[s.of].cells.is_none()).flat_map(|s| &s.fields);
     for (i, field) in points.enumerate() {
-        mesh.set_point_field(field.named(numbered(i), field.values.clone()));
+        mesh.set_point_field(field.named(array_name(i), field.values.clone()));
     }
     let mut known: Vec<(usize, usize)> = Vec::new();
     for solution in solutions.iter().filter(|s| SECTIONS[s.of].cells.is_some() && s.n_rows > 0) {
@@ -116,7 +116,7 @@ pub(super) fn attach(mesh: &mut Mesh, solutions: &[Solution]) -> Result<()> {
                 known.push(key);
                 known.len() - 1
             });
-            put_on_cells(mesh, numbered(number), field, &places[solution.of]);
+            put_on_cells(mesh, array_name(number), field, &places[solution.of]);
         }
     }
     Ok(())
@@ -151,6 +151,6 @@ pub(super) fn places_of(mesh: &Mesh, of: usize) -> Vec<usize> {
 }
 
 /// The name of solution array `i`, counted from 0.
-fn numbered(i: usize) -> String {
+fn array_name(i: usize) -> String {
     if i == 0 { SOLUTION.to_owned() } else { format!("{SOLUTION}_{}", i + 1) }
 }

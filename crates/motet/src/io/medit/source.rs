@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::binary::Binary;
-use super::{END, SPELLINGS};
+use super::{ALIASES, END};
 use crate::base::{Error, Result};
 use crate::io::text::Text;
 
@@ -35,7 +35,7 @@ impl<'a> Source<'a> {
                 .remedy("the number at the head of the section before is wrong, or the file is damaged"));
         }
         let name = String::from_utf8_lossy(word);
-        let known = SPELLINGS.iter().find(|(other, _)| *other == name).map(|&(_, known)| known);
+        let known = ALIASES.iter().find(|(other, _)| *other == name).map(|&(_, known)| known);
         Ok(Some(known.map_or(Cow::Owned(name.into_owned()), Cow::Borrowed)))
     }
 
@@ -83,10 +83,10 @@ impl<'a> Source<'a> {
     }
 
     /// Reads the dimension, or the number or a type of the arrays of a solution: 32 bits in every version.
-    pub(super) fn small(&mut self, what: &str) -> Result<i64> {
+    pub(super) fn fixed_i32(&mut self, what: &str) -> Result<i64> {
         match self {
             Self::Text(text) => text.int(what),
-            Self::Binary(binary) => binary.small(what),
+            Self::Binary(binary) => binary.fixed_i32(what),
         }
     }
 
@@ -99,11 +99,11 @@ impl<'a> Source<'a> {
     }
 
     /// Upper bound on the number of values in the rest of this section.
-    pub(super) fn room_for_floats(&self) -> usize {
+    pub(super) fn max_floats_left(&self) -> usize {
         match self {
             // A digit and a separator each.
             Self::Text(text) => text.rest().len().div_ceil(2),
-            Self::Binary(binary) => binary.left() / binary.float_size(),
+            Self::Binary(binary) => binary.remaining() / binary.float_size(),
         }
     }
 
@@ -136,7 +136,7 @@ fn text(bytes: &[u8]) -> Result<Text<'_>> {
                 .unexpected("the first word", "`MeshVersionFormatted`, or the number 1 of binary files", word)
                 .remedy("is this another format?"));
         }
-        None => return Err(text.ends("`MeshVersionFormatted`")),
+        None => return Err(text.unexpected_end("`MeshVersionFormatted`")),
     }
     let version = text.int("version")?;
     if !(0..=4).contains(&version) {

@@ -15,9 +15,9 @@ struct Bytes {
 impl Bytes {
     fn new(version: i32, big: bool) -> Self {
         let mut bytes = Self { out: Vec::new(), version, big };
-        bytes.small(1).small(version);
+        bytes.fixed_i32(1).fixed_i32(version);
         let next = bytes.out.len() + if version < 3 { 12 } else { 16 };
-        bytes.small(3).position(next).small(3);
+        bytes.fixed_i32(3).position(next).fixed_i32(3);
         bytes
     }
 
@@ -29,16 +29,16 @@ impl Bytes {
         self
     }
 
-    fn small(&mut self, x: i32) -> &mut Self {
+    fn fixed_i32(&mut self, x: i32) -> &mut Self {
         self.put(x.to_le_bytes())
     }
 
     fn position(&mut self, x: usize) -> &mut Self {
-        if self.version < 3 { self.small(x as i32) } else { self.put((x as i64).to_le_bytes()) }
+        if self.version < 3 { self.fixed_i32(x as i32) } else { self.put((x as i64).to_le_bytes()) }
     }
 
     fn int(&mut self, x: i32) -> &mut Self {
-        if self.version < 4 { self.small(x) } else { self.put(i64::from(x).to_le_bytes()) }
+        if self.version < 4 { self.fixed_i32(x) } else { self.put(i64::from(x).to_le_bytes()) }
     }
 
     fn float(&mut self, x: f64) -> &mut Self {
@@ -52,7 +52,7 @@ impl Bytes {
         fill(&mut inner);
         let head = if self.version < 3 { 8 } else { 12 };
         let next = self.out.len() + head + inner.out.len();
-        self.small(number).position(next);
+        self.fixed_i32(number).position(next);
         self.out.extend(inner.out);
         self
     }
@@ -70,7 +70,7 @@ impl Bytes {
         self.section(999, 2, |s| _ = s.int(7).int(7));
         self.section(8, 1, |s| (1..=5).for_each(|i| _ = s.int(i)));
         self.section(15, 1, |s| _ = s.int(2));
-        self.small(54).position(0);
+        self.fixed_i32(54).position(0);
         self.out
     }
 }
@@ -87,7 +87,7 @@ fn parse_meshb(bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
     parse(Path::new("in.meshb"), &MESHB, bytes)
 }
 
-fn told(bytes: &[u8]) -> String {
+fn error_of(bytes: &[u8]) -> String {
     parse_meshb(bytes).0.unwrap_err().to_string()
 }
 
@@ -109,7 +109,7 @@ fn every_version_is_read_in_either_order_of_bytes() {
 }
 
 #[test]
-fn a_file_cut_off_anywhere_is_told() {
+fn a_file_cut_off_anywhere_is_reported() {
     for version in 1..=4 {
         let bytes = Bytes::new(version, false).tet();
         // Between two sections only the missing end reveals the cut; a file cut after the number of `End` is
@@ -122,7 +122,7 @@ fn a_file_cut_off_anywhere_is_told() {
 }
 
 #[test]
-fn positions_and_counts_that_are_wrong_are_told() {
+fn positions_and_counts_that_are_wrong_are_reported() {
     let good = Bytes::new(2, false).tet();
     // The position after the dimension, and those in the head of the vertices (whose section begins at byte
     // 20).
@@ -140,15 +140,15 @@ fn positions_and_counts_that_are_wrong_are_told() {
     ] {
         let mut bytes = good.clone();
         bytes[at..at + 4].copy_from_slice(&i32::to_le_bytes(value));
-        let error = told(&bytes);
+        let error = error_of(&bytes);
         assert!(error.contains(words) && error.contains("byte "), "{at} {value}: {error}");
     }
     for count in [i64::MAX, i64::MIN, 1 << 60] {
         let mut bytes = Bytes::new(4, false).tet();
         bytes[36..44].copy_from_slice(&count.to_le_bytes());
-        assert!(told(&bytes).contains("vertices are announced"));
+        assert!(error_of(&bytes).contains("vertices are announced"));
     }
-    assert!(told(b"\x02\0\0\0\x02\0\0\0").contains("is this another format"));
+    assert!(error_of(b"\x02\0\0\0\x02\0\0\0").contains("is this another format"));
 }
 
 #[test]
@@ -315,7 +315,7 @@ fn a_solution_that_does_not_belong_is_passed_over_by_the_mesh_and_refused_by_nam
 }
 
 #[test]
-fn a_binary_solution_cut_off_anywhere_is_told() {
+fn a_binary_solution_cut_off_anywhere_is_reported() {
     let mut mesh = two_kinds();
     mesh.set_point_field(field("medit:sol", 6, 4));
     let Written { files, .. } = write::solution(&mesh, true).unwrap();
@@ -327,7 +327,7 @@ fn a_binary_solution_cut_off_anywhere_is_told() {
 }
 
 #[test]
-fn marks_without_a_section_are_told() {
+fn marks_without_a_section_are_reported() {
     let mut mesh = two_kinds();
     mesh.set_cell_field(Field::scalars(RIDGE, vec![1u8, 0]));
     mesh.set_cell_field(Field::scalars(REQUIRED, vec![1u8, 1]));

@@ -4,7 +4,7 @@ use super::sink::{Sink, version_for};
 use super::solution::{KINDS, Kind, places_of};
 use super::{Keyword, REF, SECTIONS, SOLUTION, Section};
 use crate::base::{Error, Result};
-use crate::io::cell_labels::{cell_labels, lost_names, say_all};
+use crate::io::cell_labels::{cell_labels, labels_cover, lost_names};
 use crate::io::format::Written;
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::mesh::{CellKind, Field, Mesh, Values};
@@ -13,7 +13,7 @@ use crate::mesh::{CellKind, Field, Mesh, Values};
 pub(super) fn mesh(mesh: &Mesh, binary: bool) -> Result<Written> {
     let (mesh, lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
     let mut parts = Parts::of(&mesh, binary, |f| is_solution(f) && f.name.starts_with(SOLUTION), lost);
-    if parts.has_left_out(is_solution) {
+    if parts.omits_any(is_solution) {
         parts.lost.push(
             "arrays of real numbers are written where a name that ends with .sol or .solb is asked for"
                 .into(),
@@ -69,19 +69,19 @@ struct Parts<'m> {
 impl<'m> Parts<'m> {
     /// Sorts the arrays of a mesh; `in_solution` decides which go into the solution.
     fn of(mesh: &'m Mesh, binary: bool, in_solution: impl Fn(&Field) -> bool, lost: Vec<String>) -> Self {
-        let has_values = mesh.cells.kinds().iter().any(|&kind| takes_values(kind));
+        let has_values = mesh.cells.kinds().iter().any(|&kind| has_solution_section(kind));
         let (points, other_points) = mesh.point_data.iter().partition(|f| in_solution(f));
         let (cells, other_cells) = mesh.cell_data.iter().partition(|f| has_values && in_solution(f));
         let mut parts = Self {
             mesh,
             labels: cell_labels(mesh, None),
-            version: binary.then(|| version_for(mesh.points.len(), most_bytes(mesh))),
+            version: binary.then(|| version_for(mesh.points.len(), max_file_bytes(mesh))),
             points,
             cells,
             other: [other_points, other_cells],
             lost,
         };
-        parts.say_what_is_lost();
+        parts.report_losses();
         parts
     }
 
@@ -89,11 +89,11 @@ impl<'m> Parts<'m> {
         !self.points.is_empty() || !self.cells.is_empty()
     }
 
-    fn has_left_out(&self, is_meant: impl Fn(&Field) -> bool) -> bool {
+    fn omits_any(&self, is_meant: impl Fn(&Field) -> bool) -> bool {
         self.other.iter().flatten().any(|f| is_meant(f))
     }
 
-    fn say_what_is_lost(&mut self) {
+    fn report_losses(&mut self) {
         let mesh = self.mesh;
         if !mesh.cells.kinds().is_sorted_by_key(|&kind| section_of(kind)) {
             self.lost.push(
@@ -102,24 +102,24 @@ impl<'m> Parts<'m> {
             );
         }
         let [points, cells] = &self.other;
-        let cells = cells.iter().filter(|f| !is_mark(f) && !say_all(&self.labels, mesh, f));
+        let cells = cells.iter().filter(|f| !is_mark(f) && !labels_cover(&self.labels, mesh, f));
         self.lost.extend(lost_arrays("Medit", "cell", cells.copied()));
         let has_refs = point_refs(mesh).is_some();
         let points = points.iter().filter(|f| !(is_mark(f) || f.name == REF && has_refs));
         self.lost.extend(lost_arrays("Medit", "point", points.copied()));
         self.lost.extend(lost_arrays("Medit", "field", &mesh.field_data));
         self.lost.extend(lost_names("Medit", mesh));
-        self.say_what_solutions_lose();
+        self.report_solution_losses();
     }
 
-    fn say_what_solutions_lose(&mut self) {
+    fn report_solution_losses(&mut self) {
         let all = || self.points.iter().chain(&self.cells);
         let names = |is_meant: fn(&Field) -> bool| -> Vec<&str> {
             all().filter(|f| is_meant(f)).map(|f| f.name.as_str()).collect()
         };
         let nameless = names(|f| !f.name.starts_with(SOLUTION));
         let single = names(|f| matches!(f.values, Values::F32(_)));
-        let quadratic = self.mesh.cells.kinds().iter().filter(|&&kind| !takes_values(kind)).count();
+        let quadratic = self.mesh.cells.kinds().iter().filter(|&&kind| !has_solution_section(kind)).count();
         let mut lost = Vec::new();
         if !nameless.is_empty() {
             let names = nameless.join(", ");
@@ -200,10 +200,10 @@ impl<'m> Parts<'m> {
                 continue;
             };
             // Cells of a kind without any value, such as triangles beside tetrahedra with values.
-            let says_nothing = |f: &&Field| {
+            let has_no_values = |f: &&Field| {
                 places.iter().all(|&i| (0..f.components).all(|k| value(f, i * f.components + k).is_nan()))
             };
-            if section.cells.is_some() && fields.iter().all(says_nothing) {
+            if section.cells.is_some() && fields.iter().all(has_no_values) {
                 continue;
             }
             write_values(&mut sink, values, fields, &places);
@@ -223,9 +223,9 @@ fn write_places(sink: &mut Sink, list: &Keyword, places: &[usize]) {
 
 fn write_values(sink: &mut Sink, keyword: &Keyword, fields: &[&Field], places: &[usize]) {
     sink.section(keyword, places.len());
-    sink.small(fields.len() as i32);
+    sink.fixed_i32(fields.len() as i32);
     let kinds: Vec<&Kind> = fields.iter().filter_map(|f| kind_of(f)).collect();
-    kinds.iter().for_each(|kind| sink.small(kind.number));
+    kinds.iter().for_each(|kind| sink.fixed_i32(kind.number));
     sink.end_row();
     for &i in places {
         for (field, kind) in fields.iter().zip(&kinds) {
@@ -241,7 +241,7 @@ fn value(field: &Field, i: usize) -> f64 {
 }
 
 /// Whether solutions have a section for cells of this kind.
-fn takes_values(kind: CellKind) -> bool {
+fn has_solution_section(kind: CellKind) -> bool {
     SECTIONS.iter().any(|s| s.values.is_some() && s.cells.is_some_and(|c| c.0 == kind))
 }
 
@@ -262,7 +262,7 @@ fn marked(field: &Field, places: &[usize]) -> Vec<usize> {
 }
 
 /// Upper bound on the size in bytes of a binary file of either kind, in version 2.
-fn most_bytes(mesh: &Mesh) -> u64 {
+fn max_file_bytes(mesh: &Mesh) -> u64 {
     let (n_points, n_cells) = (mesh.points.len(), mesh.cells.len());
     let ids = mesh.cells.connectivity().items().len() + n_cells;
     let values = |fields: &[Field]| fields.iter().map(|f| 8 * f.values.len()).sum::<usize>();

@@ -8,14 +8,14 @@ use crate::mesh::{Field, Mesh, Values};
 
 /// What an array is defined on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum Location {
     Node,
     Element,
 }
 
 /// An array as stored in the file.
 pub(super) struct Data {
-    pub(super) place: Place,
+    pub(super) place: Location,
     name: String,
     step: i32,
     components: usize,
@@ -25,13 +25,13 @@ pub(super) struct Data {
 
 impl Data {
     /// Reads the section after its first line. The head is text in binary files too.
-    pub(super) fn read(source: &mut Source<'_>, place: Place) -> Result<Self> {
+    pub(super) fn read(source: &mut Source<'_>, place: Location) -> Result<Self> {
         let form = std::mem::replace(&mut source.form, Form::Ascii);
         let mut names = Vec::new();
         let n_names = source.text.count("names of an array", 1)?;
         source.text.line();
         for _ in 0..n_names {
-            let line = source.text.line().ok_or_else(|| source.text.ends("name of an array"))?;
+            let line = source.text.line().ok_or_else(|| source.text.unexpected_end("name of an array"))?;
             names.push(String::from_utf8_lossy(line).trim().trim_matches('"').to_owned());
         }
         for _ in 0..source.int_count("real tags", 1)? {
@@ -53,8 +53,11 @@ impl Data {
             .ok()
             .filter(|c| *c > 0)
             .ok_or_else(|| source.error(format!("{components} is no number of components")))?;
-        let n =
-            source.checked(u64::try_from(n).unwrap_or(u64::MAX), "values", components.saturating_add(1))?;
+        let n = source.checked_count(
+            u64::try_from(n).unwrap_or(u64::MAX),
+            "values",
+            components.saturating_add(1),
+        )?;
         let name = names.into_iter().next().unwrap_or_else(|| "unnamed".into());
         let mut data = Self { place, name, step, components, tags: Vec::new(), values: Vec::new() };
         data.tags.reserve(n);
@@ -77,10 +80,10 @@ impl Data {
         notes: &Notes,
     ) -> Result<()> {
         let (tags, places, n_rows, what) = match (self.place, elements) {
-            (Place::Node, _) | (_, None) => (nodes, &[][..], mesh.points.len(), "node"),
-            (Place::Element, Some((tags, places))) => (tags, &places[..], mesh.cells.len(), "element"),
+            (Location::Node, _) | (_, None) => (nodes, &[][..], mesh.points.len(), "node"),
+            (Location::Element, Some((tags, places))) => (tags, &places[..], mesh.cells.len(), "element"),
         };
-        let mut values = vec![f64::NAN; self.full_size(n_rows)?];
+        let mut values = vec![f64::NAN; self.checked_size(n_rows)?];
         let mut missing = vec![true; n_rows];
         for (tag, row) in self.tags.iter().zip(self.values.chunks_exact(self.components)) {
             let Some(place) = tags.place(*tag) else {
@@ -99,7 +102,7 @@ impl Data {
                 self.name
             ));
         }
-        let fields = if self.place == Place::Node { &mut mesh.point_data } else { &mut mesh.cell_data };
+        let fields = if self.place == Location::Node { &mut mesh.point_data } else { &mut mesh.cell_data };
         let mut name = self.name;
         if fields.iter().any(|f| f.name == name) {
             let longer = format!("{name}:{}", self.step);
@@ -117,7 +120,7 @@ impl Data {
 
     /// The size of the full array, bounded because a few values on a large mesh may declare more components
     /// than memory holds.
-    fn full_size(&self, n_rows: usize) -> Result<usize> {
+    fn checked_size(&self, n_rows: usize) -> Result<usize> {
         let limit = 16 * n_rows.max(self.values.len()).max(1);
         n_rows.checked_mul(self.components).filter(|&size| size <= limit).ok_or_else(|| {
             Error::input(format!("{} components on each of {n_rows}", self.components))

@@ -11,7 +11,7 @@ type Key = (i32, i32);
 
 /// The labels that a geometrical entity gives to its elements.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Entity {
+pub(super) struct EntityLabels {
     pub(super) physical: i32,
     /// The entity that this one is a part of, or itself.
     pub(super) geometrical: i32,
@@ -20,12 +20,12 @@ pub(super) struct Entity {
 
 /// All entities of a file.
 #[derive(Default)]
-pub(super) struct Entities(HashMap<Key, Entity>);
+pub(super) struct Entities(HashMap<Key, EntityLabels>);
 
 impl Entities {
     /// The labels of the entity with this dimension and number.
-    pub(super) fn get(&self, dim: i32, tag: i32) -> Entity {
-        let unnamed = Entity { geometrical: tag, ..Entity::default() };
+    pub(super) fn get(&self, dim: i32, tag: i32) -> EntityLabels {
+        let unnamed = EntityLabels { geometrical: tag, ..EntityLabels::default() };
         self.0.get(&(dim, tag)).copied().unwrap_or(unnamed)
     }
 
@@ -35,8 +35,8 @@ impl Entities {
         for (dim, n) in (0..).zip(counts) {
             for _ in 0..n {
                 let tag = source.int("number of an entity")?;
-                let entity = Entity { geometrical: tag, ..Entity::default() };
-                self.body(source, (dim, tag), entity, notes)?;
+                let entity = EntityLabels { geometrical: tag, ..EntityLabels::default() };
+                self.read_body(source, (dim, tag), entity, notes)?;
             }
         }
         Ok(())
@@ -62,15 +62,21 @@ impl Entities {
                     partition = if i == 0 { number } else { partition };
                 }
                 let geometrical = if parent_dim == dim { parent } else { tag };
-                let entity = Entity { geometrical, partition, physical: 0 };
-                self.body(source, (dim, tag), entity, notes)?;
+                let entity = EntityLabels { geometrical, partition, physical: 0 };
+                self.read_body(source, (dim, tag), entity, notes)?;
             }
         }
         Ok(())
     }
 
     /// Reads the bounding box, the physical groups and the boundary of an entity.
-    fn body(&mut self, source: &mut Source<'_>, key: Key, mut entity: Entity, notes: &Notes) -> Result<()> {
+    fn read_body(
+        &mut self,
+        source: &mut Source<'_>,
+        key: Key,
+        mut entity: EntityLabels,
+        notes: &Notes,
+    ) -> Result<()> {
         for _ in 0..if key.0 == 0 { 3 } else { 6 } {
             source.double("box of an entity")?;
         }

@@ -1,7 +1,7 @@
 //! Reads MSH files of both versions, as text or binary.
 
-use super::data::{Data, Place};
-use super::entities::{Entities, Entity};
+use super::data::{Data, Location};
+use super::entities::{Entities, EntityLabels};
 use super::kinds::{ElementType, element_types};
 use super::source::{Form, Source};
 use std::collections::HashMap;
@@ -24,8 +24,8 @@ struct Reader {
     cells: Cells,
     element_tags: Vec<u64>,
     /// The cell of each element, if several elements form one cell; otherwise empty.
-    places: Vec<u32>,
-    labels: Vec<Entity>,
+    cell_of_element: Vec<u32>,
+    labels: Vec<EntityLabels>,
     label_names: LabelNames,
     field_data: Vec<Field>,
     data: Vec<Data>,
@@ -76,8 +76,8 @@ impl Reader {
             ("PartitionedEntities", Version::V4) => self.entities.read_partitioned(source, notes)?,
             ("Elements", Version::V2) => self.elements2(source, notes)?,
             ("Elements", _) => self.elements4(source)?,
-            ("NodeData", _) => self.data.push(Data::read(source, Place::Node)?),
-            ("ElementData", _) => self.data.push(Data::read(source, Place::Element)?),
+            ("NodeData", _) => self.data.push(Data::read(source, Location::Node)?),
+            ("ElementData", _) => self.data.push(Data::read(source, Location::Element)?),
             _ => {
                 notes.add(format!("section ${name} is passed over: a mesh here has no place for it"));
                 return source.skip_section(name);
@@ -126,7 +126,7 @@ impl Reader {
         for _ in 0..text.count("physical names", 3)? {
             let dim = text.int("dimension of a physical group")?;
             let tag = text.int32("number of a physical group")?;
-            let line = text.line().ok_or_else(|| text.ends("name of a physical group"))?;
+            let line = text.line().ok_or_else(|| text.unexpected_end("name of a physical group"))?;
             let name = unquoted(line);
             match dim {
                 3 => drop(self.label_names.regions.insert(tag, name)),
@@ -142,7 +142,7 @@ impl Reader {
     fn nodes2(&mut self, source: &mut Source<'_>, parametric: bool) -> Result<()> {
         let n = source.text.count("nodes", 4)?;
         source.text.line();
-        let n = source.checked(n as u64, "nodes", 4)?;
+        let n = source.checked_count(n as u64, "nodes", 4)?;
         self.reserve_nodes(n);
         for _ in 0..n {
             let tag = source.int("number of a node")?;
@@ -203,7 +203,7 @@ impl Reader {
         let types = element_types();
         let n = source.text.count("elements", 4)?;
         source.text.line();
-        let n = source.checked(n as u64, "elements", 2)?;
+        let n = source.checked_count(n as u64, "elements", 2)?;
         let mut done = 0;
         while done < n {
             let (header_tag, number, n_here) = match source.form {
@@ -237,7 +237,7 @@ impl Reader {
 
     /// Merges elements that differ only in their physical group: version 2 repeats an element for each of its
     /// groups.
-    fn join_groups(&mut self, notes: &Notes) {
+    fn merge_groups(&mut self, notes: &Notes) {
         let of = |cell: usize| (self.cells.kind(CellId::new(cell)), self.cells.vertices(CellId::new(cell)));
         let entity = |cell: usize| (self.labels[cell].geometrical, self.labels[cell].partition);
         let mut firsts: HashMap<_, usize> = HashMap::with_capacity(self.cells.len());
@@ -257,7 +257,7 @@ impl Reader {
         kept.iter().for_each(|&cell| cells.push(of(cell).0, of(cell).1.iter().copied()));
         let mut places = vec![0; same.len()];
         kept.iter().enumerate().for_each(|(place, &cell)| places[cell] = place as u32);
-        self.places = same.iter().map(|&first| places[first]).collect();
+        self.cell_of_element = same.iter().map(|&first| places[first]).collect();
         self.labels = kept.iter().map(|&cell| self.labels[cell]).collect();
         self.cells = cells;
     }
@@ -299,7 +299,7 @@ impl Reader {
         source: &mut Source<'_>,
         element_type: &ElementType,
         tag: u64,
-        labels: Entity,
+        labels: EntityLabels,
     ) -> Result<()> {
         let order = &element_type.vtk_to_gmsh;
         let mut gmsh = [VertexId::default(); 32];
@@ -325,7 +325,7 @@ impl Reader {
 
     fn into_mesh(mut self, source: &Source<'_>, notes: &Notes) -> Result<Mesh> {
         if self.version == Version::V2 {
-            self.join_groups(notes);
+            self.merge_groups(notes);
         }
         let Some(nodes) = &self.nodes else {
             return Err(source
@@ -337,7 +337,7 @@ impl Reader {
             let values = Values::I32(self.node_entities);
             mesh.set_point_field(Field { name: "gmsh:dim_tags".into(), components: 2, values });
         }
-        let mut label = |name: &str, of: fn(&Entity) -> i32| {
+        let mut label = |name: &str, of: fn(&EntityLabels) -> i32| {
             let values: Vec<i32> = self.labels.iter().map(of).collect();
             if values.iter().any(|&v| v != 0) {
                 mesh.set_cell_field(Field::scalars(name, values));
@@ -346,10 +346,10 @@ impl Reader {
         label("gmsh:physical", |e| e.physical);
         label("gmsh:geometrical", |e| e.geometrical);
         label("gmsh:partition", |e| e.partition);
-        let of_elements = self.data.iter().any(|d| d.place == Place::Element);
+        let of_elements = self.data.iter().any(|d| d.place == Location::Element);
         // Numbers of elements may repeat as long as no data refer to them.
         let elements = if of_elements { Some(Tags::new(&self.element_tags, "element")?) } else { None };
-        let elements = elements.map(|tags| (tags, self.places));
+        let elements = elements.map(|tags| (tags, self.cell_of_element));
         for data in self.data {
             data.put(&mut mesh, nodes, elements.as_ref(), notes)?;
         }
@@ -361,8 +361,8 @@ impl Reader {
 
 /// Reads the labels from the tags of a version 2 element: physical group, entity, number of partitions,
 /// partitions.
-fn tags2(source: &mut Source<'_>, n_tags: usize, notes: &Notes) -> Result<Entity> {
-    let mut labels = Entity::default();
+fn tags2(source: &mut Source<'_>, n_tags: usize, notes: &Notes) -> Result<EntityLabels> {
+    let mut labels = EntityLabels::default();
     for i in 0..n_tags {
         let tag = source.int("tag of an element")?;
         match i {

@@ -1,7 +1,7 @@
 //! Reads the numbers of an MSH file, as text or binary in either byte order.
 
 use crate::base::{Error, Result};
-use crate::io::text::{Text, find_all, quoted};
+use crate::io::text::{Text, find_subslice, quoted};
 
 /// How numbers are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,15 +47,15 @@ impl<'a> Source<'a> {
             Some(word) => Err(self.error(format!("expected {end}, found {}", quoted(word))).remedy(
                 "the number at the head of the section is wrong, or the file is damaged: write it again",
             )),
-            None => Err(self.ends(&end)),
+            None => Err(self.unexpected_end(&end)),
         }
     }
 
     /// Skips the section that has just begun.
     pub(super) fn skip_section(&mut self, name: &str) -> Result<()> {
         let end = format!("$End{name}");
-        let Some(at) = find_all(self.text.rest(), end.as_bytes()) else {
-            return Err(self.ends(&end));
+        let Some(at) = find_subslice(self.text.rest(), end.as_bytes()) else {
+            return Err(self.unexpected_end(&end));
         };
         self.text.set_position(self.text.position() + at);
         self.end_section(name)
@@ -108,21 +108,21 @@ impl<'a> Source<'a> {
     /// Reads a number of items as a `size_t`; see [`Self::checked`].
     pub(super) fn count(&mut self, what: &str, numbers_each: usize) -> Result<usize> {
         let n = self.size(&format!("the number of {what}"))?;
-        self.checked(n, what, numbers_each)
+        self.checked_count(n, what, numbers_each)
     }
 
     /// Reads a number of items as an `int`; see [`Self::checked`].
     pub(super) fn int_count(&mut self, what: &str, numbers_each: usize) -> Result<usize> {
         let n = self.int(&format!("the number of {what}"))?;
         let n = u64::try_from(n).map_err(|_| self.error(format!("{n} is no number of {what}")))?;
-        self.checked(n, what, numbers_each)
+        self.checked_count(n, what, numbers_each)
     }
 
     /// `n` as a number of items, each of at least `numbers_each` numbers, checked against the remaining
     /// bytes.
-    pub(super) fn checked(&self, n: u64, what: &str, numbers_each: usize) -> Result<usize> {
-        let bytes_a_number = if self.form == Form::Ascii { 2 } else { 4 };
-        let room = (self.text.rest().len() + 1) / (bytes_a_number * numbers_each).max(1);
+    pub(super) fn checked_count(&self, n: u64, what: &str, numbers_each: usize) -> Result<usize> {
+        let bytes_per_number = if self.form == Form::Ascii { 2 } else { 4 };
+        let room = (self.text.rest().len() + 1) / (bytes_per_number * numbers_each).max(1);
         usize::try_from(n).ok().filter(|&n| n <= room).ok_or_else(|| {
             self.error(format!("{n} {what} are announced, but what is left of the file holds at most {room}"))
                 .remedy("the file is cut off or damaged: get it again")
@@ -137,14 +137,14 @@ impl<'a> Source<'a> {
         }
     }
 
-    fn ends(&self, what: &str) -> Error {
+    fn unexpected_end(&self, what: &str) -> Error {
         self.error(format!("the file ends where {what} should follow"))
             .remedy("the file is cut off: get it again")
     }
 
     fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N]> {
         let Some(&bytes) = self.text.rest().first_chunk::<N>() else {
-            return Err(self.ends(what));
+            return Err(self.unexpected_end(what));
         };
         self.text.set_position(self.text.position() + N);
         Ok(bytes)

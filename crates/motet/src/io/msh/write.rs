@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::kinds::{ElementType, element_types};
 use super::sink::Sink;
 use crate::base::{Error, Result};
-use crate::io::cell_labels::{cell_labels, int_column, say_all};
+use crate::io::cell_labels::{cell_labels, int_column, labels_cover};
 use crate::io::format::{Encoding, WriteOptions, Written};
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::mesh::{CellKind, Field, Mesh, Values};
@@ -20,7 +20,7 @@ enum Version {
 }
 
 /// The labels of all cells in Gmsh's terms.
-struct Tagged {
+struct CellTags {
     /// Dimension of each cell.
     dims: Vec<i32>,
     physical: Vec<i32>,
@@ -34,7 +34,7 @@ struct Tagged {
 /// kinds of cells in 2.2.
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let types = element_types();
-    let asked = match options.version.as_deref() {
+    let requested = match options.version.as_deref() {
         None => None,
         Some("4.1" | "4") => Some(Version::V4),
         Some("2.2" | "2") => Some(Version::V2),
@@ -45,12 +45,12 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
         }
     };
     let (mesh, mut lost) = keep_cells(mesh, "MSH", |kind| types.iter().any(|t| t.kind == kind));
-    let tagged = Tagged::of(&mesh, &mut lost)?;
+    let tagged = CellTags::of(&mesh, &mut lost)?;
     let labelled = tagged.physical.iter().filter(|&&label| label != 0).count();
     let partly = labelled > 0 && labelled < tagged.physical.len();
-    let has_data = mesh.cell_data.iter().any(|f| !tagged.holds(&mesh, f, true));
+    let has_data = mesh.cell_data.iter().any(|f| !tagged.is_in_tags(&mesh, f, true));
     let default = if partly && !has_data { Version::V2 } else { Version::V4 };
-    let version2 = asked.unwrap_or(default) == Version::V2;
+    let version2 = requested.unwrap_or(default) == Version::V2;
     let mut sink = Sink { out: Vec::new(), binary: options.encoding != Encoding::Ascii };
     header(&mut sink, if version2 { "2.2" } else { "4.1" });
     physical_names(&mut sink, &mesh);
@@ -67,7 +67,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     Ok(Written { files: vec![(String::new(), sink.out)], lost })
 }
 
-impl Tagged {
+impl CellTags {
     fn of(mesh: &Mesh, lost: &mut Vec<String>) -> Result<Self> {
         let dims: Vec<i32> = mesh.cells.kinds().iter().map(|k| k.dim().unwrap_or(0) as i32).collect();
         let physical = cell_labels(mesh, Some("gmsh:geometrical"));
@@ -83,13 +83,13 @@ impl Tagged {
     }
 
     /// Whether the tags already express an array.
-    fn holds(&self, mesh: &Mesh, field: &Field, version2: bool) -> bool {
+    fn is_in_tags(&self, mesh: &Mesh, field: &Field, version2: bool) -> bool {
         match (field.name.as_str(), int_column(mesh, &field.name)) {
             ("gmsh:geometrical", Some(_)) => true,
             ("gmsh:partition", Some(_)) => version2,
             // These are also kept as data, since their names state their origin.
             ("medit:ref" | "tetgen:ref", _) => false,
-            _ => say_all(&self.physical, mesh, field),
+            _ => labels_cover(&self.physical, mesh, field),
         }
     }
 }
@@ -99,7 +99,7 @@ impl Tagged {
 fn entities_of(dims: &[i32], wanted: &[i32], physical: &[i32]) -> Result<Vec<i32>> {
     let mut label_of = BTreeMap::new();
     let mut entity_of = BTreeMap::new();
-    let mut numbers = Numbers::default();
+    let mut numbers = EntityNumbers::default();
     dims.iter().zip(wanted).for_each(|(&dim, &entity)| numbers.take(dim, entity));
     let mut entities = Vec::with_capacity(dims.len());
     for ((&dim, &entity), &label) in dims.iter().zip(wanted).zip(physical) {
@@ -125,13 +125,13 @@ fn entities_of(dims: &[i32], wanted: &[i32], physical: &[i32]) -> Result<Vec<i32
 
 /// Used entity numbers in each dimension.
 #[derive(Default)]
-struct Numbers {
+struct EntityNumbers {
     taken: [BTreeSet<i32>; 4],
     /// No number up to this one is free.
     lowest: [i32; 4],
 }
 
-impl Numbers {
+impl EntityNumbers {
     fn take(&mut self, dim: i32, number: i32) {
         self.taken[dim as usize].insert(number.max(0));
     }
@@ -191,7 +191,7 @@ fn one_line(name: &str) -> String {
 
 /// The entity of each node: from the mesh if given, otherwise the lowest entity of the highest dimension of
 /// the cells.
-fn node_entities(mesh: &Mesh, tagged: &Tagged) -> Vec<[i32; 2]> {
+fn node_entities(mesh: &Mesh, tagged: &CellTags) -> Vec<[i32; 2]> {
     let given = mesh.point_field(NODE_ENTITIES).filter(|f| f.components == 2).and_then(|f| f.values.to_i64());
     let given = given.and_then(|tags| {
         tags.as_chunks::<2>()
@@ -211,7 +211,7 @@ fn node_entities(mesh: &Mesh, tagged: &Tagged) -> Vec<[i32; 2]> {
 }
 
 /// Writes every entity of cells or nodes, with its bounding box and its physical group.
-fn entities4(sink: &mut Sink, mesh: &Mesh, tagged: &Tagged, node_entities: &[[i32; 2]]) {
+fn entities4(sink: &mut Sink, mesh: &Mesh, tagged: &CellTags, node_entities: &[[i32; 2]]) {
     let mut groups: BTreeMap<(i32, i32), i32> = BTreeMap::new();
     let mut boxes: BTreeMap<(i32, i32), [[f64; 3]; 2]> = BTreeMap::new();
     let mut grow = |key: (i32, i32), p: [f64; 3]| {
@@ -280,7 +280,7 @@ fn nodes4(sink: &mut Sink, mesh: &Mesh, node_entities: &[[i32; 2]]) {
     sink.end_section("Nodes");
 }
 
-fn elements4(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &Tagged) {
+fn elements4(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &CellTags) {
     let n = mesh.cells.len();
     let kinds = mesh.cells.kinds();
     let key = |i: usize| (tagged.entities[i], kinds[i]);
@@ -316,7 +316,7 @@ fn nodes2(sink: &mut Sink, mesh: &Mesh) {
     sink.end_section("Nodes");
 }
 
-fn elements2(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &Tagged) {
+fn elements2(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &CellTags) {
     sink.line("$Elements");
     sink.line(mesh.cells.len());
     let n_tags = if tagged.partitions.is_some() { 4 } else { 2 };
@@ -360,10 +360,10 @@ fn gmsh_nodes(mesh: &Mesh, i: usize, t: &ElementType, mut put: impl FnMut(usize)
     nodes[..vertices.len()].iter().for_each(|&node| put(node));
 }
 
-fn data(sink: &mut Sink, mesh: &Mesh, tagged: &Tagged, version2: bool, lost: &mut Vec<String>) {
+fn data(sink: &mut Sink, mesh: &Mesh, tagged: &CellTags, version2: bool, lost: &mut Vec<String>) {
     let is_entity = |f: &&Field| !version2 && f.name == NODE_ENTITIES;
     let point_data: Vec<_> = mesh.point_data.iter().filter(|f| !is_entity(f)).collect();
-    let cell_data: Vec<_> = mesh.cell_data.iter().filter(|f| !tagged.holds(mesh, f, version2)).collect();
+    let cell_data: Vec<_> = mesh.cell_data.iter().filter(|f| !tagged.is_in_tags(mesh, f, version2)).collect();
     for (section, fields) in [("NodeData", &point_data), ("ElementData", &cell_data)] {
         for field in fields {
             if let Some(values) = field.values.to_f64().filter(|values| !values.is_empty()) {

@@ -63,7 +63,7 @@ impl<'a> File<'a> {
     }
 
     /// Skips blanks and comments.
-    fn skip(&mut self) {
+    fn skip_blanks(&mut self) {
         loop {
             let rest = &self.bytes[self.at..];
             let blank = rest.iter().take_while(|b| b.is_ascii_whitespace()).count();
@@ -81,7 +81,7 @@ impl<'a> File<'a> {
 
     /// The next word, punctuation character or quoted text; empty at the end.
     fn next(&mut self) -> &'a [u8] {
-        self.skip();
+        self.skip_blanks();
         let rest = &self.bytes[self.at..];
         let is_sign = |b: u8| matches!(b, b'(' | b')' | b'{' | b'}' | b'[' | b']' | b';');
         let n = match rest.first() {
@@ -150,7 +150,7 @@ impl<'a> File<'a> {
 
     /// Reads a number of entries of at least `bytes_each` bytes each, and checks it against the remaining
     /// bytes.
-    fn room_for(&mut self, bytes_each: usize) -> Result<usize> {
+    fn checked_count(&mut self, bytes_each: usize) -> Result<usize> {
         let n = self.count()?;
         // A list that repeats one value (`n{value}`) takes no space per entry.
         let room = (self.bytes.len() - self.at) / bytes_each + 1;
@@ -170,7 +170,7 @@ impl<'a> File<'a> {
     /// Reads a list of labels.
     pub(super) fn labels(&mut self) -> Result<Vec<i64>> {
         let size = if self.is_binary { self.label_bytes } else { 2 };
-        let n = self.room_for(size)?;
+        let n = self.checked_count(size)?;
         if let Some(one) = self.uniform(Self::int)? {
             return Ok(vec![one; n]);
         }
@@ -187,7 +187,7 @@ impl<'a> File<'a> {
     /// Reads a list of points.
     pub(super) fn points(&mut self) -> Result<Vec<Point>> {
         let size = if self.is_binary { 3 * self.scalar_bytes } else { 8 };
-        let n = self.room_for(size)?;
+        let n = self.checked_count(size)?;
         if self.is_binary {
             let raw = self.raw(3 * n, self.scalar_bytes)?;
             let flat: Vec<f64> = match self.scalar_bytes {
@@ -217,7 +217,7 @@ impl<'a> File<'a> {
                 .error("a binary list of faces of an old kind")
                 .remedy("convert it by foamFormatConvert"));
         }
-        let n = self.room_for(4)?;
+        let n = self.checked_count(4)?;
         let mut faces = Csr::default();
         self.expect(b"(")?;
         for _ in 0..n {

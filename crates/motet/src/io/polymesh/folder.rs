@@ -11,7 +11,7 @@ pub(in crate::io) fn is_case(path: &Path) -> bool {
 }
 
 /// Whether a folder to be written is called `polyMesh`.
-pub(in crate::io) fn is_to_be_one(path: &Path) -> bool {
+pub(in crate::io) fn is_polymesh_name(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name.eq_ignore_ascii_case("polyMesh"))
 }
 
@@ -38,9 +38,9 @@ fn find(folder: &Path, name: &str) -> Option<PathBuf> {
 pub(super) fn load(folder: &Path, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>> {
     let Some(path) = find(folder, name) else { return Ok(None) };
     let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, e))?;
-    if !gzip::is_packed(&bytes) {
+    if !gzip::is_gzip(&bytes) {
         return Ok(Some((path, bytes)));
     }
-    let unpacked = gzip::unpack(&bytes).map_err(|e| e.in_file(&path))?;
+    let unpacked = gzip::decompress(&bytes).map_err(|e| e.in_file(&path))?;
     Ok(Some((path, unpacked)))
 }

@@ -24,7 +24,7 @@ mod write;
 
 use crate::io::format::Format;
 
-pub(super) use folder::{is_case, is_to_be_one};
+pub(super) use folder::{is_case, is_polymesh_name};
 
 pub(super) const FORMAT: Format = Format {
     name: "OpenFOAM polyMesh",

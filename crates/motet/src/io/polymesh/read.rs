@@ -17,20 +17,20 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
         .in_file(input.path)
         .remedy("name the case, or its polyMesh folder")
     })?;
-    let points = needed(&folder, "points", |file| file.points())?;
-    let faces = needed(&folder, "faces", |file| file.faces())?;
-    let owner = needed(&folder, "owner", |file| file.labels())?;
-    let neighbour = needed(&folder, "neighbour", |file| file.labels())?;
-    let patches = needed(&folder, "boundary", patches)?;
-    let told = |e: Error| e.in_file(&folder);
-    let sides = Sides::new(&faces, &owner, &neighbour, points.len()).map_err(told)?;
+    let points = required(&folder, "points", |file| file.points())?;
+    let faces = required(&folder, "faces", |file| file.faces())?;
+    let owner = required(&folder, "owner", |file| file.labels())?;
+    let neighbour = required(&folder, "neighbour", |file| file.labels())?;
+    let patches = required(&folder, "boundary", patches)?;
+    let in_folder = |e: Error| e.in_file(&folder);
+    let sides = Sides::new(&faces, &owner, &neighbour, points.len()).map_err(in_folder)?;
     let mut mesh = Mesh::new(points, sides.cells());
     let n_cells = mesh.cells.len();
     let mut labels = vec![0; n_cells];
     for (label, patch) in (1..).zip(&patches) {
         let end = patch.start.checked_add(patch.n).filter(|&end| end <= faces.len());
         let end = end.ok_or_else(|| {
-            told(Error::input(format!(
+            in_folder(Error::input(format!(
                 "patch {} has faces beyond the {} that there are",
                 patch.name,
                 faces.len()
@@ -54,7 +54,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
 }
 
 /// Reads a required file.
-fn needed<T>(folder: &Path, name: &str, read: impl Fn(&mut File<'_>) -> Result<T>) -> Result<T> {
+fn required<T>(folder: &Path, name: &str, read: impl Fn(&mut File<'_>) -> Result<T>) -> Result<T> {
     optional(folder, name, read)?.ok_or_else(|| {
         Error::input("is not there")
             .in_file(folder.join(name))

@@ -55,12 +55,12 @@ fn cells_of_every_kind_come_back_in_their_order() {
 }
 
 #[test]
-fn what_a_polymesh_cannot_hold_is_told() {
+fn what_a_polymesh_cannot_hold_is_reported() {
     let mut mesh = quadratic(&mixed(1));
     mesh.set_point_field(Field::scalars("u", vec![0.0; mesh.points.len()]));
     let written = written(&mesh, Encoding::Binary);
-    assert!(written.lost.iter().any(|told| told.contains("middles of edges")), "{:?}", written.lost);
-    assert!(written.lost.iter().any(|told| told.contains('u')), "{:?}", written.lost);
+    assert!(written.lost.iter().any(|lost| lost.contains("middles of edges")), "{:?}", written.lost);
+    assert!(written.lost.iter().any(|lost| lost.contains('u')), "{:?}", written.lost);
     let refused = |mesh: &Mesh| write::write(mesh, &WriteOptions::default()).unwrap_err().to_string();
     let triangle = Cells::uniform(CellKind::TRIANGLE, [0, 1, 2].map(VertexId).to_vec()).unwrap();
     let flat: Vec<Point> = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];

@@ -19,7 +19,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let numbers = cell_numbers(mesh)?;
     let mut sorted = Sorted::of(mesh, &numbers)?;
     let points = sorted.renumber(mesh)?;
-    tell_lost(mesh, &sorted, points.len(), &mut lost);
+    report_losses(mesh, &sorted, points.len(), &mut lost);
     let n_cells = numbers.iter().filter(|&&n| n != NONE).count();
     let out = Out { is_text: options.encoding == Encoding::Ascii };
     let inner = sorted.inner.len();
@@ -77,11 +77,11 @@ struct Sorted {
     inner: Vec<Face>,
     outer: BTreeMap<i32, Vec<Face>>,
     /// Number of surface cells that are not on the boundary.
-    n_inside: usize,
+    n_not_boundary: usize,
 }
 
 /// Label of unlabelled faces, which sorts after all others.
-const WITHOUT: i32 = i32::MAX;
+const UNLABELLED: i32 = i32::MAX;
 
 impl Sorted {
     fn of(mesh: &Mesh, numbers: &[u32]) -> Result<Self> {
@@ -105,7 +105,8 @@ impl Sorted {
         facets.for_each_shared(|uses| match *uses {
             [only] => {
                 let ring = ring_of(only, is_inverted(only.cell));
-                let label = labels.remove(&rising_list(&ring)).filter(|&label| label != 0).unwrap_or(WITHOUT);
+                let label =
+                    labels.remove(&rising_list(&ring)).filter(|&label| label != 0).unwrap_or(UNLABELLED);
                 let owner = numbers[only.cell.index()];
                 outer.entry(label).or_default().push(Face { ring, owner, neighbour: NONE });
             }
@@ -123,7 +124,7 @@ impl Sorted {
         outer
             .values_mut()
             .for_each(|faces| faces.sort_by(|a, b| (a.owner, &a.ring).cmp(&(b.owner, &b.ring))));
-        Ok(Self { inner, outer, n_inside: labels.len() })
+        Ok(Self { inner, outer, n_not_boundary: labels.len() })
     }
 
     /// Drops points that no face uses, renumbers the faces, and returns the remaining points.
@@ -156,11 +157,11 @@ fn surface_labels(mesh: &Mesh) -> HashMap<Vec<u32>, i32> {
     cells.map(of).collect()
 }
 
-fn tell_lost(mesh: &Mesh, sorted: &Sorted, n_points: usize, lost: &mut Vec<String>) {
+fn report_losses(mesh: &Mesh, sorted: &Sorted, n_points: usize, lost: &mut Vec<String>) {
     let n_others = mesh.cells.kinds().iter().filter(|kind| kind.dim().is_none_or(|dim| dim < 2)).count();
     let unused = mesh.points.len() - n_points;
     for (n, what) in [
-        (sorted.n_inside, "surface cells inside, which are no faces of the boundary, are left out"),
+        (sorted.n_not_boundary, "surface cells inside, which are no faces of the boundary, are left out"),
         (n_others, "cells that are neither volume nor surface cells are left out"),
         (unused, "points that are no corner of a volume cell are left out, middles of edges among them"),
     ] {
@@ -251,7 +252,7 @@ impl Out {
         let (mut start, mut taken) = (sorted.inner.len(), Vec::new());
         for (&label, faces) in &sorted.outer {
             let name = match &labels {
-                Some(labels) if label != WITHOUT => word(&labels.name(label), "patch"),
+                Some(labels) if label != UNLABELLED => word(&labels.name(label), "patch"),
                 _ => DEFAULT.to_owned(),
             };
             let name = unused_name(&name, |name| taken.iter().any(|t| t == name));

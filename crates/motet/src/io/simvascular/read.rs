@@ -33,7 +33,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let mut mesh = read_file(&vtkxml::VTU, &layout.volume, input.notes)?;
     let by_id = node_ids(&mesh).map(|ids| Tags::new(&ids, NODE_ID)).transpose();
     let by_id = by_id.map_err(|e| e.in_file(&layout.volume))?;
-    let by_point = ByPoint::new(&mesh);
+    let point_index = PointIndex::new(&mesh);
     if mesh.regions().is_none() {
         let region =
             mesh.cells.kinds().iter().map(|kind| i32::from(kind.dim() == Some(3))).collect::<Vec<_>>();
@@ -50,7 +50,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
         }
         let vertices = match (&by_id, node_ids(&face)) {
             (Some(tags), Some(ids)) => found_by_id(tags, &ids),
-            _ => by_point.find_all(&face),
+            _ => point_index.find_subslice(&face),
         };
         let vertices = vertices.map_err(|e| e.in_file(path))?;
         faces.push((name, face, vertices));
@@ -149,11 +149,11 @@ fn found_by_id(tags: &Tags, ids: &[u64]) -> Result<Vec<VertexId>> {
 }
 
 /// Vertices of the volume, indexed by exact coordinates.
-struct ByPoint {
+struct PointIndex {
     places: HashMap<[u64; 3], VertexId>,
 }
 
-impl ByPoint {
+impl PointIndex {
     fn new(mesh: &Mesh) -> Self {
         let mut places = HashMap::new();
         for (i, point) in mesh.points.iter().enumerate() {
@@ -162,7 +162,7 @@ impl ByPoint {
         Self { places }
     }
 
-    fn find_all(&self, face: &Mesh) -> Result<Vec<VertexId>> {
+    fn find_subslice(&self, face: &Mesh) -> Result<Vec<VertexId>> {
         let find = |point| self.places.get(&key(point)).copied();
         let missing: Vec<usize> =
             (0..face.points.len()).filter(|&i| find(&face.points[i]).is_none()).collect();
@@ -208,14 +208,14 @@ fn extend_arrays(mesh: &mut Mesh, face: &Mesh) {
     for theirs in &face.cell_data {
         if mesh.cell_field(&theirs.name).is_none() {
             let mut field = theirs.pick([]);
-            blank(&mut field.values, (n_all - n_face) * theirs.components);
+            pad(&mut field.values, (n_all - n_face) * theirs.components);
             mesh.cell_data.push(field);
         }
     }
     for ours in &mut mesh.cell_data {
         let theirs = face.cell_field(&ours.name).filter(|f| f.components == ours.components);
         if !theirs.is_some_and(|theirs| append(&mut ours.values, &theirs.values)) {
-            blank(&mut ours.values, n_all * ours.components);
+            pad(&mut ours.values, n_all * ours.components);
         }
     }
 }
@@ -243,7 +243,7 @@ fn append(ours: &mut Values, theirs: &Values) -> bool {
 }
 
 /// Pads to `n` values with 0, NaN or empty texts.
-fn blank(values: &mut Values, n: usize) {
+fn pad(values: &mut Values, n: usize) {
     macro_rules! zeros {
         ($($variant:ident)*) => {
             match values {

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use crate::base::{Error, Result, VertexId, rising_list};
 use crate::io::format::{WriteOptions, Written};
-use crate::io::select::{facets_alone, of_kinds};
+use crate::io::select::{facet_mesh, restricted_to_kinds};
 use crate::io::simvascular::read::node_ids;
 use crate::io::simvascular::{ELEMENT_ID, FACE_ID, NODE_ID, REGION_ID, SURFACES, VOLUME};
 use crate::io::tags::Tags;
@@ -29,7 +29,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
         return Err(Error::input("a mesh-complete folder is made of faces, and no surface cell has a patch")
             .remedy("give the mesh surface cells with the cell array \"patch\""));
     }
-    let numbered = Numbered::new(mesh, &volume_cells);
+    let numbered = WithIds::new(mesh, &volume_cells);
     let mut written = Written::default();
     let volume = numbered.volume(&volume_cells);
     add(&mut written, VOLUME.into(), vtkxml::write_vtu(&volume, options)?);
@@ -90,7 +90,7 @@ fn faces(mesh: &Mesh, surface_cells: &[usize]) -> (Labels, BTreeMap<String, Vec<
 }
 
 /// A mesh with ids of its points and elements.
-struct Numbered<'m> {
+struct WithIds<'m> {
     mesh: &'m Mesh,
     node_ids: Values,
     /// Element id of each cell; 0 for cells that are not volume cells.
@@ -99,7 +99,7 @@ struct Numbered<'m> {
     behind: HashMap<Vec<VertexId>, i64>,
 }
 
-impl<'m> Numbered<'m> {
+impl<'m> WithIds<'m> {
     fn new(mesh: &'m Mesh, volume_cells: &[usize]) -> Self {
         let own = node_ids(mesh).filter(|ids| !ids.contains(&0) && Tags::new(ids, NODE_ID).is_ok());
         let node_ids = match own {
@@ -122,7 +122,7 @@ impl<'m> Numbered<'m> {
     }
 
     fn volume(&self, volume_cells: &[usize]) -> Mesh {
-        let mut volume = of_kinds(self.mesh, |kind| kind.dim() == Some(3));
+        let mut volume = restricted_to_kinds(self.mesh, |kind| kind.dim() == Some(3));
         volume.set_point_field(Field::scalars(NODE_ID, self.node_ids.clone()));
         let ids = volume_cells.iter().map(|&i| self.element_ids[i]).collect();
         volume.set_cell_field(Field::scalars(ELEMENT_ID, integers(ids)));
@@ -144,7 +144,7 @@ impl<'m> Numbered<'m> {
         let mut used: Vec<VertexId> = cells.iter().map(facet).flat_map(|(_, v)| v).copied().collect();
         used.sort_unstable();
         used.dedup();
-        let mut face = facets_alone(self.mesh, &used, cells.iter().map(facet), cells);
+        let mut face = facet_mesh(self.mesh, &used, cells.iter().map(facet), cells);
         let point_rows = used.iter().map(|v| v.index());
         face.set_point_field(Field::scalars(NODE_ID, self.node_ids.clone()).pick(point_rows));
         let behind =

@@ -4,7 +4,7 @@ use super::EDGE_NODES;
 use crate::base::{Error, Result, VertexId};
 use crate::io::Input;
 use crate::io::node_order::vtk_to_other;
-use crate::io::reading::read_beside;
+use crate::io::reading::read_if_exists;
 use crate::io::text::{Text, parse_float, parse_int};
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
@@ -18,10 +18,10 @@ struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Reads the head, which starts with the number of lines and is padded with zeros to `n_least` numbers.
-    fn new(bytes: &'a [u8], what: &str, n_least: usize) -> Result<Self> {
+    /// Reads the head, which starts with the number of lines and is padded with zeros to `min_columns` numbers.
+    fn new(bytes: &'a [u8], what: &str, min_columns: usize) -> Result<Self> {
         let mut text = Text::with_comments(bytes, b'#');
-        text.peek().ok_or_else(|| text.ends(&format!("the head of the {what}")))?;
+        text.peek().ok_or_else(|| text.unexpected_end(&format!("the head of the {what}")))?;
         let mut head = Vec::new();
         let n = text.count(what, 1)?;
         head.push(n);
@@ -29,8 +29,8 @@ impl<'a> Table<'a> {
             let count = parse_int(word).and_then(|n| usize::try_from(n).ok()).filter(|n| *n <= MAX_COLUMNS);
             head.push(count.ok_or_else(|| text.unexpected("head of the file", "a count", word))?);
         }
-        if head.len() < n_least {
-            head.resize(n_least, 0);
+        if head.len() < min_columns {
+            head.resize(min_columns, 0);
         }
         Ok(Self { text, head })
     }
@@ -46,16 +46,16 @@ impl<'a> Table<'a> {
     }
 
     fn int(&self, row: &[&[u8]], column: usize, what: &str) -> Result<i64> {
-        let word = row.get(column).ok_or_else(|| self.short(column + 1, what))?;
+        let word = row.get(column).ok_or_else(|| self.too_few_columns(column + 1, what))?;
         parse_int(word).ok_or_else(|| self.text.unexpected(what, "a whole number", word))
     }
 
     fn float(&self, row: &[&[u8]], column: usize, what: &str) -> Result<f64> {
-        let word = row.get(column).ok_or_else(|| self.short(column + 1, what))?;
+        let word = row.get(column).ok_or_else(|| self.too_few_columns(column + 1, what))?;
         parse_float(word).ok_or_else(|| self.text.unexpected(what, "a number", word))
     }
 
-    fn short(&self, n: usize, what: &str) -> Error {
+    fn too_few_columns(&self, n: usize, what: &str) -> Error {
         self.text
             .error(format!("{what} is missing: the line needs {n} numbers"))
             .remedy("the head of the file does not fit its lines, or the file is damaged")
@@ -78,14 +78,14 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let node_path = if is_ele { path.with_extension("node") } else { path.to_owned() };
     let ele_path = if is_ele { path.to_owned() } else { path.with_extension("ele") };
     let (node_bytes, ele_bytes) = if is_ele {
-        let bytes = read_beside(&node_path)?.ok_or_else(|| {
+        let bytes = read_if_exists(&node_path)?.ok_or_else(|| {
             Error::input("there is no such file, which holds the points of the .ele file")
                 .in_file(&node_path)
                 .remedy("put the .node file of the same name beside it")
         })?;
         (Some(bytes), None)
     } else {
-        (None, read_beside(&ele_path)?)
+        (None, read_if_exists(&ele_path)?)
     };
     let nodes =
         read_nodes(node_bytes.as_deref().unwrap_or(input.bytes)).map_err(|e| e.in_file(&node_path))?;
@@ -96,7 +96,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     }
     for (ending, kind, n) in [("face", CellKind::TRIANGLE, 3), ("edge", CellKind::LINE, 2)] {
         let side_path = path.with_extension(ending);
-        if let Some(bytes) = read_beside(&side_path)? {
+        if let Some(bytes) = read_if_exists(&side_path)? {
             elements.read_sides(&bytes, &nodes, kind, n).map_err(|e| e.in_file(&side_path))?;
         }
     }

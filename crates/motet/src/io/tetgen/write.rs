@@ -4,7 +4,7 @@ use std::io::Write as _;
 
 use super::EDGE_NODES;
 use crate::base::{Result, VertexId};
-use crate::io::cell_labels::{cell_labels, lost_names, say_all};
+use crate::io::cell_labels::{cell_labels, labels_cover, lost_names};
 use crate::io::format::{WriteOptions, Written};
 use crate::io::node_order::vtk_to_other;
 use crate::io::select::{keep_cells, lost_arrays};
@@ -44,7 +44,7 @@ fn node_file(mesh: &Mesh, lost: &mut Vec<String>) -> Vec<u8> {
         .filter(|f| markers.is_none_or(|m| m.name != f.name))
         .partition(|f| !matches!(f.values, Values::Text(_)));
     lost.extend(lost_arrays("TetGen", "text", other));
-    lost.extend(nameless("point", &kept, |f| f.name.starts_with("tetgen:")));
+    lost.extend(renamed_arrays("point", &kept, |f| f.name.starts_with("tetgen:")));
     let n_attributes: usize = kept.iter().map(|f| f.components).sum();
     let mut out = Vec::new();
     line(&mut out, format_args!("{} 3 {n_attributes} {}", mesh.points.len(), usize::from(markers.is_some())));
@@ -67,10 +67,10 @@ fn ele_file(mesh: &Mesh, tetra: CellKind, labels: &[i32], lost: &mut Vec<String>
     let (kept, other): (Vec<&Field>, Vec<&Field>) = mesh
         .cell_data
         .iter()
-        .filter(|f| !say_all(labels, mesh, f))
+        .filter(|f| !labels_cover(labels, mesh, f))
         .partition(|f| f.values.is_integer() && mesh.cells.kinds().contains(&tetra));
     lost.extend(lost_arrays("TetGen", "cell", other));
-    lost.extend(nameless("cell", &kept, |f| f.name.starts_with("tetgen:")));
+    lost.extend(renamed_arrays("cell", &kept, |f| f.name.starts_with("tetgen:")));
     let places = places_of(mesh, tetra);
     let labelled = !kept.is_empty() || places.iter().any(|&i| labels[i] != 0);
     let n_attributes = usize::from(labelled) + kept.iter().map(|f| f.components).sum::<usize>();
@@ -115,7 +115,7 @@ fn places_of(mesh: &Mesh, kind: CellKind) -> Vec<usize> {
 }
 
 /// A message about arrays that keep their values but not their names.
-fn nameless(what: &str, fields: &[&Field], keeps_name: impl Fn(&Field) -> bool) -> Option<String> {
+fn renamed_arrays(what: &str, fields: &[&Field], keeps_name: impl Fn(&Field) -> bool) -> Option<String> {
     let names: Vec<&str> = fields.iter().filter(|f| !keeps_name(f)).map(|f| f.name.as_str()).collect();
     (!names.is_empty()).then(|| {
         format!("{what} arrays are written as numbered attributes, TetGen has no names: {}", names.join(", "))

@@ -16,12 +16,12 @@ impl Steps {
     /// Reads the steps of a file; `None` if it has none.
     pub(super) fn of(root: &Group) -> Result<Option<Self>> {
         let Some(group) = root.group("Steps")? else { return Ok(None) };
-        let values = group.needed_array("Values")?;
+        let values = group.required_array("Values")?;
         let times = values.all()?.to_f64().ok_or_else(|| values.error("times are no numbers"))?;
-        let promised = group.ints("NSteps").and_then(|n| n.first().copied());
-        if promised.is_some_and(|n| usize::try_from(n) != Ok(times.len())) || times.is_empty() {
-            let promised = promised.unwrap_or_default();
-            return Err(values.error(format!("{} times for {promised} steps", times.len())));
+        let declared = group.ints("NSteps").and_then(|n| n.first().copied());
+        if declared.is_some_and(|n| usize::try_from(n) != Ok(times.len())) || times.is_empty() {
+            let declared = declared.unwrap_or_default();
+            return Err(values.error(format!("{} times for {declared} steps", times.len())));
         }
         Ok(Some(Self { group, times }))
     }
@@ -48,7 +48,7 @@ fn whole(array: &Array, n: i64) -> Result<usize> {
 
 /// The counts of an array for a range of parts.
 pub(super) fn counts(group: &Group, name: &str, parts: &Range<usize>) -> Result<Vec<usize>> {
-    let array = group.needed_array(name)?;
+    let array = group.required_array(name)?;
     array.ints(parts.clone())?.into_iter().map(|n| whole(&array, n)).collect()
 }
 
@@ -63,14 +63,14 @@ pub(super) struct Frame<'a> {
 impl<'a> Frame<'a> {
     /// The mesh of a file without steps, which consists of all parts.
     pub(super) fn whole(root: &'a Group) -> Result<Self> {
-        let parts = 0..root.needed_array("NumberOfPoints")?.rows();
+        let parts = 0..root.required_array("NumberOfPoints")?.rows();
         Ok(Self { root, step: None, parts })
     }
 
     /// The mesh of a step.
     pub(super) fn of_step(root: &'a Group, steps: &'a Steps, step: usize) -> Result<Self> {
         let first = |name| Ok::<_, Error>(steps.row(name, step)?.and_then(|row| row.first().copied()));
-        let all = root.needed_array("NumberOfPoints")?;
+        let all = root.required_array("NumberOfPoints")?;
         let n = first("NumberOfParts")?.unwrap_or(all.rows() / steps.times.len());
         let start = first("PartOffsets")?.unwrap_or(step * n);
         match start.checked_add(n).filter(|&end| end <= all.rows()) {
@@ -87,22 +87,22 @@ impl<'a> Frame<'a> {
         column: usize,
         before: impl Fn() -> Result<usize>,
     ) -> Result<usize> {
-        let told = match self.step {
+        let stored = match self.step {
             Some((steps, step)) => steps.row(offsets, step)?.and_then(|row| row.get(column).copied()),
             None => None,
         };
-        told.map_or_else(before, Ok)
+        stored.map_or_else(before, Ok)
     }
 
     /// The sum of the counts of all parts before this frame.
-    pub(super) fn before(&self, group: &Group, counted: &str) -> Result<usize> {
+    pub(super) fn rows_before(&self, group: &Group, counted: &str) -> Result<usize> {
         let counts = counts(group, counted, &(0..self.parts.start))?;
         Ok(counts.iter().fold(0, |sum, n| sum.saturating_add(*n)))
     }
 
     /// The first row of the points.
     pub(super) fn first_point(&self) -> Result<usize> {
-        self.start("PointOffsets", 0, || self.before(self.root, "NumberOfPoints"))
+        self.start("PointOffsets", 0, || self.rows_before(self.root, "NumberOfPoints"))
     }
 
     /// The first row of an array of `kind` (`PointData`, `CellData`); `usual` if the steps do not specify it.

@@ -19,14 +19,14 @@ pub(super) struct Source<'a> {
 pub(super) struct Part {
     pub(super) n_lists: usize,
     pub(super) n_ids: usize,
-    pub(super) n_things: usize,
+    pub(super) n_targets: usize,
 }
 
 impl Source<'_> {
     /// Reads the lists of all parts, with ids renumbered consecutively over the parts.
     pub(super) fn read(&self, parts: &[Part]) -> Result<Csr<u32>> {
-        let offsets = self.group.needed_array(self.offsets)?;
-        let ids = self.group.needed_array(self.ids)?;
+        let offsets = self.group.required_array(self.offsets)?;
+        let ids = self.group.required_array(self.ids)?;
         let (mut at_offset, mut at_id, mut shift) = (self.first_offset, self.first_id, 0usize);
         let (mut ends, mut all) = (vec![0u32], Vec::new());
         for part in parts {
@@ -42,12 +42,12 @@ impl Source<'_> {
             }
             ends.extend(starts[1..].iter().map(|&end| all.len() as u32 + end as u32));
             for id in ids.ints(at_id..next_id)? {
-                let known = usize::try_from(id).ok().filter(|&id| id < part.n_things);
+                let known = usize::try_from(id).ok().filter(|&id| id < part.n_targets);
                 let id =
-                    known.ok_or_else(|| ids.error(format!("{id} is named, there are {}", part.n_things)))?;
+                    known.ok_or_else(|| ids.error(format!("{id} is named, there are {}", part.n_targets)))?;
                 all.push((shift + id) as u32);
             }
-            (at_offset, at_id, shift) = (next_offset, next_id, shift + part.n_things);
+            (at_offset, at_id, shift) = (next_offset, next_id, shift + part.n_targets);
         }
         Csr::new(ends, all).ok_or_else(|| offsets.error("the offsets do not rise"))
     }

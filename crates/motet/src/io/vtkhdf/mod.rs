@@ -32,7 +32,7 @@ mod write;
 
 use crate::io::format::Format;
 
-pub(super) use series::{StepPath, is_named_so, is_transient, read_step, times};
+pub(super) use series::{StepPath, is_transient, is_vtkhdf_name, read_step, times};
 pub(super) use steps::Steps;
 
 /// Unstructured grids and polygonal data in HDF5.

@@ -3,10 +3,10 @@
 use crate::base::{Csr, Error, Point, Result, VertexId};
 use crate::io::format::{Input, Notes};
 use crate::io::hdf::{Group, open};
-use crate::io::labels::take_label_names;
+use crate::io::labels::extract_label_names;
 use crate::io::polygonal::kind_in_section;
 use crate::io::polyhedra::cells_with_polyhedra;
-use crate::io::surplus::trim;
+use crate::io::surplus_points::trim;
 use crate::io::vtkhdf::SECTIONS;
 use crate::io::vtkhdf::frame::{Frame, Steps, counts};
 use crate::io::vtkhdf::lists::{Part, Source};
@@ -70,7 +70,7 @@ pub(super) fn mesh_of(root: &Group, frame: &Frame<'_>, notes: &Notes) -> Result<
         let starts = n_points.iter().scan(0, |end, n| Some(std::mem::replace(end, *end + n)));
         weld(&mut mesh, &starts.collect::<Vec<_>>(), notes);
     }
-    take_label_names(&mut mesh);
+    extract_label_names(&mut mesh);
     Ok(mesh)
 }
 
@@ -79,7 +79,7 @@ fn sum(counts: &[usize]) -> usize {
 }
 
 fn read_points(root: &Group, first: usize, counts: &[usize]) -> Result<Vec<Point>> {
-    let array = root.needed_array("Points")?;
+    let array = root.required_array("Points")?;
     let n = sum(counts);
     if n > VertexId::MAX_COUNT {
         return Err(array.error(format!("{n} points are more than a mesh can hold")));
@@ -109,27 +109,27 @@ fn read_lists(
 ) -> Result<(Csr<u32>, usize)> {
     let n_lists = counts(group, "NumberOfCells", &frame.parts)?;
     let n_ids = counts(group, "NumberOfConnectivityIds", &frame.parts)?;
-    let first = frame.start("CellOffsets", column, || frame.before(group, "NumberOfCells"))?;
+    let first = frame.start("CellOffsets", column, || frame.rows_before(group, "NumberOfCells"))?;
     let source = Source {
         group,
         offsets: "Offsets",
         first_offset: first.saturating_add(frame.parts.start),
         ids: "Connectivity",
         first_id: frame
-            .start("ConnectivityIdOffsets", column, || frame.before(group, "NumberOfConnectivityIds"))?,
+            .start("ConnectivityIdOffsets", column, || frame.rows_before(group, "NumberOfConnectivityIds"))?,
     };
     Ok((source.read(&parts(&n_lists, &n_ids, n_points))?, first))
 }
 
-fn parts(n_lists: &[usize], n_ids: &[usize], n_things: &[usize]) -> Vec<Part> {
-    let counts = n_lists.iter().zip(n_ids).zip(n_things);
-    counts.map(|((&n_lists, &n_ids), &n_things)| Part { n_lists, n_ids, n_things }).collect()
+fn parts(n_lists: &[usize], n_ids: &[usize], n_targets: &[usize]) -> Vec<Part> {
+    let counts = n_lists.iter().zip(n_ids).zip(n_targets);
+    counts.map(|((&n_lists, &n_ids), &n_targets)| Part { n_lists, n_ids, n_targets }).collect()
 }
 
 /// Reads the cells of an unstructured grid; also returns its first cell.
 fn read_grid(root: &Group, frame: &Frame<'_>, n_points: &[usize], notes: &Notes) -> Result<(Cells, usize)> {
     let (lists, first) = read_lists(root, frame, 0, n_points)?;
-    let types = root.needed_array("Types")?;
+    let types = root.required_array("Types")?;
     let numbers = types.ints(first..first.saturating_add(lists.len()))?;
     let kinds: Option<Vec<CellKind>> = numbers.iter().map(|&n| u8::try_from(n).ok().map(CellKind)).collect();
     let kinds = kinds.ok_or_else(|| types.error("a cell type is not in 0 to 255"))?;
@@ -143,7 +143,7 @@ fn read_grid(root: &Group, frame: &Frame<'_>, n_points: &[usize], notes: &Notes)
             cells_with_polyhedra(&kinds, offsets, vertices, faces)
         }
     };
-    Ok((cells.map_err(|e| e.at(root.place()))?, first))
+    Ok((cells.map_err(|e| e.at(root.path()))?, first))
 }
 
 /// Reads the faces of each polyhedron.
@@ -156,7 +156,7 @@ fn read_faces(
 ) -> Result<Vec<Csr<VertexId>>> {
     let of = |name| counts(root, name, &frame.parts);
     let n_faces = of("NumberOfFaces")?;
-    let first_face = |name| frame.before(root, name);
+    let first_face = |name| frame.rows_before(root, name);
     let corners = Source {
         group: root,
         offsets: "FaceOffsets",
@@ -178,14 +178,14 @@ fn read_faces(
     let n_cells = counts(root, "NumberOfCells", &frame.parts)?;
     let of_cells = of_cells.read(&parts(&n_cells, &of("NumberOfPolyhedronToFaceIds")?, &n_faces))?;
     let polyhedra = of_cells.iter().zip(kinds).filter(|(_, kind)| **kind == CellKind::POLYHEDRON);
-    let mut room = corners.items().len().saturating_mul(2);
+    let mut budget = corners.items().len().saturating_mul(2);
     let faces_of = |(list, _): (&[u32], _)| {
         let mut faces = Csr::default();
         for &face in list {
             let corners = corners.list(face as usize);
             // At most two polyhedra share a face; without this check the file would not bound the uses of a
             // face.
-            room = room.checked_sub(corners.len()).ok_or_else(|| {
+            budget = budget.checked_sub(corners.len()).ok_or_else(|| {
                 Error::input("polyhedra name faces more often than twice").at("/VTKHDF/PolyhedronToFaces")
             })?;
             faces.push(corners.iter().map(|&v| VertexId(v)));
@@ -206,7 +206,7 @@ fn read_sections(root: &Group, frame: &Frame<'_>, n_points: &[usize]) -> Result<
         first_cell = first_cell.saturating_add(first);
         n_ids += lists.items().len();
         if n_ids > VertexId::MAX_COUNT {
-            return Err(Error::input("more vertex ids than a mesh can hold").at(group.place()));
+            return Err(Error::input("more vertex ids than a mesh can hold").at(group.path()));
         }
         sections.push((section, lists, counts(&group, "NumberOfCells", &frame.parts)?));
     }
@@ -236,9 +236,9 @@ fn read_arrays(
     let Some(group) = root.group(kind)? else { return Ok(Vec::new()) };
     let mut fields = Vec::new();
     for name in group.arrays() {
-        let array = group.needed_array(name)?;
-        if !array.is_known() {
-            notes.add(format!("{} holds neither numbers nor texts: passed over", array.place()));
+        let array = group.required_array(name)?;
+        if !array.is_supported() {
+            notes.add(format!("{} holds neither numbers nor texts: passed over", array.path()));
             continue;
         }
         let first = frame.first_value(kind, name, usual)?;
@@ -253,9 +253,9 @@ fn read_field_data(root: &Group, frame: &Frame<'_>, notes: &Notes) -> Result<Vec
     let Some(group) = root.group("FieldData")? else { return Ok(Vec::new()) };
     let mut fields = Vec::new();
     for name in group.arrays() {
-        let array = group.needed_array(name)?;
-        if !array.is_known() {
-            notes.add(format!("{} holds neither numbers nor texts: passed over", array.place()));
+        let array = group.required_array(name)?;
+        if !array.is_supported() {
+            notes.add(format!("{} holds neither numbers nor texts: passed over", array.path()));
             continue;
         }
         let (rows, components) = frame.field_rows(name, &array)?;

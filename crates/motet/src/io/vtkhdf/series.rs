@@ -23,7 +23,7 @@ impl StepPath {
     pub(in crate::io) fn of(path: &Path) -> Option<Self> {
         let (name, step) = path.file_name()?.to_str()?.rsplit_once('#')?;
         let step = step.parse().ok()?;
-        has_ending(name).then(|| Self { file: path.with_file_name(name), step })
+        has_extension(name).then(|| Self { file: path.with_file_name(name), step })
     }
 
     /// The path of the step.
@@ -34,19 +34,19 @@ impl StepPath {
     }
 }
 
-fn has_ending(name: &str) -> bool {
+fn has_extension(name: &str) -> bool {
     let name = name.to_lowercase();
     FORMAT.endings.iter().any(|ending| name.ends_with(ending))
 }
 
 /// Whether the file name has the extension of VTKHDF.
-pub(in crate::io) fn is_named_so(path: &Path) -> bool {
-    path.file_name().and_then(|name| name.to_str()).is_some_and(has_ending)
+pub(in crate::io) fn is_vtkhdf_name(path: &Path) -> bool {
+    path.file_name().and_then(|name| name.to_str()).is_some_and(has_extension)
 }
 
 /// Whether this is an existing file with several steps.
 pub(in crate::io) fn is_transient(path: &Path) -> bool {
-    is_named_so(path) && path.is_file() && times(path).is_ok_and(|frames| frames.len() > 1)
+    is_vtkhdf_name(path) && path.is_file() && times(path).is_ok_and(|frames| frames.len() > 1)
 }
 
 /// The times of a file and the path of each step.

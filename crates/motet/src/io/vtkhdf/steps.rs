@@ -3,9 +3,9 @@
 
 use crate::base::{Error, Result};
 use crate::io::format::{WriteOptions, Written};
-use crate::io::hdf::{Attribute, Node, Packing};
+use crate::io::hdf::{Attribute, Node, Storage};
 use crate::io::labels::label_fields;
-use crate::io::vtkhdf::write::{packing, valid_name};
+use crate::io::vtkhdf::write::{storage, valid_name};
 use crate::mesh::{Cells, Field, Mesh, Values};
 
 /// The frames added so far.
@@ -22,9 +22,9 @@ pub(in crate::io) struct Steps {
     first_ids: Vec<i64>,
     cells: Parts,
     last: Option<Cells>,
-    on_points: Vec<Growing>,
-    on_cells: Vec<Growing>,
-    whole: Vec<Field>,
+    on_points: Vec<StepArray>,
+    on_cells: Vec<StepArray>,
+    field_data: Vec<Field>,
 }
 
 /// Distinct sets of cells, concatenated.
@@ -40,7 +40,7 @@ struct Parts {
 
 /// An array present in every step so far.
 #[derive(Debug)]
-struct Growing {
+struct StepArray {
     field: Field,
     /// The first row of each step.
     first: Vec<i64>,
@@ -75,7 +75,7 @@ impl Steps {
         grow(&mut self.on_points, mesh.point_data.iter(), is_first);
         grow(&mut self.on_cells, mesh.cell_data.iter().chain(&label_cells), is_first);
         if is_first {
-            self.whole = mesh.field_data.iter().cloned().chain(label_names).collect();
+            self.field_data = mesh.field_data.iter().cloned().chain(label_names).collect();
         }
         self.times.push(time);
         Ok(())
@@ -100,7 +100,7 @@ impl Steps {
     ///
     /// Fails if there are no frames, or the options request an unsupported compression.
     pub(in crate::io) fn into_file(mut self, options: &WriteOptions) -> Result<Written> {
-        let packing = packing(options)?;
+        let storage = storage(options)?;
         let n = self.times.len();
         if n == 0 {
             return Err(Error::input("a series without a mesh"));
@@ -121,34 +121,34 @@ impl Steps {
         root.attribute("Version", Attribute::Ints(vec![2, 0]));
         root.attribute("Type", Attribute::Text("UnstructuredGrid".into()));
         let n_rows = self.points.len() / 3;
-        root.array("Points", Values::F64(self.points), &[n_rows, 3], packing);
+        root.array("Points", Values::F64(self.points), &[n_rows, 3], storage);
         let Parts { n_points, n_cells, n_ids, kinds, offsets, ids } = self.cells;
         for (name, numbers) in
             [("NumberOfPoints", n_points), ("NumberOfCells", n_cells), ("NumberOfConnectivityIds", n_ids)]
         {
-            int(&mut root, name, numbers, Packing::Plain);
+            int(&mut root, name, numbers, Storage::Plain);
         }
         let n_kinds = kinds.len();
-        root.array("Types", Values::U8(kinds), &[n_kinds], packing);
-        int(&mut root, "Offsets", offsets, packing);
-        int(&mut root, "Connectivity", ids, packing);
+        root.array("Types", Values::U8(kinds), &[n_kinds], storage);
+        int(&mut root, "Offsets", offsets, storage);
+        int(&mut root, "Connectivity", ids, storage);
         let mut steps = Node::new("Steps");
         steps.attribute("NSteps", Attribute::Ints(vec![n as i64]));
-        steps.array("Values", Values::F64(self.times), &[n], Packing::Plain);
-        int(&mut steps, "NumberOfParts", vec![1; n], Packing::Plain);
-        int(&mut steps, "PartOffsets", self.parts, Packing::Plain);
-        int(&mut steps, "PointOffsets", self.first_points, Packing::Plain);
-        steps.array("CellOffsets", Values::I64(self.first_cells), &[n, 1], Packing::Plain);
-        steps.array("ConnectivityIdOffsets", Values::I64(self.first_ids), &[n, 1], Packing::Plain);
+        steps.array("Values", Values::F64(self.times), &[n], Storage::Plain);
+        int(&mut steps, "NumberOfParts", vec![1; n], Storage::Plain);
+        int(&mut steps, "PartOffsets", self.parts, Storage::Plain);
+        int(&mut steps, "PointOffsets", self.first_points, Storage::Plain);
+        steps.array("CellOffsets", Values::I64(self.first_cells), &[n, 1], Storage::Plain);
+        steps.array("ConnectivityIdOffsets", Values::I64(self.first_ids), &[n, 1], Storage::Plain);
         for (kind, arrays) in [("PointData", self.on_points), ("CellData", self.on_cells)] {
             let (mut data, mut firsts) = (Node::new(kind), Node::new(format!("{kind}Offsets")));
             let mut taken: Vec<String> = Vec::new();
-            for Growing { field, first, .. } in arrays {
+            for StepArray { field, first, .. } in arrays {
                 let name = valid_name(&field.name, &taken);
                 let shape = [field.n_rows(), field.components];
                 let shape = if field.components == 1 { &shape[..1] } else { &shape };
-                data.array(&name, field.values, shape, packing);
-                int(&mut firsts, &name, first, Packing::Plain);
+                data.array(&name, field.values, shape, storage);
+                int(&mut firsts, &name, first, Storage::Plain);
                 taken.push(name);
             }
             root.group(data);
@@ -156,10 +156,10 @@ impl Steps {
         }
         let mut data = Node::new("FieldData");
         let mut taken: Vec<String> = Vec::new();
-        for field in self.whole {
+        for field in self.field_data {
             let name = valid_name(&field.name, &taken);
             let shape = [field.n_rows(), field.components];
-            data.array(&name, field.values, &shape, Packing::Plain);
+            data.array(&name, field.values, &shape, Storage::Plain);
             taken.push(name);
         }
         root.group(data);
@@ -170,16 +170,16 @@ impl Steps {
     }
 }
 
-fn int(group: &mut Node, name: &str, numbers: Vec<i64>, packing: Packing) {
+fn int(group: &mut Node, name: &str, numbers: Vec<i64>, storage: Storage) {
     let n = numbers.len();
-    group.array(name, Values::I64(numbers), &[n], packing);
+    group.array(name, Values::I64(numbers), &[n], storage);
 }
 
 /// Appends the rows of a step to each array present in all previous steps; the first step defines the arrays.
-fn grow<'f>(all: &mut Vec<Growing>, fields: impl Iterator<Item = &'f Field>, is_first: bool) {
+fn grow<'f>(all: &mut Vec<StepArray>, fields: impl Iterator<Item = &'f Field>, is_first: bool) {
     let fields: Vec<&Field> = fields.collect();
     if is_first {
-        all.extend(fields.iter().map(|&field| Growing {
+        all.extend(fields.iter().map(|&field| StepArray {
             field: field.clone(),
             first: vec![0],
             last: field.values.clone(),

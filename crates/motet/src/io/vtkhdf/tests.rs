@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::base::{Csr, Result, VertexId};
 use crate::io::format::{Compression, Input, Notes, WriteOptions};
-use crate::io::hdf::{Attribute, Node, Packing};
+use crate::io::hdf::{Attribute, Node, Storage};
 use crate::io::reading::read_as;
 use crate::io::vtkhdf::{FORMAT, StepPath, is_transient, read_step, times};
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
@@ -104,7 +104,7 @@ fn surfaces_are_polygonal_data_where_nothing_is_lost_by_it() {
 }
 
 #[test]
-fn names_that_hdf5_cannot_hold_are_told() {
+fn names_that_hdf5_cannot_hold_are_reported() {
     let mut mesh = grid();
     mesh.point_data = ["a/b", "a.b", "", "a_b"].map(|name| Field::scalars(name, vec![1u8; 5])).to_vec();
     let (bytes, lost) = print(&mesh, Compression::Zlib);
@@ -153,10 +153,10 @@ fn one_tet(change: impl FnOnce(&mut Vec<(&str, Vec<i64>)>)) -> Vec<u8> {
     let mut root = Node::new("VTKHDF");
     root.attribute("Version", Attribute::Ints(vec![2, 0]));
     root.attribute("Type", Attribute::Text("UnstructuredGrid".into()));
-    root.array("Points", Values::F64(vec![0.5; 12]), &[4, 3], Packing::Plain);
+    root.array("Points", Values::F64(vec![0.5; 12]), &[4, 3], Storage::Plain);
     for (name, values) in arrays {
         let n = values.len();
-        root.array(name, Values::I64(values), &[n], Packing::Plain);
+        root.array(name, Values::I64(values), &[n], Storage::Plain);
     }
     let mut file = Node::new("");
     file.group(root);
@@ -205,9 +205,9 @@ fn transient(parts: &[i64]) -> Vec<u8> {
     root.attribute("Version", Attribute::Ints(vec![2, 0]));
     root.attribute("Type", Attribute::Text("UnstructuredGrid".into()));
     let points: Vec<f64> = (0..36).map(f64::from).collect();
-    root.array("Points", Values::F64(points), &[12, 3], Packing::Zlib);
+    root.array("Points", Values::F64(points), &[12, 3], Storage::Zlib);
     let mut int = |name: &str, values: &[i64]| {
-        root.array(name, Values::I64(values.to_vec()), &[values.len()], Packing::Plain);
+        root.array(name, Values::I64(values.to_vec()), &[values.len()], Storage::Plain);
     };
     int("NumberOfPoints", &[4]);
     int("NumberOfCells", &[1]);
@@ -216,13 +216,13 @@ fn transient(parts: &[i64]) -> Vec<u8> {
     int("Offsets", &[0, 4]);
     int("Connectivity", &[0, 1, 2, 3]);
     let mut data = Node::new("PointData");
-    data.array("u", Values::I32((0..12).collect()), &[12], Packing::Zlib);
+    data.array("u", Values::I32((0..12).collect()), &[12], Storage::Zlib);
     root.group(data);
     let mut steps = Node::new("Steps");
     steps.attribute("NSteps", Attribute::Ints(vec![3]));
-    steps.array("Values", Values::F64(vec![0.0, 0.5, 2.0]), &[3], Packing::Plain);
+    steps.array("Values", Values::F64(vec![0.0, 0.5, 2.0]), &[3], Storage::Plain);
     let mut int = |name: &str, values: &[i64]| {
-        steps.array(name, Values::I64(values.to_vec()), &[values.len()], Packing::Plain);
+        steps.array(name, Values::I64(values.to_vec()), &[values.len()], Storage::Plain);
     };
     int("PartOffsets", parts);
     int("NumberOfParts", &[1, 1, 1]);

@@ -2,7 +2,7 @@
 
 use crate::base::{Csr, Error, Result, VertexId};
 use crate::io::format::{Compression, WriteOptions, Written};
-use crate::io::hdf::{Attribute, Node, Packing};
+use crate::io::hdf::{Attribute, Node, Storage};
 use crate::io::labels::label_fields;
 use crate::io::polygonal::{kind_in_section, section_of};
 use crate::io::vtkhdf::SECTIONS;
@@ -12,7 +12,7 @@ use crate::mesh::{CellKind, Cells, Field, Mesh, Values, unused_name};
 const VERSIONS: [[i64; 2]; 2] = [[2, 0], [2, 5]];
 
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
-    let packing = packing(options)?;
+    let storage = storage(options)?;
     let mut lost = Vec::new();
     let mut root = Node::new("VTKHDF");
     let sections = sections_of(&mesh.cells);
@@ -23,16 +23,16 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
         Attribute::Text(if sections.is_some() { "PolyData" } else { "UnstructuredGrid" }.into()),
     );
     let points = Values::F64(mesh.points.as_flattened().to_vec());
-    root.array("Points", points, &[mesh.points.len(), 3], packing);
+    root.array("Points", points, &[mesh.points.len(), 3], storage);
     count(&mut root, "NumberOfPoints", mesh.points.len());
     match sections {
         Some(sections) => {
             SECTIONS
                 .iter()
                 .zip(&sections)
-                .for_each(|(name, lists)| root.group(section(name, lists, packing)));
+                .for_each(|(name, lists)| root.group(section(name, lists, storage)));
         }
-        None => grid(&mut root, &mesh.cells, packing),
+        None => grid(&mut root, &mesh.cells, storage),
     }
     let (label_cells, label_names) = label_fields(mesh);
     for (name, own, labels) in [
@@ -40,17 +40,17 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
         ("CellData", &mesh.cell_data, label_cells),
         ("FieldData", &mesh.field_data, label_names),
     ] {
-        root.group(arrays(name, own.iter().chain(&labels), packing, &mut lost));
+        root.group(arrays(name, own.iter().chain(&labels), storage, &mut lost));
     }
     let mut file = Node::new("");
     file.group(root);
     Ok(Written { lost, ..Written::one(file.into_file()?) })
 }
 
-pub(super) fn packing(options: &WriteOptions) -> Result<Packing> {
+pub(super) fn storage(options: &WriteOptions) -> Result<Storage> {
     match options.compression {
-        Compression::None => Ok(Packing::Growing),
-        Compression::Zlib => Ok(Packing::Zlib),
+        Compression::None => Ok(Storage::Growing),
+        Compression::Zlib => Ok(Storage::Zlib),
         Compression::Lz4 | Compression::Lzma => {
             Err(Error::options("VTKHDF is not packed by lz4 or lzma: readers would need a plugin of HDF5")
                 .remedy("choose zlib or none"))
@@ -59,14 +59,14 @@ pub(super) fn packing(options: &WriteOptions) -> Result<Packing> {
 }
 
 fn count(group: &mut Node, name: &str, n: usize) {
-    group.array(name, Values::I64(vec![n as i64]), &[1], Packing::Plain);
+    group.array(name, Values::I64(vec![n as i64]), &[1], Storage::Plain);
 }
 
 /// Writes ids as 64-bit numbers, as VTK does.
-fn ids(group: &mut Node, name: &str, ids: impl Iterator<Item = u32>, packing: Packing) {
+fn ids(group: &mut Node, name: &str, ids: impl Iterator<Item = u32>, storage: Storage) {
     let ids: Vec<i64> = ids.map(i64::from).collect();
     let n = ids.len();
-    group.array(name, Values::I64(ids), &[n], packing);
+    group.array(name, Values::I64(ids), &[n], storage);
 }
 
 /// The lists of polygonal data if they preserve all cells and their order; otherwise `None`, and the mesh is
@@ -83,33 +83,33 @@ fn sections_of(cells: &Cells) -> Option<[Csr<VertexId>; 4]> {
     cells.kinds().iter().any(|kind| kind.dim() == Some(2)).then_some(lists)
 }
 
-fn section(name: &str, lists: &Csr<VertexId>, packing: Packing) -> Node {
+fn section(name: &str, lists: &Csr<VertexId>, storage: Storage) -> Node {
     let mut group = Node::new(name);
-    connectivity(&mut group, lists, packing);
+    connectivity(&mut group, lists, storage);
     group
 }
 
 /// Writes the number of cells, their offsets and their vertices.
-fn connectivity(group: &mut Node, lists: &Csr<VertexId>, packing: Packing) {
+fn connectivity(group: &mut Node, lists: &Csr<VertexId>, storage: Storage) {
     count(group, "NumberOfCells", lists.len());
     count(group, "NumberOfConnectivityIds", lists.items().len());
-    starts(group, "Offsets", lists, packing);
-    ids(group, "Connectivity", lists.items().iter().map(|v| v.0), packing);
+    starts(group, "Offsets", lists, storage);
+    ids(group, "Connectivity", lists.items().iter().map(|v| v.0), storage);
 }
 
 /// Writes the start of each list, and the end of the last.
-fn starts<T>(group: &mut Node, name: &str, lists: &Csr<T>, packing: Packing) {
+fn starts<T>(group: &mut Node, name: &str, lists: &Csr<T>, storage: Storage) {
     let ends = lists.iter().scan(0, |end, list| {
         *end += list.len() as u32;
         Some(*end)
     });
-    ids(group, name, std::iter::once(0).chain(ends), packing);
+    ids(group, name, std::iter::once(0).chain(ends), storage);
 }
 
-fn grid(root: &mut Node, cells: &Cells, packing: Packing) {
-    connectivity(root, cells.connectivity(), packing);
+fn grid(root: &mut Node, cells: &Cells, storage: Storage) {
+    connectivity(root, cells.connectivity(), storage);
     let kinds: Vec<u8> = cells.kinds().iter().map(|kind| kind.0).collect();
-    root.array("Types", Values::U8(kinds), &[cells.len()], packing);
+    root.array("Types", Values::U8(kinds), &[cells.len()], storage);
     if cells.polyhedron_faces().is_empty() {
         return;
     }
@@ -124,16 +124,16 @@ fn grid(root: &mut Node, cells: &Cells, packing: Packing) {
     count(root, "NumberOfFaces", corners.len());
     count(root, "NumberOfFaceConnectivityIds", corners.items().len());
     count(root, "NumberOfPolyhedronToFaceIds", of_cells.items().len());
-    starts(root, "FaceOffsets", &corners, packing);
-    ids(root, "FaceConnectivity", corners.items().iter().copied(), packing);
-    starts(root, "PolyhedronOffsets", &of_cells, packing);
-    ids(root, "PolyhedronToFaces", of_cells.items().iter().copied(), packing);
+    starts(root, "FaceOffsets", &corners, storage);
+    ids(root, "FaceConnectivity", corners.items().iter().copied(), storage);
+    starts(root, "PolyhedronOffsets", &of_cells, storage);
+    ids(root, "PolyhedronToFaces", of_cells.items().iter().copied(), storage);
 }
 
 fn arrays<'f>(
     name: &str,
     fields: impl Iterator<Item = &'f Field>,
-    packing: Packing,
+    storage: Storage,
     lost: &mut Vec<String>,
 ) -> Node {
     let mut group = Node::new(name);
@@ -148,7 +148,7 @@ fn arrays<'f>(
         }
         let shape = [field.n_rows(), field.components];
         let shape = if field.components == 1 { &shape[..1] } else { &shape };
-        group.array(&name, field.values.clone(), shape, packing);
+        group.array(&name, field.values.clone(), shape, storage);
         taken.push(name);
     }
     group

@@ -39,7 +39,7 @@ pub(super) fn by_vtk_name(name: &str) -> Result<Compression> {
 
 /// Upper bound on the size of a decompressed block of `n` bytes, which exposes wrong sizes in a file. The
 /// ratios are those of the formats (zlib 1032, lz4 255); xz has no bound, and reaches about 7000 on zeros.
-pub(super) fn largest_output(compression: Compression, n: usize) -> usize {
+pub(super) fn max_output(compression: Compression, n: usize) -> usize {
     let ratio = match compression {
         Compression::None => 1,
         Compression::Zlib => 1032,
@@ -50,12 +50,12 @@ pub(super) fn largest_output(compression: Compression, n: usize) -> usize {
 }
 
 /// Decompresses blocks, reusing its tables.
-pub(super) struct Unpacker {
+pub(super) struct Decompressor {
     compression: Compression,
     zlib: Option<Decompress>,
 }
 
-impl Unpacker {
+impl Decompressor {
     pub(super) fn new(compression: Compression) -> Self {
         let zlib = (compression == Compression::Zlib).then(|| Decompress::new(true));
         Self { compression, zlib }
@@ -96,12 +96,12 @@ fn unpack_xz(block: &[u8], out: &mut [u8]) -> Result<usize, String> {
 }
 
 /// Compresses blocks, reusing its tables.
-pub(super) struct Packer {
+pub(super) struct Compressor {
     compression: Compression,
     zlib: Option<Compress>,
 }
 
-impl Packer {
+impl Compressor {
     pub(super) fn new(compression: Compression) -> Self {
         let level = flate2::Compression::new(ZLIB_LEVEL);
         let zlib = (compression == Compression::Zlib).then(|| Compress::new(level, true));
@@ -165,17 +165,17 @@ mod tests {
         let block: Vec<u8> = (0..5000u32).flat_map(|i| (i % 97).to_le_bytes()).collect();
         for compression in [Compression::Zlib, Compression::Lz4, Compression::Lzma] {
             let mut packed = Vec::new();
-            let mut packer = Packer::new(compression);
-            packer.pack(&block, &mut packed).unwrap();
+            let mut compressor = Compressor::new(compression);
+            compressor.pack(&block, &mut packed).unwrap();
             assert!(packed.len() < block.len());
-            assert!(largest_output(compression, packed.len()) >= block.len());
-            let mut unpacker = Unpacker::new(compression);
+            assert!(max_output(compression, packed.len()) >= block.len());
+            let mut decompressor = Decompressor::new(compression);
             let mut out = vec![0; block.len()];
-            unpacker.unpack(&packed, &mut out).unwrap();
+            decompressor.unpack(&packed, &mut out).unwrap();
             assert_eq!(out, block);
-            assert!(unpacker.unpack(&packed, &mut out[1..]).is_err());
-            assert!(unpacker.unpack(&packed, &mut vec![0; block.len() + 1]).is_err());
-            assert!(unpacker.unpack(&packed[..packed.len() / 2], &mut out).is_err());
+            assert!(decompressor.unpack(&packed, &mut out[1..]).is_err());
+            assert!(decompressor.unpack(&packed, &mut vec![0; block.len() + 1]).is_err());
+            assert!(decompressor.unpack(&packed[..packed.len() / 2], &mut out).is_err());
         }
     }
 }

@@ -44,7 +44,7 @@ impl<'a> Element<'a> {
     }
 
     /// A required count.
-    pub(super) fn needed_count(&self, name: &str) -> Result<usize> {
+    pub(super) fn required_count(&self, name: &str) -> Result<usize> {
         self.count(name)?
             .ok_or_else(|| Error::input(format!("the attribute {name} is missing")).at(self.place()))
     }
@@ -106,8 +106,8 @@ impl<'a> Parser<'a> {
         loop {
             let start = self.reader.buffer_position() as usize;
             match self.reader.read_event() {
-                Err(e) => return Err(self.fault(e.to_string())),
-                Ok(Event::Eof) => return Err(self.fault("the file ends before its last element does".into())),
+                Err(e) => return Err(self.error(e.to_string())),
+                Ok(Event::Eof) => return Err(self.error("the file ends before its last element does".into())),
                 Ok(Event::Start(tag)) => {
                     let element = self.element(&tag, start)?;
                     if element.name == "AppendedData" {
@@ -115,7 +115,7 @@ impl<'a> Parser<'a> {
                         break;
                     }
                     if self.open.len() == MAX_DEPTH {
-                        return Err(self.fault(format!("elements nest more than {MAX_DEPTH} deep")));
+                        return Err(self.error(format!("elements nest more than {MAX_DEPTH} deep")));
                     }
                     self.open.push(element);
                 }
@@ -136,7 +136,7 @@ impl<'a> Parser<'a> {
                 Ok(Event::End(_)) => {
                     // The parser has checked that the end tag matches the open element.
                     let Some(element) = self.open.pop() else {
-                        return Err(self.fault("an end without a start".into()));
+                        return Err(self.error("an end without a start".into()));
                     };
                     match self.open.last_mut() {
                         Some(parent) => parent.children.push(element),
@@ -148,7 +148,7 @@ impl<'a> Parser<'a> {
         }
         let root = std::mem::take(&mut self.open).into_iter().next();
         root.map(|root| Document { root, appended })
-            .ok_or_else(|| self.fault("AppendedData outside VTKFile".into()))
+            .ok_or_else(|| self.error("AppendedData outside VTKFile".into()))
     }
 
     fn element(&mut self, tag: &BytesStart<'_>, start: usize) -> Result<Element<'a>> {
@@ -156,7 +156,7 @@ impl<'a> Parser<'a> {
         let name = tag.name().as_ref().to_owned();
         let mut attributes = Vec::new();
         for attribute in tag.attributes() {
-            let attribute = attribute.map_err(|e| self.fault(format!("in <{name}>: {e}")))?;
+            let attribute = attribute.map_err(|e| self.error(format!("in <{name}>: {e}")))?;
             // VTK writes names without escapes, so an ampersand may stand for itself.
             let value =
                 quick_xml::escape::unescape(&attribute.value).unwrap_or(Cow::Borrowed(&attribute.value));
@@ -192,7 +192,7 @@ impl<'a> Parser<'a> {
         self.line
     }
 
-    fn fault(&mut self, what: String) -> Error {
+    fn error(&mut self, what: String) -> Error {
         let line = self.line_at(self.reader.buffer_position() as usize);
         Error::input(format!("the XML cannot be read: {what}"))
             .at(format!("line {line}"))

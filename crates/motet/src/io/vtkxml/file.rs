@@ -5,8 +5,8 @@ use std::rc::Rc;
 
 use crate::base::{Error, Point, Result};
 use crate::io::format::{Compression, Notes};
-use crate::io::latin::latin_or_utf8;
-use crate::io::room::Room;
+use crate::io::latin::decode_utf8_or_latin1;
+use crate::io::memory_budget::MemoryBudget;
 use crate::io::scalar::{ByteOrder, Scalar, extend_ids, to_ids, to_points};
 use crate::io::vtkxml::codec::by_vtk_name;
 use crate::io::vtkxml::document::{Document, Element};
@@ -24,16 +24,16 @@ pub(super) struct File<'a> {
     layout: Layout,
     /// Start offsets of arrays in the appended data, ascending.
     starts: Vec<usize>,
-    room: Rc<Room>,
+    budget: Rc<MemoryBudget>,
 }
 
 impl<'a> File<'a> {
     pub(super) fn open(bytes: &'a [u8], notes: &'a Notes) -> Result<Self> {
-        Self::open_within(bytes, notes, Rc::new(Room::of(bytes.len() as u64)))
+        Self::open_within(bytes, notes, Rc::new(MemoryBudget::of(bytes.len() as u64)))
     }
 
     /// Opens one of the files that make up a mesh, which share a memory budget.
-    pub(super) fn open_within(bytes: &'a [u8], notes: &'a Notes, room: Rc<Room>) -> Result<Self> {
+    pub(super) fn open_within(bytes: &'a [u8], notes: &'a Notes, budget: Rc<MemoryBudget>) -> Result<Self> {
         let document = Document::parse(bytes)?;
         let root = &document.root;
         if root.name != "VTKFile" {
@@ -45,13 +45,13 @@ impl<'a> File<'a> {
         let mut starts = Vec::new();
         collect_starts(root, &mut starts);
         starts.sort_unstable();
-        Ok(Self { document, notes, tail: None, layout, starts, room })
+        Ok(Self { document, notes, tail: None, layout, starts, budget })
     }
 
     /// Opens a file whose appended data are read array by array.
     pub(super) fn open_tail(tail: &'a Tail, notes: &'a Notes) -> Result<Self> {
-        let room = Rc::new(Room::of((tail.head.len() + tail.len) as u64));
-        Ok(Self { tail: Some(tail), ..Self::open_within(&tail.head, notes, room)? })
+        let budget = Rc::new(MemoryBudget::of((tail.head.len() + tail.len) as u64));
+        Ok(Self { tail: Some(tail), ..Self::open_within(&tail.head, notes, budget)? })
     }
 
     /// The kind of data: `UnstructuredGrid`, `PolyData`, `Collection`, ...
@@ -88,7 +88,11 @@ impl<'a> File<'a> {
     }
 
     /// The array called `name`; an error if it is missing.
-    pub(super) fn needed_array<'s>(&'s self, element: &'s Element<'a>, name: &str) -> Result<Array<'s, 'a>> {
+    pub(super) fn required_array<'s>(
+        &'s self,
+        element: &'s Element<'a>,
+        name: &str,
+    ) -> Result<Array<'s, 'a>> {
         self.array(element, name)?.ok_or_else(|| {
             Error::input(format!("the array {name} is missing"))
                 .at(element.place())
@@ -193,15 +197,15 @@ impl<'s, 'a> Array<'s, 'a> {
 
     /// The values as ids of points or cells, or as indices in a list of ids.
     pub(super) fn ids(&self, n_rows: Option<usize>) -> Result<Vec<u32>> {
-        self.ids_behind(&[], n_rows)
+        self.ids_after(&[], n_rows)
     }
 
     /// The start of each of `n` lists and the end of the last, computed from the end of each list.
     pub(super) fn offsets(&self, n: usize) -> Result<Vec<u32>> {
-        self.ids_behind(&[0], Some(n))
+        self.ids_after(&[0], Some(n))
     }
 
-    fn ids_behind(&self, first: &[u32], n_rows: Option<usize>) -> Result<Vec<u32>> {
+    fn ids_after(&self, first: &[u32], n_rows: Option<usize>) -> Result<Vec<u32>> {
         if let Some(ids) = self.fast_ids(first, n_rows).map_err(|e| e.at(self.element.place()))? {
             return Ok(ids);
         }
@@ -274,7 +278,7 @@ impl<'s, 'a> Array<'s, 'a> {
     fn texts(&self, bytes: &[u8], expected: Option<usize>) -> Result<Values> {
         // A single byte may end a text, and each text takes memory of its own.
         let n = bytes.iter().filter(|&&b| b == 0).count() as u64;
-        self.file.room.take(n.saturating_mul(2 * size_of::<String>() as u64))?;
+        self.file.budget.take(n.saturating_mul(2 * size_of::<String>() as u64))?;
         split_texts(bytes, expected)
     }
 
@@ -288,15 +292,15 @@ impl<'s, 'a> Array<'s, 'a> {
 
     /// The data, whose decompressed size has been charged to the memory budget.
     fn content(&self) -> Result<Content<'s>> {
-        let content = self.packed()?;
+        let content = self.content_unchecked()?;
         if let Content::Binary(payload) = &content {
             let each = if self.kind == Type::Bit { 8 } else { 1 };
-            self.file.room.take((payload.len() as u64).saturating_mul(each))?;
+            self.file.budget.take((payload.len() as u64).saturating_mul(each))?;
         }
         Ok(content)
     }
 
-    fn packed(&self) -> Result<Content<'s>> {
+    fn content_unchecked(&self) -> Result<Content<'s>> {
         match self.element.attribute("format").unwrap_or("ascii") {
             "ascii" => std::str::from_utf8(self.element.text)
                 .map(Content::Ascii)
@@ -407,6 +411,6 @@ fn split_texts(bytes: &[u8], expected: Option<usize>) -> Result<Values> {
     }
     match expected {
         Some(expected) if expected != parts.len() => Err(wrong_count(parts.len(), expected)),
-        _ => Ok(Values::Text(parts.into_iter().map(latin_or_utf8).collect())),
+        _ => Ok(Values::Text(parts.into_iter().map(decode_utf8_or_latin1).collect())),
     }
 }

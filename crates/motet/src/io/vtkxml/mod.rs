@@ -68,7 +68,7 @@ pub(super) const OTHERS: Format = Format {
 /// Reads the kind of mesh that the file declares.
 fn read(input: &Input<'_>) -> Result<Mesh> {
     let file = file::File::open(input.bytes, input.notes)?;
-    if parts::is_of_parts(file.kind()) { parts::read(&file, input) } else { read_file(&file) }
+    if parts::refers_to_parts(file.kind()) { parts::read(&file, input) } else { read_file(&file) }
 }
 
 /// Reads a mesh, like [`read`], from a file whose appended data are read array by array.

@@ -6,11 +6,11 @@ use std::rc::Rc;
 
 use crate::base::{Error, Result};
 use crate::io::format::Input;
-use crate::io::labels::take_label_names;
-use crate::io::room::Room;
+use crate::io::labels::extract_label_names;
+use crate::io::memory_budget::MemoryBudget;
 use crate::io::vtkxml::document::Element;
 use crate::io::vtkxml::file::File;
-use crate::io::vtkxml::pieces::{Whole, common_arrays};
+use crate::io::vtkxml::pieces::{JoinedPieces, common_arrays};
 use crate::io::vtkxml::{vtp, vtu};
 use crate::io::weld::weld;
 use crate::mesh::{CellKind, Field, Labels, Mesh};
@@ -20,11 +20,11 @@ use crate::mesh::{CellKind, Field, Labels, Mesh};
 const MAX_DEPTH: usize = 4;
 
 /// Whether a kind of file refers to others.
-pub(super) fn is_of_parts(kind: &str) -> bool {
-    matches!(kind, "PUnstructuredGrid" | "PPolyData") || is_of_blocks(kind)
+pub(super) fn refers_to_parts(kind: &str) -> bool {
+    matches!(kind, "PUnstructuredGrid" | "PPolyData") || is_multi_block(kind)
 }
 
-fn is_of_blocks(kind: &str) -> bool {
+fn is_multi_block(kind: &str) -> bool {
     matches!(
         kind,
         "vtkMultiBlockDataSet"
@@ -42,26 +42,26 @@ struct Part {
 
 struct Reader<'a> {
     input: &'a Input<'a>,
-    room: Rc<Room>,
+    budget: Rc<MemoryBudget>,
 }
 
 /// Reads all files that `file` refers to, in its order, and joins them.
 pub(super) fn read(file: &File<'_>, input: &Input<'_>) -> Result<Mesh> {
-    let reader = Reader { input, room: Rc::new(Room::of(input.bytes.len() as u64)) };
+    let reader = Reader { input, budget: Rc::new(MemoryBudget::of(input.bytes.len() as u64)) };
     let mut parts = Vec::new();
     reader.parts(file, input.path, 0, &mut parts)?;
-    let is_of_blocks = is_of_blocks(file.kind());
-    if is_of_blocks {
+    let is_multi_block = is_multi_block(file.kind());
+    if is_multi_block {
         label_blocks(&mut parts);
         common_arrays(parts.iter_mut().map(|part| &mut part.mesh), input.notes);
     }
-    let mut whole = Whole::default();
+    let mut whole = JoinedPieces::default();
     for part in parts {
         whole.add(part.mesh).map_err(|e| e.at(part.name))?;
     }
     let (mut mesh, starts) = whole.into_parts();
     weld(&mut mesh, &starts, input.notes);
-    take_label_names(&mut mesh);
+    extract_label_names(&mut mesh);
     Ok(mesh)
 }
 
@@ -88,13 +88,13 @@ impl Reader<'_> {
             Error::io(path, e)
                 .remedy(format!("{} names it: keep its files together", self.input.path.display()))
         })?;
-        self.room.add_file(&path.to_string_lossy(), bytes.len() as u64);
-        self.room.take(bytes.len() as u64)?;
-        let file = File::open_within(&bytes, self.input.notes, self.room.clone())?;
+        self.budget.add_file(&path.to_string_lossy(), bytes.len() as u64);
+        self.budget.take(bytes.len() as u64)?;
+        let file = File::open_within(&bytes, self.input.notes, self.budget.clone())?;
         let mesh = match file.kind() {
             "UnstructuredGrid" => vtu::read(&file)?,
             "PolyData" => vtp::read(&file)?,
-            kind if is_of_parts(kind) => return self.parts(&file, path, depth + 1, parts),
+            kind if refers_to_parts(kind) => return self.parts(&file, path, depth + 1, parts),
             other => {
                 self.input.notes.add(format!(
                     "{}: {other} has no cells that motet knows, and is left out",

@@ -15,7 +15,7 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use crate::base::{Error, Result};
 use crate::io::Compression;
 use crate::io::scalar::ByteOrder;
-use crate::io::vtkxml::codec::{Unpacker, largest_output};
+use crate::io::vtkxml::codec::{Decompressor, max_output};
 use crate::io::vtkxml::tail::Tail;
 
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -87,13 +87,13 @@ impl<'a> Payload<'a> {
 
     fn open_plain(bytes: Cow<'a, [u8]>, layout: Layout) -> Result<Self> {
         let len = Words { bytes: &bytes, layout }.get(0)?;
-        let there = bytes.len() - layout.word;
-        Self::plain(Source::Memory(bytes), len, there, layout)
+        let available = bytes.len() - layout.word;
+        Self::plain(Source::Memory(bytes), len, available, layout)
     }
 
-    fn plain(bytes: Source<'a>, len: usize, there: usize, layout: Layout) -> Result<Self> {
-        if len > there {
-            return Err(cut_off(format!("its header promises {len} bytes, {there} are there")));
+    fn plain(bytes: Source<'a>, len: usize, available: usize, layout: Layout) -> Result<Self> {
+        if len > available {
+            return Err(cut_off(format!("its header promises {len} bytes, {available} are there")));
         }
         Ok(Self {
             bytes,
@@ -134,7 +134,7 @@ impl<'a> Payload<'a> {
             if size > left {
                 return Err(cut_off(format!("block {i} of {n_blocks} has {size} bytes, {left} are there")));
             }
-            if unpacked > largest_output(layout.compression, size) {
+            if unpacked > max_output(layout.compression, size) {
                 return Err(damaged(format!("block {i} of {n_blocks}: {size} bytes cannot hold {unpacked}")));
             }
             left -= size;
@@ -165,10 +165,10 @@ impl<'a> Payload<'a> {
             out.copy_from_slice(&data[..out.len()]);
             return Ok(());
         }
-        let mut unpacker = Unpacker::new(self.compression);
+        let mut decompressor = Decompressor::new(self.compression);
         let mut from = 0;
         for ((i, &size), out) in self.packed.iter().enumerate().zip(out.chunks_mut(self.block)) {
-            self.unpack(&mut unpacker, i, &data[from..from + size], out)?;
+            self.unpack(&mut decompressor, i, &data[from..from + size], out)?;
             from += size;
         }
         Ok(())
@@ -189,12 +189,12 @@ impl<'a> Payload<'a> {
             each(&bytes[self.start..self.start + self.len]);
             return Ok(());
         }
-        let mut unpacker = Unpacker::new(self.compression);
+        let mut decompressor = Decompressor::new(self.compression);
         let mut unpacked = vec![0; self.block.min(self.len)];
         let (mut from, mut left) = (self.start, self.len);
         for (i, &size) in self.packed.iter().enumerate() {
             let out = &mut unpacked[..self.block.min(left)];
-            self.unpack(&mut unpacker, i, &bytes[from..from + size], out)?;
+            self.unpack(&mut decompressor, i, &bytes[from..from + size], out)?;
             each(out);
             from += size;
             left -= out.len();
@@ -202,9 +202,9 @@ impl<'a> Payload<'a> {
         Ok(())
     }
 
-    fn unpack(&self, unpacker: &mut Unpacker, i: usize, packed: &[u8], out: &mut [u8]) -> Result<()> {
+    fn unpack(&self, decompressor: &mut Decompressor, i: usize, packed: &[u8], out: &mut [u8]) -> Result<()> {
         let n = self.packed.len();
-        unpacker.unpack(packed, out).map_err(|what| damaged(format!("block {i} of {n}: {what}")))
+        decompressor.unpack(packed, out).map_err(|what| damaged(format!("block {i} of {n}: {what}")))
     }
 
     /// All bytes of the array.

@@ -2,7 +2,7 @@
 
 use crate::base::{Csr, Error, Result, VertexId};
 use crate::io::format::Notes;
-use crate::io::labels::take_label_names;
+use crate::io::labels::extract_label_names;
 use crate::io::scalar::append;
 use crate::io::vtkxml::document::Element;
 use crate::io::vtkxml::file::File;
@@ -16,7 +16,7 @@ pub(super) fn read_pieces<'a>(
     read_piece: impl Fn(&File<'a>, &Element<'a>) -> Result<Mesh>,
 ) -> Result<Mesh> {
     let data_set = file.data_set()?;
-    let mut whole = Whole::default();
+    let mut whole = JoinedPieces::default();
     let mut field_data = file.fields(data_set.child("FieldData"), None)?;
     for element in data_set.children_named("Piece") {
         field_data.extend(file.fields(element.child("FieldData"), None)?);
@@ -28,18 +28,18 @@ pub(super) fn read_pieces<'a>(
         weld(&mut mesh, &starts, file.notes);
     }
     mesh.field_data = field_data;
-    take_label_names(&mut mesh);
+    extract_label_names(&mut mesh);
     Ok(mesh)
 }
 
 /// The pieces joined so far, and the first point of each.
 #[derive(Default)]
-pub(super) struct Whole {
+pub(super) struct JoinedPieces {
     mesh: Option<Mesh>,
     starts: Vec<usize>,
 }
 
-impl Whole {
+impl JoinedPieces {
     /// Adds a piece; the arrays of an empty piece are ignored.
     pub(super) fn add(&mut self, piece: Mesh) -> Result<()> {
         let is_empty = |mesh: &Mesh| mesh.points.is_empty() && mesh.cells.is_empty();

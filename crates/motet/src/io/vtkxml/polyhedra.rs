@@ -24,33 +24,33 @@ pub(super) fn read(file: &File<'_>, cells: &Element<'_>, kinds: &[CellKind]) -> 
 }
 
 fn read_old(file: &File<'_>, cells: &Element<'_>, kinds: &[CellKind]) -> Result<Vec<Csr<VertexId>>> {
-    let stream = file.needed_array(cells, "faces")?.ids(None)?;
+    let stream = file.required_array(cells, "faces")?.ids(None)?;
     let ends =
-        file.needed_array(cells, "faceoffsets")?.values(Some(kinds.len()))?.to_i64().unwrap_or_default();
+        file.required_array(cells, "faceoffsets")?.values(Some(kinds.len()))?.to_i64().unwrap_or_default();
     let mut rest = stream.as_slice();
     let mut all = Vec::new();
     for (cell, _) in kinds.iter().enumerate().filter(|(_, k)| **k == CellKind::POLYHEDRON) {
         let faces = next_polyhedron(&mut rest).filter(|_| {
             ends.get(cell).is_some_and(|&end| usize::try_from(end) == Ok(stream.len() - rest.len()))
         });
-        all.push(faces.ok_or_else(|| misfit(cell))?);
+        all.push(faces.ok_or_else(|| inconsistent_faces(cell))?);
     }
     Ok(all)
 }
 
 fn read_new(file: &File<'_>, cells: &Element<'_>, kinds: &[CellKind]) -> Result<Vec<Csr<VertexId>>> {
-    let ids = |name: &str| file.needed_array(cells, name)?.ids(None);
+    let ids = |name: &str| file.required_array(cells, name)?.ids(None);
     let (vertices, face_ends) = (ids("face_connectivity")?, ids("face_offsets")?);
     let (faces, cell_ends) = (ids("polyhedron_to_faces")?, ids("polyhedron_offsets")?);
     let mut all = Vec::new();
     for (cell, _) in kinds.iter().enumerate().filter(|(_, k)| **k == CellKind::POLYHEDRON) {
-        let faces = list(&cell_ends, &faces, cell).ok_or_else(|| misfit(cell))?;
+        let faces = list(&cell_ends, &faces, cell).ok_or_else(|| inconsistent_faces(cell))?;
         let mut of_cell = Csr::default();
         for &face in faces {
-            let face = list(&face_ends, &vertices, face as usize).ok_or_else(|| misfit(cell))?;
+            let face = list(&face_ends, &vertices, face as usize).ok_or_else(|| inconsistent_faces(cell))?;
             // A face may be used repeatedly, so that the file does not bound the sum.
             if of_cell.items().len() + face.len() > vertices.len() {
-                return Err(misfit(cell));
+                return Err(inconsistent_faces(cell));
             }
             of_cell.push(face.iter().map(|&v| VertexId(v)));
         }
@@ -65,7 +65,7 @@ fn list<'a>(ends: &[u32], items: &'a [u32], i: usize) -> Option<&'a [u32]> {
     items.get(start as usize..*ends.get(i)? as usize)
 }
 
-fn misfit(cell: usize) -> Error {
+fn inconsistent_faces(cell: usize) -> Error {
     Error::input("the arrays of faces do not fit together at this polyhedron")
         .at(format!("cell {cell}"))
         .remedy("the file is damaged: write it again")

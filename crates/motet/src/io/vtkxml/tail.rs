@@ -11,9 +11,9 @@ use crate::base::{Error, Result};
 use crate::io::vtkxml::document::Document;
 
 /// Files below this size are read as a whole.
-const SMALL: u64 = 256 << 10;
+const MIN_TAIL_FILE_BYTES: u64 = 256 << 10;
 /// Maximum size of the elements before the appended data, which are usually much shorter.
-const LONGEST_HEAD: u64 = 1 << 20;
+const MAX_HEAD_BYTES: u64 = 1 << 20;
 
 /// A file whose head is in memory and whose raw appended data are not.
 #[derive(Debug)]
@@ -31,9 +31,9 @@ impl Tail {
     pub(in crate::io) fn of(path: &Path) -> Option<Self> {
         path.extension().filter(|e| e.eq_ignore_ascii_case("vtu") || e.eq_ignore_ascii_case("vtp"))?;
         let mut file = File::open(path).ok()?;
-        let size = file.metadata().ok().filter(|m| m.is_file() && m.len() >= SMALL)?.len();
+        let size = file.metadata().ok().filter(|m| m.is_file() && m.len() >= MIN_TAIL_FILE_BYTES)?.len();
         let mut head = Vec::new();
-        (&mut file).take(LONGEST_HEAD).read_to_end(&mut head).ok()?;
+        (&mut file).take(MAX_HEAD_BYTES).read_to_end(&mut head).ok()?;
         let start = appended_start(&head)?;
         head.truncate(start);
         head.shrink_to_fit();

@@ -19,7 +19,7 @@ pub(super) fn read(file: &File<'_>) -> Result<Mesh> {
 }
 
 fn read_piece<'a>(file: &File<'a>, piece: &Element<'a>) -> Result<Mesh> {
-    let n_points = piece.needed_count("NumberOfPoints")?;
+    let n_points = piece.required_count("NumberOfPoints")?;
     let cells = read_cells(file, piece)?;
     Ok(Mesh {
         points: read_points(file, piece, n_points)?,
@@ -42,8 +42,8 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>) -> Result<Cells> {
                 .at(piece.place())
                 .remedy("the file is damaged: write it again"));
         };
-        let offsets = file.needed_array(element, "offsets")?.offsets(n)?;
-        let ids = file.needed_array(element, "connectivity")?.ids(None)?;
+        let offsets = file.required_array(element, "offsets")?.offsets(n)?;
+        let ids = file.required_array(element, "connectivity")?.ids(None)?;
         let n_ids = ids.len();
         if cells.connectivity().items().len() + n_ids > VertexId::MAX_COUNT {
             return Err(Error::input("more vertex ids than a mesh can hold").at(element.place()));

@@ -6,7 +6,7 @@ use crate::base::{Error, Result, VertexId};
 use crate::io::format::{WriteOptions, Written};
 use crate::io::labels::label_fields;
 use crate::io::polyhedra::cells_with_polyhedra;
-use crate::io::surplus::trim;
+use crate::io::surplus_points::trim;
 use crate::io::vtkxml::document::Element;
 use crate::io::vtkxml::file::File;
 use crate::io::vtkxml::pieces::read_pieces;
@@ -21,8 +21,8 @@ pub(super) fn read(file: &File<'_>) -> Result<Mesh> {
 }
 
 fn read_piece<'a>(file: &File<'a>, piece: &Element<'a>) -> Result<Mesh> {
-    let n_points = piece.needed_count("NumberOfPoints")?;
-    let n_cells = piece.needed_count("NumberOfCells")?;
+    let n_points = piece.required_count("NumberOfPoints")?;
+    let n_cells = piece.required_count("NumberOfCells")?;
     Ok(Mesh {
         points: read_points(file, piece, n_points)?,
         cells: read_cells(file, piece, n_cells)?,
@@ -57,8 +57,8 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>, n: usize) -> Result<Cells> {
             .remedy("the file is damaged: write it again"));
     };
     let kinds = read_kinds(file, element, n)?;
-    let mut offsets = file.needed_array(element, "offsets")?.offsets(n)?;
-    let ids = file.needed_array(element, "connectivity")?.ids(None)?;
+    let mut offsets = file.required_array(element, "offsets")?.offsets(n)?;
+    let ids = file.required_array(element, "connectivity")?.ids(None)?;
     let mut vertices = bytemuck::allocation::cast_vec::<u32, VertexId>(ids);
     trim(&kinds, &mut offsets, &mut vertices, file.notes);
     if !kinds.contains(&CellKind::POLYHEDRON) {
@@ -69,7 +69,7 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>, n: usize) -> Result<Cells> {
 }
 
 fn read_kinds(file: &File<'_>, element: &Element<'_>, n: usize) -> Result<Vec<CellKind>> {
-    let array = file.needed_array(element, "types")?;
+    let array = file.required_array(element, "types")?;
     let numbers = match array.values(Some(n))? {
         Values::U8(numbers) => Some(numbers),
         other => other.to_i64().and_then(|wide| wide.into_iter().map(|k| u8::try_from(k).ok()).collect()),

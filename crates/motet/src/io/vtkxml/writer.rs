@@ -9,7 +9,7 @@ use base64::engine::general_purpose::STANDARD;
 use crate::base::{Csr, Error, ErrorKind, Point, Result, VertexId};
 use crate::io::format::{Compression, Encoding, WriteOptions};
 use crate::io::scalar::{native_bytes, write_lines, write_text};
-use crate::io::vtkxml::codec::{Packer, vtk_name};
+use crate::io::vtkxml::codec::{Compressor, vtk_name};
 use crate::mesh::{Field, Values};
 
 /// Size of blocks before compression: VTK's own choice, and the size of zlib's window.
@@ -76,10 +76,10 @@ impl Data<'_> {
     }
 
     /// Writes all bytes to `sink`, in as few calls as possible.
-    fn give_to(&self, sink: &mut dyn Write) -> Result<()> {
+    fn write_to(&self, sink: &mut dyn Write) -> Result<()> {
         match self.bytes() {
-            Some(bytes) => give(sink, &bytes),
-            None => self.blocks(|_, block| give(sink, block)),
+            Some(bytes) => write_all(sink, &bytes),
+            None => self.blocks(|_, block| write_all(sink, block)),
         }
     }
 
@@ -92,7 +92,7 @@ impl Data<'_> {
     }
 }
 
-fn give(sink: &mut dyn Write, bytes: &[u8]) -> Result<()> {
+fn write_all(sink: &mut dyn Write, bytes: &[u8]) -> Result<()> {
     sink.write_all(bytes).map_err(|e| Error::new(ErrorKind::Output, format!("cannot be written: {e}")))
 }
 
@@ -102,7 +102,7 @@ pub(super) struct Writer<'a> {
     depth: usize,
     encoding: Encoding,
     compression: Compression,
-    packer: Packer,
+    compressor: Compressor,
     /// Arrays for the appended part: the position of their offset, and their data.
     appended: Vec<(usize, Data<'a>)>,
     /// What could not be written unchanged.
@@ -122,7 +122,7 @@ impl<'a> Writer<'a> {
             depth: 0,
             encoding: options.encoding,
             compression,
-            packer: Packer::new(compression),
+            compressor: Compressor::new(compression),
             appended: Vec::new(),
             lost: Vec::new(),
         };
@@ -201,7 +201,7 @@ impl<'a> Writer<'a> {
 
     fn base64(&mut self, data: &Data<'_>) -> Result<()> {
         let mut raw = Vec::new();
-        let header = write_raw(&mut raw, data, self.compression, &mut self.packer)?;
+        let header = write_raw(&mut raw, data, self.compression, &mut self.compressor)?;
         // VTK decodes the header of compressed data separately, so it needs its own padding.
         let header = if self.compression == Compression::None { 0 } else { header };
         let text = STANDARD.encode(&raw[..header]) + &STANDARD.encode(&raw[header..]);
@@ -219,7 +219,7 @@ impl<'a> Writer<'a> {
         self.close(kind);
         let arrays = std::mem::take(&mut self.appended);
         let any_appended = !arrays.is_empty();
-        let mut unpacked = Vec::new();
+        let mut uncompressed = Vec::new();
         if any_appended {
             self.line("<AppendedData encoding=\"raw\">");
             self.out.push(b'_');
@@ -230,17 +230,17 @@ impl<'a> Writer<'a> {
                 self.out[offset_at..offset_at + offset.len()].copy_from_slice(offset.as_bytes());
                 if self.compression == Compression::None {
                     end += 8 + data.n_bytes();
-                    unpacked.push(data);
+                    uncompressed.push(data);
                 } else {
-                    write_raw(&mut self.out, &data, self.compression, &mut self.packer)?;
+                    write_raw(&mut self.out, &data, self.compression, &mut self.compressor)?;
                     end = self.out.len();
                 }
             }
         }
-        give(sink, &self.out)?;
-        for data in &unpacked {
-            give(sink, &(data.n_bytes() as u64).to_ne_bytes())?;
-            data.give_to(sink)?;
+        write_all(sink, &self.out)?;
+        for data in &uncompressed {
+            write_all(sink, &(data.n_bytes() as u64).to_ne_bytes())?;
+            data.write_to(sink)?;
         }
         self.out.clear();
         if any_appended {
@@ -248,7 +248,7 @@ impl<'a> Writer<'a> {
             self.line("</AppendedData>");
         }
         self.close("VTKFile");
-        give(sink, &self.out)?;
+        write_all(sink, &self.out)?;
         Ok(self.lost)
     }
 
@@ -281,7 +281,7 @@ fn write_raw(
     out: &mut Vec<u8>,
     data: &Data<'_>,
     compression: Compression,
-    packer: &mut Packer,
+    compressor: &mut Compressor,
 ) -> Result<usize> {
     let n_bytes = data.n_bytes();
     let start = out.len();
@@ -302,7 +302,7 @@ fn write_raw(
     let mut size_at = start + 3 * 8;
     data.blocks(|_, block| {
         let from = out.len();
-        packer.pack(block, out)?;
+        compressor.pack(block, out)?;
         let size = (out.len() - from) as u64;
         out[size_at..size_at + 8].copy_from_slice(&size.to_ne_bytes());
         size_at += 8;

@@ -7,13 +7,13 @@ use super::solution::attach;
 use super::source::is_medit;
 use crate::base::{Error, Result};
 use crate::io::format::{Input, Notes};
-use crate::io::reading::read_beside;
+use crate::io::reading::read_if_exists;
 use crate::mesh::Mesh;
 
 /// Reads a mesh, with the solution of the same name if there is one beside it.
 pub(super) fn read_mesh(input: &Input<'_>) -> Result<Mesh> {
     let mut mesh = Content::read(input.bytes, input.notes)?.into_mesh()?;
-    let Some((path, bytes)) = find_beside(input.path, "sol")? else { return Ok(mesh) };
+    let Some((path, bytes)) = find_companion(input.path, "sol")? else { return Ok(mesh) };
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     if !is_medit(&bytes) {
         input.notes.add(format!("{name} beside is passed over: it is no solution of Medit"));
@@ -33,12 +33,12 @@ pub(super) fn read_solution(input: &Input<'_>) -> Result<Mesh> {
         return Err(Error::input("there is no solution (SolAtVertices, SolAtTetrahedra, ...)")
             .remedy("the file is damaged, or no solution: get it again"));
     }
-    let (path, bytes) = find_beside(input.path, "mesh")?.ok_or_else(|| {
+    let (path, bytes) = find_companion(input.path, "mesh")?.ok_or_else(|| {
         Error::input("there is no mesh of the same name beside it, which the solution belongs to")
             .remedy("put the .mesh or .meshb file of the same name beside it")
     })?;
-    let told = |e: Error| e.in_file(&path);
-    let mut mesh = Content::read(&bytes, input.notes).and_then(Content::into_mesh).map_err(told)?;
+    let in_companion = |e: Error| e.in_file(&path);
+    let mut mesh = Content::read(&bytes, input.notes).and_then(Content::into_mesh).map_err(in_companion)?;
     attach(&mut mesh, &solutions.solutions)?;
     Ok(mesh)
 }
@@ -49,7 +49,7 @@ fn read_solutions(path: &Path, bytes: &[u8], notes: &Notes) -> Result<Content> {
 
 /// The file of the same name with the extension `ending`, or with a `b` appended; the same form (text or
 /// binary) as `path` is tried first.
-fn find_beside(path: &Path, ending: &str) -> Result<Option<(PathBuf, Vec<u8>)>> {
+fn find_companion(path: &Path, ending: &str) -> Result<Option<(PathBuf, Vec<u8>)>> {
     let is_binary = path.extension().is_some_and(|e| e.to_string_lossy().to_lowercase().ends_with('b'));
     let mut endings = [ending.to_owned(), format!("{ending}b")];
     if is_binary {
@@ -57,7 +57,7 @@ fn find_beside(path: &Path, ending: &str) -> Result<Option<(PathBuf, Vec<u8>)>> 
     }
     for ending in endings {
         let path = path.with_extension(ending);
-        if let Some(bytes) = read_beside(&path)? {
+        if let Some(bytes) = read_if_exists(&path)? {
             return Ok(Some((path, bytes)));
         }
     }

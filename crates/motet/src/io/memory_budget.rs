@@ -12,15 +12,15 @@ use crate::base::{Error, Result};
 /// The environment variable that overrides the limit, in bytes or with a unit: `MOTET_READ_LIMIT=16G`.
 const VARIABLE: &str = "MOTET_READ_LIMIT";
 /// Bytes allowed for any file, since constant values compress well.
-const ALWAYS: u64 = 256 << 20;
+const BASE_LIMIT: u64 = 256 << 20;
 /// Further bytes allowed per byte of the file.
-const FOR_EACH_BYTE: u64 = 64;
+const LIMIT_PER_BYTE: u64 = 64;
 
 /// The memory budget for reading a mesh.
 #[derive(Debug)]
-pub(super) struct Room {
+pub(super) struct MemoryBudget {
     state: Mutex<State>,
-    asked: Option<u64>,
+    requested: Option<u64>,
 }
 
 #[derive(Debug, Default)]
@@ -30,11 +30,11 @@ struct State {
     known: HashSet<String>,
 }
 
-impl Room {
+impl MemoryBudget {
     /// The budget for a file of this size.
     pub(super) fn of(file_bytes: u64) -> Self {
-        let asked = std::env::var(VARIABLE).ok().and_then(|text| bytes(&text));
-        Self { state: Mutex::new(State { file_bytes, ..State::default() }), asked }
+        let requested = std::env::var(VARIABLE).ok().and_then(|text| bytes(&text));
+        Self { state: Mutex::new(State { file_bytes, ..State::default() }), requested }
     }
 
     /// Extends the budget by another file of the same mesh; each name counts only once.
@@ -64,7 +64,7 @@ impl Room {
     }
 
     /// Number of bytes left.
-    pub(super) fn left(&self) -> u64 {
+    pub(super) fn remaining(&self) -> u64 {
         let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         self.limit(&state).saturating_sub(state.taken)
     }
@@ -77,7 +77,8 @@ impl Room {
     }
 
     fn limit(&self, state: &State) -> u64 {
-        self.asked.unwrap_or_else(|| ALWAYS.saturating_add(state.file_bytes.saturating_mul(FOR_EACH_BYTE)))
+        self.requested
+            .unwrap_or_else(|| BASE_LIMIT.saturating_add(state.file_bytes.saturating_mul(LIMIT_PER_BYTE)))
     }
 }
 
@@ -106,12 +107,12 @@ mod tests {
 
     #[test]
     fn all_that_is_taken_counts_and_names_once() {
-        let room = Room { state: Mutex::default(), asked: Some(100) };
-        room.take(60).unwrap();
-        room.take_once("a", 40).unwrap();
-        room.take_once("a", 40).unwrap();
-        assert_eq!(room.left(), 0);
-        let message = room.take(1).unwrap_err().to_string();
+        let budget = MemoryBudget { state: Mutex::default(), requested: Some(100) };
+        budget.take(60).unwrap();
+        budget.take_once("a", 40).unwrap();
+        budget.take_once("a", 40).unwrap();
+        assert_eq!(budget.remaining(), 0);
+        let message = budget.take(1).unwrap_err().to_string();
         assert!(
             message.contains("unpacks to 101 bytes") && message.contains("MOTET_READ_LIMIT=16G"),
             "{message}"
@@ -120,11 +121,11 @@ mod tests {
 
     #[test]
     fn the_limit_grows_with_the_files() {
-        let room = Room { state: Mutex::default(), asked: None };
-        let before = room.left();
-        room.add_file("b", 1000);
-        room.add_file("b", 1000);
-        assert_eq!(room.left(), before + 1000 * FOR_EACH_BYTE);
+        let budget = MemoryBudget { state: Mutex::default(), requested: None };
+        let before = budget.remaining();
+        budget.add_file("b", 1000);
+        budget.add_file("b", 1000);
+        assert_eq!(budget.remaining(), before + 1000 * LIMIT_PER_BYTE);
     }
 
     #[test]
