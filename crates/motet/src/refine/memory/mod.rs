@@ -3,7 +3,7 @@
 //!
 //! | step | file | what it does |
 //! |---|---|---|
-//! | record | `record` | stores each tet's place in its tet of the first mesh, and its vertices' roles there |
+//! | record | `record` | stores each tet's place in its tet of the first mesh and its vertices' roles there |
 //! | gather | `trees` | merges tets of one origin where all of them are still there |
 //! | dissolve | `dissolve` | what others have changed, and what no longer fits it, starts anew |
 //! | triangles, lines | `triangles`, `lines` | triangles of patches and lines are merged as the tets are |
