@@ -191,7 +191,7 @@ fn odd_meshes() -> Vec<Case> {
         file("flat_remeshed.vtu", &flat, REMESH, 0, &["inverted"]),
         file("orphan_remeshed.vtu", &orphan, REMESH, 0, &[]),
         file("three.vtu", &three_at_a_facet, REMESH, 3, &["three.vtu: cell 0: ", "share the facet"]),
-        file("same.vtu", &twice_in_a_tet, REMESH, 3, &["same.vtu: cell 48: ", "different"]),
+        file("same.vtu", &twice_in_a_tet, REMESH, 3, &["same.vtu: cell 48: ", "distinct"]),
     ]
 }
 

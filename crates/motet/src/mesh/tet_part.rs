@@ -169,10 +169,8 @@ fn line_labels(mesh: &Mesh, lines: &[CellId]) -> Vec<i32> {
 
 fn no_tets(mesh: &Mesh) -> Error {
     let kinds: Vec<_> = mesh.cells.counts().iter().map(|(kind, n)| format!("{n} {}", kind.label())).collect();
-    let error = Error::input(format!(
-        "has no linear tetrahedra, which remeshing requires; it has {}",
-        kinds.join(", ")
-    ));
+    let found = if kinds.is_empty() { "no cells".to_owned() } else { kinds.join(", ") };
+    let error = Error::input(format!("has no linear tetrahedra, which remeshing requires; it has {found}"));
     match mesh.cells.dim() {
         Some(3) => error.remedy("divide the cells into linear tetrahedra first"),
         _ => error.remedy("give a volume mesh"),
