@@ -36,8 +36,11 @@ impl Cut {
         let group_of: Vec<u32> = (0..n_first + surfaces[1].len()).map(|t| u32::from(t >= n_first)).collect();
         let rule = Rule { group_of: &group_of, admits: &|g, h| g != h, near, crossings: true };
         let cut = cut::Cut::new(points, &surfaces.concat(), &rule, threads).ok_or_else(|| {
-            Error::input("surfaces come so close to each other, or cross at so small an angle, that they cannot be divided")
-                .remedy("move the device a little")
+            Error::input(
+                "surfaces come so close to each other, or cross at so small an angle, that they cannot be \
+                 divided",
+            )
+            .remedy("move the device a little")
         })?;
         let (first, second): (Vec<_>, Vec<_>) =
             cut.pieces.into_iter().partition(|piece| (piece.1 as usize) < n_first);

@@ -184,7 +184,7 @@ fn check(
     let Some(error) = found.first_error() else { return Ok(()) };
     let fault = found.faults.iter().find(|fault| fault.is_fatal);
     let name = fault.map_or("", |fault| &devices[fault.surface as usize].name);
-    let told = Error::input(format!("the device `{name}`: {}", error.what()))
+    let refusal = Error::input(format!("the device `{name}`: {}", error.what()))
         .at(error.place().unwrap_or_default().to_owned());
-    Err(told.remedy(error.remedy_text().unwrap_or_default().to_owned()))
+    Err(refusal.remedy(error.remedy_text().unwrap_or_default().to_owned()))
 }

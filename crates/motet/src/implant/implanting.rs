@@ -105,8 +105,8 @@ pub fn implant(
     report.devices.iter_mut().zip(fits).for_each(|(device, fit)| device.fit = *fit);
     report.seconds.check = lap();
     if !report.is_valid() {
-        let told: Vec<String> = report.defects.iter().map(Defect::to_string).collect();
-        return Err(Error::input(format!("the result is not a valid mesh: {}", told.join(", "))).remedy(
+        let defects: Vec<String> = report.defects.iter().map(Defect::to_string).collect();
+        return Err(Error::input(format!("the result is not a valid mesh: {}", defects.join(", "))).remedy(
             "check the host with `motet info`; if the host is valid, please report this to the authors of \
              motet",
         ));
