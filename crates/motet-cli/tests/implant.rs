@@ -141,7 +141,7 @@ fn arrays_begin_in_devices_with_what_is_given() {
     refused("u=1", "got 1 numbers for 3 components");
     refused("c=0.5", "the array cannot hold");
     refused("region=3", "holds the regions");
-    refused("c=a", "no finite number");
+    refused("c=a", "not a finite number");
 }
 
 /// The number of points of a mesh that are not on its boundary.

@@ -212,7 +212,7 @@ fn displacements_of_nodes_over_time_are_written_and_read() {
         assert!((0..3).all(|i| (p[i] - q[i]).abs() < 1e-15), "{p:?} {q:?}");
     }
     for (words, code, told) in [
-        (["--displacement", "lid.dat", "--steps", "3"], 2, "leave --steps away"),
+        (["--displacement", "lid.dat", "--steps", "3"], 2, "omit --steps"),
         (["--displacement", "lid.dat", "--nodal", "lid=lid.dat"], 2, "would overwrite a file of the call"),
         (["--displacement", "lid.dat", "--nodal", "no=no.dat"], 2, "no patch `no`"),
         (["--displacement", "lid.dat", "--nodal", "lid=no/no.dat"], 3, "folder does not exist"),

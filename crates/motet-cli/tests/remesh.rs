@@ -420,7 +420,7 @@ fn sizes_that_are_none_are_refused() {
         ("0", 2, ["above 0", "point array"]),
         ("-1", 2, ["above 0", "point array"]),
         ("nan", 2, ["above 0", "point array"]),
-        ("nothing", 2, ["no point array", "linear, constant, h"]),
+        ("nothing", 2, ["a point array", "linear, constant, h"]),
         ("velocity", 3, ["array velocity", "one component"]),
         ("off", 3, ["point 17", "positive"]),
         ("1e-5", 3, ["at most 1.0e7", "times as large"]),

@@ -174,7 +174,11 @@ fn a_run_ends_where_it_is_told_to_and_goes_on_from_there() {
     ] {
         parted.write("job.toml", JOB.replace(from, to).as_bytes());
         let call = parted.motet(["run", "job.toml", "--resume"]).assert().code(3);
-        assert!(stderr(&call).contains("another job") && stderr(&call).contains(key), "{}", stderr(&call));
+        assert!(
+            stderr(&call).contains("the job to resume") && stderr(&call).contains(key),
+            "{}",
+            stderr(&call)
+        );
     }
     parted.write("job.toml", JOB.as_bytes());
     assert!(bytes(&parted, "out") == before, "what was refused changed nothing");
@@ -182,7 +186,11 @@ fn a_run_ends_where_it_is_told_to_and_goes_on_from_there() {
     fewer.points.iter_mut().for_each(|p| p[0] *= 1.5);
     parted.mesh("box.vtu", &fewer);
     let call = parted.motet(["run", "job.toml", "--resume"]).assert().code(3);
-    assert!(stderr(&call).contains("another job") && stderr(&call).contains("mesh was"), "{}", stderr(&call));
+    assert!(
+        stderr(&call).contains("the job to resume") && stderr(&call).contains("mesh was"),
+        "{}",
+        stderr(&call)
+    );
 }
 
 #[test]
@@ -254,7 +262,7 @@ fn a_motion_that_cannot_be_gone_to_its_end_is_told() {
     let folder = folder();
     folder.write("job.toml", JOB.replace("shift = [3, 0, 0]", "shift = [5, 0, 0]").as_bytes());
     let call = folder.motet(["run", "job.toml"]).assert().code(4);
-    assert!(stdout(&call).contains("% of the way") && stdout(&call).contains("the last one incomplete"));
+    assert!(stdout(&call).contains("% of the step") && stdout(&call).contains("the last one incomplete"));
     let frames = read_series(folder.path("out/moved.pvd")).unwrap();
     let last = read(&frames.last().unwrap().1).unwrap();
     assert!(mesh::check::check(&last).is_empty());
@@ -297,7 +305,7 @@ fn what_is_wrong_with_a_job_is_told_with_its_line() {
     refused("period = 0.8", "period = -1", &["time.period"]);
     refused("steps = 6", "steps = 0", &["time.steps"]);
     refused("mesh = \"box.vtu\"", "mesh = \"bx.vtu\"", &["bx.vtu"]);
-    refused("moved.pvd", "moved.vtu", &["no series"]);
+    refused("moved.pvd", "moved.vtu", &["not a series"]);
     refused("[time]", "[time", &["line 6"]);
     refused("patch = \"sphere\"", "patch = \"spher\"", &["job.toml", "spher", "sphere, box"]);
     refused("in_time = \"swing\"", "in_time = \"wobble\"", &["wobble", "beat"]);
@@ -309,7 +317,7 @@ fn what_is_wrong_with_a_job_is_told_with_its_line() {
     refused("smooth = 2", "method = \"magic\"", &["magic", "guided"]);
     refused("smooth = 2", "rigid_layer = \"thick\"", &["rigid_layer"]);
     refused("shift = [3, 0, 0]", "swell = 3", &["both swell and another motion"]);
-    refused("[contact]", "[[refine]]\nevery = 2\n[contact]", &["marks nothing"]);
+    refused("[contact]", "[[refine]]\nevery = 2\n[contact]", &["no criterion"]);
     refused("[contact]", "[repair]\nmin_eas = 2\n[contact]", &["[repair]"]);
     refused("[contact]", "[[device]]\nfile = \"no.stl\"\n[contact]", &["no.stl"]);
     let call = folder.motet(["run", "none.toml"]).assert().code(3);

@@ -165,7 +165,7 @@ fn points_that_are_no_numbers_are_told_and_not_drawn() {
     let mut mesh = ball(3, 2);
     mesh.points[0] = [f64::NAN; 3];
     let (_, page, _) = folder.page(&[folder.mesh("nan.vtu", &mesh)], Options::BUDGET);
-    assert!(page.contains("have points that are no numbers"));
+    assert!(page.contains("have points that are not finite"));
 }
 
 #[test]

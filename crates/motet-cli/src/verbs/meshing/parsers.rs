@@ -53,7 +53,7 @@ mod tests {
         for text in ["0", "-1", "nan", "inf", "", "Auto"] {
             assert!(size(text).unwrap_err().contains("or auto"), "{text}");
         }
-        assert!(place("1,2").unwrap_err().contains("3 numbers, this 2"));
+        assert!(place("1,2").unwrap_err().contains("3 numbers; got 2"));
         assert!(place("1,2,x").unwrap_err().contains("`x`"));
         for text in ["1,2,3", "1,2,3=", "1,2=a", "=a", ""] {
             assert!(seed(text).is_err(), "{text}");
