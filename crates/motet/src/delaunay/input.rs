@@ -31,7 +31,7 @@ pub(super) fn check(points: &[Point]) -> Result<()> {
     let [x, y, z] = points[bad];
     Err(Error::input(format!("the coordinates ({x}, {y}, {z}) are not finite numbers"))
         .at(format!("point {}", VertexId::new(bad)))
-        .remedy("remove the point or mend the step that made it"))
+        .remedy("remove the point or correct the step that produced it"))
 }
 
 /// Scales the points so that the longest side of their bounding box is about 2^24.

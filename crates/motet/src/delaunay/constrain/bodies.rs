@@ -83,8 +83,8 @@ fn faces(tets: &Tets, half: HalfFacet, part: [VertexId; 3]) -> bool {
 }
 
 fn lost(triangle: u32) -> Unmade {
-    let error = Error::input("a part of the surface is no facet of tets")
+    let error = Error::input("a part of the surface is not a facet of the tets")
         .at(format!("triangle {triangle}"))
-        .remedy("look for triangles that cross or touch it");
+        .remedy("check for triangles that cross or touch it");
     Unmade { what: Some(Part::Triangle(triangle)), error }
 }

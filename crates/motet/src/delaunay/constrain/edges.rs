@@ -103,7 +103,7 @@ impl<'a> Edges<'a> {
         let mut queue = VecDeque::from(missing);
         let mut n_made = 0;
         while let Some(piece) = queue.pop_front() {
-            order.watch.report_and_check("making edges of the surface", n_made, n_made + queue.len())?;
+            order.watch.report_and_check("recovering edges of the surface", n_made, n_made + queue.len())?;
             n_made += 1;
             let mut spare = None;
             while self.way.find(self.tets, self.sites, piece) {
@@ -164,7 +164,7 @@ impl<'a> Edges<'a> {
             return Err(self.segments.refused(
                 self.sites,
                 segment,
-                "asks, with others, for too many points on edges",
+                "needs, together with other edges, too many points on edges",
             ));
         }
         let ends = self.segments.in_order(self.sites, segment, piece);
@@ -181,7 +181,7 @@ impl<'a> Edges<'a> {
             return Err(self.segments.refused(
                 self.sites,
                 segment,
-                "would have to be divided beyond the digits of its coordinates",
+                "would have to be divided beyond the precision of its coordinates",
             ));
         };
         let vertex = self.sites.add(self.segments.ends(segment), OnSegment { segment, share });
@@ -191,7 +191,7 @@ impl<'a> Edges<'a> {
             return Err(self.segments.refused(
                 self.sites,
                 segment,
-                "passes through another edge, or through a triangle",
+                "passes through another edge or a triangle",
             ));
         }
         Ok(self.segments.divide(piece, vertex))

@@ -36,7 +36,7 @@ pub(super) fn recover(
     let mut in_line: Vec<usize> = (0..flats.triangles.len()).collect();
     in_line.sort_by_key(|&i| order.rank(|part| flats.has(i, part)));
     for (n_made, i) in in_line.into_iter().enumerate() {
-        order.watch.report_and_check("making facets of the surface", n_made, all_parts.len())?;
+        order.watch.report_and_check("recovering facets of the surface", n_made, all_parts.len())?;
         let flat = flats.triangles.list(i);
         let first = triangles[flat[0] as usize];
         let all = flat.iter().map(|&i| triangles[i as usize]);
@@ -65,9 +65,9 @@ fn stuck(sites: &Sites, i: u32, triangle: [VertexId; 3]) -> Unmade {
     let corners = triangle.map(|v| sites.near(v));
     let [a, b, c] = triangle;
     let error =
-        Error::input(format!("the triangle of points {a}, {b} and {c} could not be made facets of tets"))
+        Error::input(format!("the triangle of points {a}, {b} and {c} could not be recovered as facets of tets"))
             .at(format!("triangle {i}, at {:?}", corners[0]))
-            .remedy("look for triangles that cross or touch it");
+            .remedy("check for triangles that cross or touch it");
     Unmade { what: Some(Part::Triangle(i)), error }
 }
 

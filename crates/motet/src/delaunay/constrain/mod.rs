@@ -188,7 +188,7 @@ fn check_ids(points: &[Point], triangles: &[[VertexId; 3]]) -> Result<()> {
     };
     let Some(i) = triangles.iter().position(is_off) else { return Ok(()) };
     let what = format!(
-        "names the points {:?}, expected three different ones below {}",
+        "refers to points {:?}, expected three different ids below {}",
         triangles[i].map(|v| v.0),
         points.len()
     );
@@ -249,8 +249,8 @@ fn in_box(points: &[Point], edge_points: EdgePoints) -> Result<(Vec<Point>, Back
     if away > 0.0 && (away * FAR).is_finite() && given.as_flattened().iter().all(|x| x.is_finite()) {
         return Ok((given, Back { all: back, by_axis: stretch.map(f64::recip) }));
     }
-    Err(Error::input("the points have no extent, or one too large for numbers")
-        .remedy("give surfaces of another size"))
+    Err(Error::input("the points have no extent, or one beyond the range of floating-point numbers")
+        .remedy("rescale the surfaces"))
 }
 
 /// The corners of a positive tet that contains the box of the last eight points, and is far larger.

@@ -129,20 +129,20 @@ impl Segments {
         let (mut insertion, mut star) = (Insertion::default(), Vec::new());
         let mut n_made = 0;
         while let Some(piece) = queue.pop_front() {
-            watch.report_and_check("making edges of the surface", n_made, n_made + queue.len())?;
+            watch.report_and_check("recovering edges of the surface", n_made, n_made + queue.len())?;
             n_made += 1;
             let Some(&segment) = self.pieces.get(&piece) else { continue };
             if tets.find_edge(piece, &mut star).is_some() {
                 continue;
             }
             if sites.n_on_segments() == most {
-                return Err(self.refused(sites, segment, "asks, with others, for too many points on edges"));
+                return Err(self.refused(sites, segment, "needs, together with other edges, too many points on edges"));
             }
             let Some(share) = self.where_to_divide(tets, sites, segment, piece, &mut star) else {
                 return Err(self.refused(
                     sites,
                     segment,
-                    "would have to be divided beyond the digits of its coordinates",
+                    "would have to be divided beyond the precision of its coordinates",
                 ));
             };
             let start = tets.at(piece[0]);
@@ -158,7 +158,7 @@ impl Segments {
         let [a, b] = self.ends(segment);
         let error = Error::input(format!("the edge of points {a} and {b} {why}"))
             .at(format!("the edge from {:?} to {:?}", sites.near(a), sites.near(b)))
-            .remedy("make the triangles there less stretched, or the surface keep farther from itself");
+            .remedy("use less stretched triangles there, or keep the surface farther from itself");
         Unmade { what: Some(Part::Edge([a, b])), error }
     }
 
