@@ -37,7 +37,7 @@ impl Cavity {
         &self.facets[..self.n_facets]
     }
 
-    /// The slots of the new tets, one for each facet; valid after [`Self::exchange_slots`].
+    /// The slots of the new tets, one for each facet; valid after [`Self::allocate_slots`].
     #[inline(always)]
     pub(super) fn slots(&self) -> &[u32] {
         &self.tets[..self.n_facets]
@@ -45,8 +45,8 @@ impl Cavity {
 
     /// Provides [`Self::slots`]: keeps those of the cavity's tets, claims missing ones, releases the rest.
     #[inline(always)]
-    pub(super) fn exchange_slots(&mut self, store: &mut Store) {
-        make_room(&mut self.tets, self.n_facets);
+    pub(super) fn allocate_slots(&mut self, store: &mut Store) {
+        grow_to(&mut self.tets, self.n_facets);
         if self.n_facets < self.n_tets {
             store.release(&self.tets[self.n_facets..self.n_tets]);
         } else {
@@ -64,7 +64,7 @@ impl Cavity {
         first: u32,
         new: Newcomer,
     ) {
-        make_room(&mut self.tets, 1);
+        grow_to(&mut self.tets, 1);
         self.tets[0] = first;
         self.n_tets = 1;
         store.gauges[first as usize].mark = new.mark() + IN;
@@ -81,7 +81,7 @@ impl Cavity {
     #[inline(always)]
     fn spread(&mut self, store: &mut Store, from: usize, mark: u32) -> usize {
         let tets = &self.tets[from..self.n_tets];
-        make_room(&mut self.queue, 4 * tets.len());
+        grow_to(&mut self.queue, 4 * tets.len());
         let (links, gauges, queue) = (&store.links[..], &mut store.gauges[..], &mut self.queue[..]);
         let mut queued = 0;
         for &tet in tets {
@@ -99,7 +99,7 @@ impl Cavity {
     /// Tests the queued tets and appends those in conflict.
     #[inline(always)]
     fn test<S: Simd>(&mut self, simd: S, store: &mut Store, points: &[Point], queued: usize, new: Newcomer) {
-        make_room(&mut self.tets, self.n_tets + queued);
+        grow_to(&mut self.tets, self.n_tets + queued);
         let (tets, mut n) = (&mut self.tets[..], self.n_tets);
         for &tet in &self.queue[..queued] {
             let conflict = in_conflict(simd, store, points, tet, new);
@@ -114,7 +114,7 @@ impl Cavity {
     #[inline(always)]
     fn enclose(&mut self, store: &Store, out: u32) {
         let tets = &self.tets[..self.n_tets];
-        make_room(&mut self.facets, 4 * tets.len());
+        grow_to(&mut self.facets, 4 * tets.len());
         let (gauges, found) = (&store.gauges[..], &mut self.facets[..]);
         let mut n = 0;
         for &tet in tets {
@@ -130,7 +130,7 @@ impl Cavity {
 
 /// Makes an array that only grows at least `n` long; when it has to grow, to twice that.
 #[inline(always)]
-pub(super) fn make_room<T: Clone + Default>(array: &mut Vec<T>, n: usize) {
+pub(super) fn grow_to<T: Clone + Default>(array: &mut Vec<T>, n: usize) {
     if array.len() < n {
         array.resize(2 * n, T::default());
     }

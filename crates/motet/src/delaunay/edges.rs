@@ -2,47 +2,49 @@
 
 /// A map from directed edges (pairs of local vertex numbers) to the facet of a new tet on their left. An entry is
 /// read only after it was written for the same cavity, so nothing needs clearing in between.
-pub(super) trait Edges {
+pub(super) trait EdgeMap {
     fn put(&mut self, from: u32, to: u32, link: u32);
     fn get(&self, from: u32, to: u32) -> u32;
 }
 
 /// The most vertices a cavity may have to use the matrix. Fewer than 7 in 10,000 cavities of ordinary points
 /// have more; this many rows of the matrix (16 kB) still fit into the first-level cache.
-pub(super) const SMALL: usize = 64;
+pub(super) const MAX_MATRIX_VERTICES: usize = 64;
 
-/// A matrix over all pairs of up to [`SMALL`] vertices.
+/// A matrix over all pairs of up to [`MAX_MATRIX_VERTICES`] vertices.
 #[derive(Debug)]
-pub(super) struct Matrix(Box<[u32; SMALL * SMALL]>);
+pub(super) struct EdgeMatrix(Box<[u32; MAX_MATRIX_VERTICES * MAX_MATRIX_VERTICES]>);
 
-impl Default for Matrix {
+impl Default for EdgeMatrix {
     fn default() -> Self {
-        Self(Box::new([0; SMALL * SMALL]))
+        Self(Box::new([0; MAX_MATRIX_VERTICES * MAX_MATRIX_VERTICES]))
     }
 }
 
-impl Edges for Matrix {
+impl EdgeMap for EdgeMatrix {
     #[inline(always)]
     fn put(&mut self, from: u32, to: u32, link: u32) {
-        self.0[(from as usize * SMALL + to as usize) % (SMALL * SMALL)] = link;
+        self.0[(from as usize * MAX_MATRIX_VERTICES + to as usize)
+            % (MAX_MATRIX_VERTICES * MAX_MATRIX_VERTICES)] = link;
     }
 
     #[inline(always)]
     fn get(&self, from: u32, to: u32) -> u32 {
-        self.0[(from as usize * SMALL + to as usize) % (SMALL * SMALL)]
+        self.0[(from as usize * MAX_MATRIX_VERTICES + to as usize)
+            % (MAX_MATRIX_VERTICES * MAX_MATRIX_VERTICES)]
     }
 }
 
 /// A hash table for any number of vertices, in memory linear in the number of edges: points on two skew lines
 /// make cavities with as many vertices as there are points, where a matrix would be quadratic.
 #[derive(Debug, Default)]
-pub(super) struct Table {
+pub(super) struct EdgeTable {
     slots: Vec<(u32, u32, u32)>,
 }
 
 const EMPTY: (u32, u32, u32) = (u32::MAX, u32::MAX, 0);
 
-impl Table {
+impl EdgeTable {
     /// Empties the table and reserves space for `n` edges.
     pub(super) fn clear(&mut self, n: usize) {
         self.slots.clear();
@@ -61,7 +63,7 @@ impl Table {
     }
 }
 
-impl Edges for Table {
+impl EdgeMap for EdgeTable {
     fn put(&mut self, from: u32, to: u32, link: u32) {
         let place = self.find(from, to);
         self.slots[place] = (from, to, link);

@@ -1,8 +1,8 @@
 //! Fills the cavity: a tet from the newcomer to each facet around it, each linked to its neighbours.
 
-use super::cavity::{Cavity, Facet, make_room};
+use super::cavity::{Cavity, Facet, grow_to};
 use super::conflict::Newcomer;
-use super::edges::{Edges, Matrix, SMALL, Table};
+use super::edges::{EdgeMap, EdgeMatrix, EdgeTable, MAX_MATRIX_VERTICES};
 use super::gauge::{Arm, of_ghost, of_tet};
 use super::store::{INFINITY, Store};
 use crate::base::Point;
@@ -21,8 +21,8 @@ pub(super) struct Fill {
     arms: Vec<Arm>,
     /// The facets of the cavity as places in `vertices`.
     corners: Vec<[u32; 3]>,
-    matrix: Matrix,
-    table: Table,
+    matrix: EdgeMatrix,
+    table: EdgeTable,
     /// Least error bound of a gauge; infinite where filters may not be trusted.
     least: f32,
 }
@@ -36,8 +36,8 @@ impl Fill {
             base: 1,
             arms: Vec::new(),
             corners: Vec::new(),
-            matrix: Matrix::default(),
-            table: Table::default(),
+            matrix: EdgeMatrix::default(),
+            table: EdgeTable::default(),
             least,
         }
     }
@@ -54,7 +54,7 @@ impl Fill {
     ) -> u32 {
         let n = self.number(cavity.facets());
         self.reach::<S>(points, n, new.point);
-        cavity.exchange_slots(store);
+        cavity.allocate_slots(store);
         let (slots, facets) = (cavity.slots(), cavity.facets());
         let parts = Parts {
             store,
@@ -65,7 +65,7 @@ impl Fill {
             new,
             least: self.least,
         };
-        if n <= SMALL {
+        if n <= MAX_MATRIX_VERTICES {
             parts.make::<S, _>(&mut self.matrix)
         } else {
             self.table.clear(3 * facets.len());
@@ -78,9 +78,9 @@ impl Fill {
     /// whether a vertex is fresh is unpredictable.
     #[inline(always)]
     fn number(&mut self, facets: &[Facet]) -> usize {
-        make_room(&mut self.corners, facets.len());
-        make_room(&mut self.vertices, 3 * facets.len());
-        make_room(&mut self.arms, 3 * facets.len());
+        grow_to(&mut self.corners, facets.len());
+        grow_to(&mut self.vertices, 3 * facets.len());
+        grow_to(&mut self.arms, 3 * facets.len());
         if self.base.checked_add(3 * facets.len() as u32).is_none() {
             self.place.fill(0);
             self.base = 1;
@@ -126,7 +126,7 @@ impl Parts<'_> {
     /// Writes the new tets and links them: two facets of the cavity share an edge in opposite directions, and
     /// so do their new tets.
     #[inline(always)]
-    fn make<S: Simd, E: Edges>(self, edges: &mut E) -> u32 {
+    fn make<S: Simd, E: EdgeMap>(self, edges: &mut E) -> u32 {
         for (&slot, &[a, b, c]) in self.slots.iter().zip(self.corners) {
             edges.put(b, c, 4 * slot + 1);
             edges.put(c, a, 4 * slot + 2);

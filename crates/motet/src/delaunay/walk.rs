@@ -52,7 +52,7 @@ fn exit<S: Simd>(
         // Only a walk that starts at a ghost meets one without a conflict.
         return Some(links[3]);
     }
-    let came_by = if entered >> 2 == tet { entered & 3 } else { 4 };
+    let entered_facet = if entered >> 2 == tet { entered & 3 } else { 4 };
     let arm = |i: usize| sub(points[vertices[i] as usize], q);
     let arms = [arm(0), arm(1), arm(2), arm(3)];
     // All four at once: which facet it is cannot be predicted, so a branch for each costs more than the
@@ -63,7 +63,7 @@ fn exit<S: Simd>(
         beyond |= u32::from(determinant < -sure) << i;
         decided |= u32::from(determinant.abs() > sure) << i;
     }
-    let others = 0b1111 & !(1 << came_by);
+    let others = 0b1111 & !(1 << entered_facet);
     if beyond & others != 0 {
         return Some(links[(beyond & others).trailing_zeros() as usize % 4]);
     }

@@ -27,7 +27,7 @@ struct Constraint {
 }
 
 impl Constraint {
-    fn is_broken(&self, x: &[f64; N]) -> bool {
+    fn is_violated(&self, x: &[f64; N]) -> bool {
         self.excess(x) > ROUNDING
     }
 
@@ -43,10 +43,10 @@ impl Constraint {
     }
 
     /// This constraint with `x[gone]` eliminated by requiring equality in `other`.
-    fn on(&self, other: &Self, gone: usize) -> Self {
-        let share = self.a[gone] / other.a[gone];
+    fn on(&self, other: &Self, eliminated: usize) -> Self {
+        let share = self.a[eliminated] / other.a[eliminated];
         let mut a: [f64; N] = std::array::from_fn(|i| self.a[i] - share * other.a[i]);
-        a[gone] = 0.0;
+        a[eliminated] = 0.0;
         Self { a, b: self.b - share * other.b }
     }
 }
@@ -88,14 +88,14 @@ fn maximum(constraints: &[Constraint], of: Constraint, unknowns: &[usize]) -> [f
     let mut x = [0.0; N];
     unknowns.iter().filter(|&&i| of.a[i] != 0.0).for_each(|&i| x[i] = FAR.copysign(of.a[i]));
     for (i, tight) in constraints.iter().enumerate() {
-        if !tight.is_broken(&x) {
+        if !tight.is_violated(&x) {
             continue;
         }
-        let Some(gone) = tight.largest() else { continue };
-        let before: Vec<Constraint> = constraints[..i].iter().map(|c| c.on(tight, gone)).collect();
-        let others: Vec<usize> = unknowns.iter().copied().filter(|&i| i != gone).collect();
-        x = maximum(&before, of.on(tight, gone), &others);
-        x[gone] = -tight.excess(&x) / tight.a[gone];
+        let Some(eliminated) = tight.largest() else { continue };
+        let before: Vec<Constraint> = constraints[..i].iter().map(|c| c.on(tight, eliminated)).collect();
+        let others: Vec<usize> = unknowns.iter().copied().filter(|&i| i != eliminated).collect();
+        x = maximum(&before, of.on(tight, eliminated), &others);
+        x[eliminated] = -tight.excess(&x) / tight.a[eliminated];
     }
     x
 }

@@ -4,7 +4,6 @@ pub mod bernstein;
 pub(crate) mod deepest;
 pub mod distance;
 pub(crate) mod fused;
-mod needle;
 pub mod overlap;
 pub mod predicates;
 pub mod quality;

@@ -11,10 +11,10 @@ const ROUNDINGS: f64 = 64.0;
 const WRITTEN: f64 = 2.0;
 
 /// Points with more decimals than this count as having all the digits of an `f64`.
-const MOST_DECIMALS: i32 = 12;
+const MAX_DECIMALS: i32 = 12;
 
 /// Points with more significant digits than this count as having all the digits of an `f32`.
-const MOST_DIGITS: i32 = 9;
+const MAX_DIGITS: i32 = 9;
 
 /// A unit of the last digit coarser than this, relative to the largest coordinate, is not a sign of rounding:
 /// such numbers are exact as written.
@@ -30,9 +30,9 @@ pub(crate) fn of(points: &[Point]) -> f64 {
     let of_single = if is_single { WRITTEN * 0.5 * f64::from(f32::EPSILON) * largest } else { 0.0 };
     let has_decimals =
         |ten: f64| all().all(|x| (x * ten - (x * ten).round()).abs() <= 2.0 * f64::EPSILON * (x * ten).abs());
-    let ten = (0..=MOST_DECIMALS).map(|n| 10f64.powi(n)).find(|&ten| has_decimals(ten));
+    let ten = (0..=MAX_DECIMALS).map(|n| 10f64.powi(n)).find(|&ten| has_decimals(ten));
     let has_digits = |n: i32| all().all(|x| format!("{x:.*e}", n as usize - 1).parse() == Ok(x));
-    let digits = (1..=MOST_DIGITS).find(|&n| has_digits(n));
+    let digits = (1..=MAX_DIGITS).find(|&n| has_digits(n));
     let last = |n: i32| 10f64.powi(largest.log10().floor() as i32 + 1 - n);
     let steps = [ten.map(f64::recip), digits.map(last)].into_iter().flatten();
     let of_text = steps.map(|step| WRITTEN * 0.5 * step).filter(|&of| of <= COARSEST * largest);

@@ -60,6 +60,9 @@ fn rotate<const N: usize>(a: &mut [[f64; N]; N], [p, q]: [usize; 2]) -> [f64; 2]
 pub fn largest_eigenvector(matrix: [[f64; 4]; 4]) -> [f64; 4] {
     let largest = matrix.as_flattened().iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let mut vectors = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|j| f64::from(u8::from(i == j))));
+    if !matrix.as_flattened().iter().all(|x| x.is_finite()) {
+        return [f64::NAN; 4];
+    }
     if largest == 0.0 {
         return vectors[0];
     }
@@ -115,6 +118,9 @@ mod tests {
     fn what_is_not_finite_has_none() {
         for bad in [f64::NAN, f64::INFINITY] {
             assert!(eigenvalues([1.0, bad, 2.0, 0.0, 0.0, 1.0]).iter().all(|x| x.is_nan()));
+            let mut matrix = [[0.0; 4]; 4];
+            [matrix[1][2], matrix[2][1]] = [bad; 2];
+            assert!(largest_eigenvector(matrix).iter().all(|x| x.is_nan()));
         }
     }
 }

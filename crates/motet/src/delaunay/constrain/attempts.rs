@@ -2,10 +2,11 @@
 //! tet has a volume.
 
 use super::Filled;
-use super::flats::{Flats, Grown};
+use super::flats::FlatFacets;
+use super::grown::GrownFacets;
 use super::levels::Levels;
+use super::recovery::{Order, Unrecovered};
 use super::sites::Sites;
-use super::unmade::{Order, Unmade};
 use crate::base::{Point, Result, VertexId, Watch};
 
 /// The largest number of ways of joining triangles that are tried.
@@ -28,51 +29,51 @@ pub(super) fn best(
     triangles: &[[VertexId; 3]],
     rounding: Point,
     watch: &Watch,
-    fill: impl Fn(&Flats, &Order) -> Result<Filled, Unmade>,
+    fill: impl Fn(&FlatFacets, &Order) -> Result<Filled, Unrecovered>,
 ) -> Result<Filled> {
-    let grown = Grown::find(sites, triangles, rounding);
+    let grown = GrownFacets::find(sites, triangles, rounding);
     let mut levels = Levels::new(triangles, &grown);
-    let mut flats = Flats::find(sites, triangles, &levels);
-    let attempt = |levels: &Levels, flats: &Flats| {
-        let most = if levels.has_rounded() { RETRIES_ROUNDED } else { RETRIES };
-        Order::retried(most, watch, |order| fill(flats, order))
+    let mut flats = FlatFacets::find(sites, triangles, &levels);
+    let attempt = |levels: &Levels, flats: &FlatFacets| {
+        let max_retries = if levels.has_rounded() { RETRIES_ROUNDED } else { RETRIES };
+        Order::with_retries(max_retries, watch, |order| fill(flats, order))
     };
     let mut best = attempt(&levels, &flats);
     let mut failed = failures(&best, &levels, triangles);
     for n_left in (0..ATTEMPTS - 1).rev() {
-        let is_stopped = best.as_ref().is_err_and(|unmade| unmade.what.is_none());
+        let is_stopped = best.as_ref().is_err_and(|unrecovered| unrecovered.what.is_none());
         // With each triangle on its own all its edges are present, perhaps in pieces.
         let may_separate = faults(&best).0;
         let next = std::iter::from_fn(|| {
             let has_changed =
                 if n_left > 0 { levels.advance(&failed) } else { may_separate && levels.separate_all() };
-            has_changed.then(|| Flats::find(sites, triangles, &levels))
+            has_changed.then(|| FlatFacets::find(sites, triangles, &levels))
         })
         .find(|next| next.creases != flats.creases);
         let Some(next) = next.filter(|_| !is_stopped) else { break };
         flats = next;
         let filled = attempt(&levels, &flats);
         failed = failures(&filled, &levels, triangles);
-        let is_stopped = filled.as_ref().is_err_and(|unmade| unmade.what.is_none());
+        let is_stopped = filled.as_ref().is_err_and(|unrecovered| unrecovered.what.is_none());
         if is_stopped || faults(&filled) < faults(&best) {
             best = filled;
         }
     }
-    best.map_err(|unmade| unmade.error)
+    best.map_err(|unrecovered| unrecovered.error)
 }
 
 /// The triangles for which another way of joining may help.
-fn failures(filled: &Result<Filled, Unmade>, levels: &Levels, triangles: &[[VertexId; 3]]) -> Vec<u32> {
+fn failures(filled: &Result<Filled, Unrecovered>, levels: &Levels, triangles: &[[VertexId; 3]]) -> Vec<u32> {
     match filled {
         Ok(filled) => filled.failed(triangles),
-        Err(unmade) => unmade.what.map(|part| levels.near(part)).unwrap_or_default(),
+        Err(unrecovered) => unrecovered.what.map(|part| levels.near(part)).unwrap_or_default(),
     }
 }
 
 /// The shortcomings of an attempt, in order of importance: whether it failed or left flat facets whose
 /// triangles differ from those given; the number of facets in excess of triangles; and the number of tets
 /// without volume.
-fn faults(filled: &Result<Filled, Unmade>) -> (bool, usize, usize) {
+fn faults(filled: &Result<Filled, Unrecovered>) -> (bool, usize, usize) {
     let of =
         |filled: &Filled| (!filled.unrestored.is_empty(), filled.n_in_pieces(), filled.flat_tets().count());
     filled.as_ref().map_or((true, usize::MAX, usize::MAX), of)

@@ -1,8 +1,8 @@
 //! The bodies that the surfaces enclose: a body is a set of tets connected without crossing a surface.
 
-use super::flats::Flats;
+use super::flats::FlatFacets;
+use super::recovery::{Part, Unrecovered};
 use super::tets::Tets;
-use super::unmade::{Part, Unmade};
 use crate::base::{Csr, Error, TetId, VertexId, same_orientation};
 use crate::kernel::HalfFacet;
 use crate::spatial::OUTSIDE;
@@ -26,10 +26,10 @@ impl Bodies {
     /// When a part is not a facet of tets.
     pub(super) fn find(
         tets: &mut Tets,
-        flats: &Flats,
+        flats: &FlatFacets,
         parts: &Csr<[VertexId; 3]>,
         corner: VertexId,
-    ) -> Result<Self, Unmade> {
+    ) -> Result<Self, Unrecovered> {
         let mut walls = vec![0u8; tets.n_slots()];
         let (mut halves, mut star) = (Vec::with_capacity(parts.items().len()), Vec::new());
         for (i, list) in parts.iter().enumerate() {
@@ -82,9 +82,9 @@ fn faces(tets: &Tets, half: HalfFacet, part: [VertexId; 3]) -> bool {
     same_orientation(part, tets.inward(half))
 }
 
-fn lost(triangle: u32) -> Unmade {
+fn lost(triangle: u32) -> Unrecovered {
     let error = Error::input("a part of the surface is not a facet of the tets")
         .at(format!("triangle {triangle}"))
         .remedy("check for triangles that cross or touch it");
-    Unmade { what: Some(Part::Triangle(triangle)), error }
+    Unrecovered { what: Some(Part::Triangle(triangle)), error }
 }

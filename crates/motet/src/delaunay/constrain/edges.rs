@@ -9,43 +9,43 @@
 
 use std::collections::VecDeque;
 
+use super::path::{SegmentPath, meets};
+use super::recovery::{Order, Part, Unrecovered};
 use super::segments::Segments;
 use super::share::Share;
 use super::sites::{OnSegment, Sites};
-use super::split::{Kept, Split, faces_around, positive_part, round_between};
-use super::swap::{Swap, Wanted};
+use super::split::{Protected, Split, faces_around, positive_part, round_between};
+use super::swap::{Swap, Target};
 use super::tets::Tets;
-use super::unmade::{Order, Part, Unmade};
-use super::way::{Way, meets};
 use crate::base::{TetId, VertexId, sorted_ids};
 use crate::kernel::HalfFacet;
 
 /// An edge that meets at most this many facets may have twice that number of swaps without gain before it
 /// gets a point: such swaps may make way for one that gains.
-const SPARE: usize = 12;
+const MAX_FACETS_FOR_NEUTRAL: usize = 12;
 
 /// The fraction of an edge that has space for enough distinct numbers.
-const ROOM: f64 = 1e-9;
+const MIN_INTERVAL: f64 = 1e-9;
 
 /// The fraction of an edge that has space for an `f64`; where there is that much, the point gets few digits,
 /// since signs are more expensive with more.
-const ROOM_FOR_ONE: f64 = 1e-13;
+const MIN_INTERVAL_F64: f64 = 1e-13;
 
 /// Where facets cannot be distinguished, a point this far beside them leaves a piece on which they are
 /// farther apart.
 const BESIDE: f64 = 1e-9;
 
-/// The number of points on edges beyond which recovery is given up, in addition to [`POINTS_A_SEGMENT`] per
+/// The number of points on edges beyond which recovery is given up, in addition to [`POINTS_PER_SEGMENT`] per
 /// segment.
-const SPARE_POINTS: usize = 2_000;
-const POINTS_A_SEGMENT: usize = 4;
+const BASE_POINTS: usize = 2_000;
+const POINTS_PER_SEGMENT: usize = 4;
 
 /// The tets, and the edges of the surface that they are to have.
 pub(super) struct Edges<'a> {
     tets: &'a mut Tets,
     sites: &'a mut Sites,
     segments: &'a mut Segments,
-    way: Way,
+    way: SegmentPath,
     swap: Swap,
     split: Split,
     /// Edges that no swap can remove.
@@ -59,7 +59,7 @@ struct Missing<'a> {
     piece: [VertexId; 2],
 }
 
-impl Kept for Missing<'_> {
+impl Protected for Missing<'_> {
     fn has_edge(&self, edge: [VertexId; 2]) -> bool {
         self.segments.has_piece(edge)
     }
@@ -69,7 +69,7 @@ impl Kept for Missing<'_> {
     }
 }
 
-impl Wanted for Missing<'_> {
+impl Target for Missing<'_> {
     fn meets_facet(&self, face: [VertexId; 3]) -> u32 {
         u32::from(meets(self.sites, self.piece, face))
     }
@@ -85,7 +85,7 @@ impl<'a> Edges<'a> {
             tets,
             sites,
             segments,
-            way: Way::default(),
+            way: SegmentPath::default(),
             swap: Swap::default(),
             split: Split::default(),
             tried: Vec::new(),
@@ -97,7 +97,7 @@ impl<'a> Edges<'a> {
     /// # Errors
     /// When an edge would have to be divided beyond the precision of its coordinates, or passes through a
     /// vertex or another edge.
-    pub(super) fn recover(mut self, order: &Order) -> Result<(), Unmade> {
+    pub(super) fn recover(mut self, order: &Order) -> Result<(), Unrecovered> {
         let mut missing = self.segments.missing(self.tets);
         missing.sort_by_key(|&edge| order.rank(|part| part == Part::Edge(edge)));
         let mut queue = VecDeque::from(missing);
@@ -108,7 +108,7 @@ impl<'a> Edges<'a> {
             let mut spare = None;
             while self.way.find(self.tets, self.sites, piece) {
                 let n = self.way.facets.len();
-                let spare = spare.get_or_insert(if n > SPARE { 0 } else { 2 * n });
+                let spare = spare.get_or_insert(if n > MAX_FACETS_FOR_NEUTRAL { 0 } else { 2 * n });
                 if self.swap(piece, 0, 0) {
                     continue;
                 }
@@ -158,9 +158,9 @@ impl<'a> Edges<'a> {
     }
 
     /// Puts a point on a piece, where it sees all tets at one of the facets met; returns the two new pieces.
-    fn divide(&mut self, piece: [VertexId; 2]) -> Result<[[VertexId; 2]; 2], Unmade> {
+    fn divide(&mut self, piece: [VertexId; 2]) -> Result<[[VertexId; 2]; 2], Unrecovered> {
         let segment = self.segments.of_piece(piece);
-        if self.sites.n_on_segments() > SPARE_POINTS + POINTS_A_SEGMENT * self.segments.len() {
+        if self.sites.n_on_segments() > BASE_POINTS + POINTS_PER_SEGMENT * self.segments.len() {
             return Err(self.segments.refused(
                 self.sites,
                 segment,
@@ -171,7 +171,7 @@ impl<'a> Edges<'a> {
         let [low, high] = ends.map(|v| self.segments.share(self.sites, segment, v));
         let length = high.minus(low);
         let (seen, wanted) = self.room(ends, length);
-        let share = if (seen[1] - seen[0]) * length > ROOM_FOR_ONE {
+        let share = if (seen[1] - seen[0]) * length > MIN_INTERVAL_F64 {
             Share::of(round_between(seen.map(|at| low.near() + length * at)))
         } else {
             low.plus(length * round_between(seen))
@@ -229,7 +229,7 @@ impl<'a> Edges<'a> {
             if seen[1] - seen[0] > best.0[1] - best.0[0] {
                 best = (seen, tets);
             }
-            if (seen[1] - seen[0]) * length > ROOM {
+            if (seen[1] - seen[0]) * length > MIN_INTERVAL {
                 break;
             }
         }

@@ -7,15 +7,15 @@
 use hashbrown::HashSet;
 
 use super::cut::{Cut, Face, Stuck};
-use super::flats::Flats;
-use super::pierce::Pierce;
+use super::flats::FlatFacets;
+use super::pierce::PiercedFacet;
 use super::plane::Plane;
+use super::recovery::{Order, Part, Unrecovered};
 use super::segments::Segments;
 use super::sites::Sites;
-use super::split::Kept;
+use super::split::Protected;
 use super::tets::Tets;
-use super::unmade::{Order, Part, Unmade};
-use super::wrap::Wrap;
+use super::wrap::GiftWrap;
 use crate::base::{Csr, Error, TetId, VertexId, sorted_ids};
 use crate::kernel::HalfFacet;
 
@@ -26,10 +26,10 @@ pub(super) fn recover(
     sites: &mut Sites,
     segments: &Segments,
     triangles: &[[VertexId; 3]],
-    flats: &Flats,
+    flats: &FlatFacets,
     may_swap: bool,
     order: &Order,
-) -> Result<Csr<[VertexId; 3]>, Unmade> {
+) -> Result<Csr<[VertexId; 3]>, Unrecovered> {
     let on_segments = segments.points(sites);
     let mut work = Work::default();
     let mut all_parts = vec![Vec::new(); flats.triangles.len()];
@@ -61,14 +61,15 @@ pub(super) fn recover(
     Ok(parts)
 }
 
-fn stuck(sites: &Sites, i: u32, triangle: [VertexId; 3]) -> Unmade {
+fn stuck(sites: &Sites, i: u32, triangle: [VertexId; 3]) -> Unrecovered {
     let corners = triangle.map(|v| sites.near(v));
     let [a, b, c] = triangle;
-    let error =
-        Error::input(format!("the triangle of points {a}, {b} and {c} could not be recovered as facets of tets"))
-            .at(format!("triangle {i}, at {:?}", corners[0]))
-            .remedy("check for triangles that cross or touch it");
-    Unmade { what: Some(Part::Triangle(i)), error }
+    let error = Error::input(format!(
+        "the triangle of points {a}, {b} and {c} could not be recovered as facets of tets"
+    ))
+    .at(format!("triangle {i}, at {:?}", corners[0]))
+    .remedy("check for triangles that cross or touch it");
+    Unrecovered { what: Some(Part::Triangle(i)), error }
 }
 
 /// The edges and facets of the surface that exist so far.
@@ -77,7 +78,7 @@ struct Walls<'a> {
     walls: &'a HashSet<[VertexId; 3]>,
 }
 
-impl Kept for Walls<'_> {
+impl Protected for Walls<'_> {
     fn has_edge(&self, edge: [VertexId; 2]) -> bool {
         self.segments.has_piece(edge)
     }
@@ -126,7 +127,7 @@ fn parts_of(sites: &Sites, polygon: &[VertexId], triangle: [VertexId; 3]) -> Vec
 #[derive(Default)]
 struct Work {
     cut: Cut,
-    wrap: Wrap,
+    wrap: GiftWrap,
     /// All parts so far, vertices in ascending order.
     walls: HashSet<[VertexId; 3]>,
     star: Vec<TetId>,
@@ -148,7 +149,7 @@ impl Work {
         own: &mut Vec<[VertexId; 3]>,
     ) -> Result<(), Stuck> {
         let first = triangles[0].1;
-        let mut pierce = Pierce::new(triangles, own);
+        let mut pierce = PiercedFacet::new(triangles, own);
         let kept = Walls { segments, walls: &self.walls };
         if pierce.swap_all(tets, sites, &kept)
             && let Some(facets) = pierce.facets(tets, sites)

@@ -4,25 +4,21 @@
 //! Such a tet has two opposite edges that nearly cross; where all tets around one of them are remade from a
 //! point inside, only the other sides of the flat tets limit where that point may lie.
 
-use super::keep::{Exchange, Keep};
-use super::recone::Side;
+use super::flatness::is_flat;
+use super::refill::Side;
+use super::repair::{Exchange, SurfaceRepair};
 use super::tets::Tets;
-use crate::base::{Point, TetId, VertexId, sorted_ids};
-use crate::geometry::tet::{EDGES, volume};
-use crate::geometry::triangle::area;
-use crate::geometry::vector::{add, distance, scale};
-
-/// If six times a volume is below this times the largest coordinate and the square of the longest edge, it
-/// may be rounding alone.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+use crate::base::{TetId, VertexId, sorted_ids};
+use crate::geometry::tet::EDGES;
+use crate::geometry::vector::{add, scale};
 
 /// The number of rounds; more than one, since new tets may be flat as well.
-const ROUNDS: usize = 4;
+const MAX_ROUNDS: usize = 4;
 
-impl Keep<'_> {
+impl SurfaceRepair<'_> {
     /// Remakes tets without volume, where possible.
     pub(super) fn remove_flat(&mut self) {
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             let is_inside = |tet: &TetId| self.bodies.of_slot[tet.index()] != 0;
             let all =
                 self.tets.iter().filter(|(tet, v)| is_inside(tet) && is_flat(v.map(|v| self.sites.near(v))));
@@ -72,25 +68,4 @@ impl Keep<'_> {
         let middle = scale(add(p, q), 0.5);
         self.commit(sides, middle, Exchange { old: &old, base: &base }, false)
     }
-}
-
-/// Whether the volume of a tet may be rounding alone.
-pub(super) fn is_flat(corners: [Point; 4]) -> bool {
-    let longest = longest(&corners);
-    6.0 * volume(corners) <= rounding(&corners) * longest * longest
-}
-
-/// Whether a triangle is so thin that no tet on it has a volume distinguishable from rounding.
-pub(super) fn is_needle(corners: [Point; 3]) -> bool {
-    2.0 * area(corners) <= rounding(&corners) * longest(&corners)
-}
-
-fn rounding(corners: &[Point]) -> f64 {
-    ROUNDING * corners.as_flattened().iter().fold(0.0f64, |largest, x| largest.max(x.abs()))
-}
-
-fn longest(corners: &[Point]) -> f64 {
-    let to_others =
-        |(i, p): (usize, &Point)| corners[..i].iter().map(|q| distance(*p, *q)).fold(0.0, f64::max);
-    corners.iter().enumerate().map(to_others).fold(0.0, f64::max)
 }

@@ -8,23 +8,19 @@
 
 use hashbrown::{HashMap, HashSet};
 
-use super::keep::Keep;
-use super::recone::{Side, is_seen, makes_flat};
+use super::refill::{Side, is_seen, makes_flat};
+use super::repair::SurfaceRepair;
 use super::tets::Tets;
 use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::vector::{add, scale};
 
 /// The largest number of tets in one cavity.
-const MOST: usize = 1024;
-
-/// The number of failed attempts at enlarging cavities that are allowed, each success allowing one more:
-/// where walls are as close to each other as floating-point numbers allow, nothing helps.
-pub(super) const MOST_IN_VAIN: usize = 128;
+const MAX_TETS: usize = 1024;
 
 /// Distances of the point from the surface to try, as fractions of the distance to the facets around.
-const WAYS: [f64; 8] = [0.3, 0.15, 0.6, 0.06, 0.02, 5e-3, 1e-3, 1e-4];
+const FRACTIONS: [f64; 8] = [0.3, 0.15, 0.6, 0.06, 0.02, 5e-3, 1e-3, 1e-4];
 
-impl Keep<'_> {
+impl SurfaceRepair<'_> {
     /// Finds a point near `middle` that sees all facets of the cavity `sides[i]`; a cavity without such a
     /// point gets more tets. All tets from the point to the facets have a volume in the digits of their
     /// coordinates; where that is impossible and they `may_be_flat`, they are merely positive.
@@ -39,16 +35,17 @@ impl Keep<'_> {
         if let Some(p) = place.filter(|&p| !sides[i].is_flat_from(self.sites, p)) {
             return Some(p);
         }
-        if self.n_in_vain_left > 0 {
+        if self.n_failures_left > 0 {
             let (directions, _) = sides[i].directions(self.sites, middle);
-            let points =
-                WAYS.iter().flat_map(|&way| directions.map(|direction| add(middle, scale(direction, way))));
+            let points = FRACTIONS
+                .iter()
+                .flat_map(|&way| directions.map(|direction| add(middle, scale(direction, way))));
             if let Some((side, p)) = points.filter_map(|p| Some((self.enlarged(sides, i, p)?, p))).next() {
-                self.n_in_vain_left += 1;
+                self.n_failures_left += 1;
                 sides[i] = side;
                 return Some(p);
             }
-            self.n_in_vain_left -= 1;
+            self.n_failures_left -= 1;
         }
         place.filter(|_| may_be_flat)
     }
@@ -72,7 +69,7 @@ impl Keep<'_> {
                 && self.bodies.of_slot[behind.tet().index()] == body
                 && self.wall(behind).is_none()
                 && !side.tets.contains(&behind.tet());
-            if !may_be_added || side.tets.len() == MOST {
+            if !may_be_added || side.tets.len() == MAX_TETS {
                 return None;
             }
             side.tets.push(behind.tet());
@@ -99,9 +96,9 @@ impl Keep<'_> {
             }
         }
         let around: HashSet<VertexId> = edges.keys().flatten().copied().collect();
-        let is_kept_or_spare = |v: VertexId| around.contains(&v) || self.sites.is_steiner_inside(v);
+        let is_kept_or_removable = |v: VertexId| around.contains(&v) || self.sites.is_steiner_inside(v);
         edges.values().all(|&n| n == 2)
-            && side.tets.iter().flat_map(|&tet| self.tets.vertices(tet)).all(is_kept_or_spare)
+            && side.tets.iter().flat_map(|&tet| self.tets.vertices(tet)).all(is_kept_or_removable)
     }
 
     /// Whether no other cavity of `sides` has a tet of this one, or a tet behind its facets.

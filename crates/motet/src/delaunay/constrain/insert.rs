@@ -82,14 +82,14 @@ impl Insertion {
 /// The tet that contains a vertex not yet inserted, found by a visibility walk: it cannot cycle in a Delaunay
 /// triangulation (Edelsbrunner 1989), and the box around all points keeps it inside.
 fn locate(tets: &Tets, sites: &Sites, vertex: VertexId, start: TetId) -> TetId {
-    let (mut tet, mut came) = (start, HalfFacet::NONE);
+    let (mut tet, mut entered) = (start, HalfFacet::NONE);
     loop {
         let leads = |half: &HalfFacet| {
             let [a, b, c] = tets.inward(*half);
-            *half != came && !tets.across(*half).is_none() && sites.orient3d([a, b, c, vertex]) < 0
+            *half != entered && !tets.across(*half).is_none() && sites.orient3d([a, b, c, vertex]) < 0
         };
         let Some(half) = Tets::facets(tet).into_iter().find(leads) else { return tet };
-        came = tets.across(half);
-        tet = came.tet();
+        entered = tets.across(half);
+        tet = entered.tet();
     }
 }

@@ -1,14 +1,25 @@
 //! Ways of joining triangles to flat facets: where one way has failed, another is tried, at that place only.
 
-use super::flats::{Grown, Merge};
-use super::unmade::Part;
+use super::grown::GrownFacets;
+use super::recovery::Part;
 use crate::base::{Csr, VertexId};
+
+/// The neighbours with which a triangle may be joined.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Merge {
+    /// None.
+    None,
+    /// Those exactly in its plane.
+    Exact,
+    /// Those that may have been in its plane before coordinates were rounded.
+    Rounded,
+}
 
 /// The way in which each triangle may be joined with its neighbours. Triangles coplanar up to rounding change
 /// together from one way to the next.
 pub(super) struct Levels<'a> {
     triangles: &'a [[VertexId; 3]],
-    pub(super) grown: &'a Grown,
+    pub(super) grown: &'a GrownFacets,
     /// The triangles of each facet of `grown`.
     members: Csr<u32>,
     of_facet: Vec<Merge>,
@@ -16,7 +27,7 @@ pub(super) struct Levels<'a> {
 
 impl<'a> Levels<'a> {
     /// Starts with triangles joined that are exactly coplanar.
-    pub(super) fn new(triangles: &'a [[VertexId; 3]], grown: &'a Grown) -> Self {
+    pub(super) fn new(triangles: &'a [[VertexId; 3]], grown: &'a GrownFacets) -> Self {
         let n = grown.firsts.len();
         let facets = || grown.number.iter().enumerate().map(|(i, &of)| (of as usize, i as u32));
         Self { triangles, grown, members: Csr::from_pairs(n, facets), of_facet: vec![Merge::Exact; n] }

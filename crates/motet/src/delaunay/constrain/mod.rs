@@ -3,10 +3,10 @@
 //! | step | file | how |
 //! |---|---|---|
 //! | start | here | the Delaunay triangulation of all vertices, within a large box |
-//! | edges | `edges`, `way`, `swap`, `split` | a missing edge of the surface is recovered by swaps of tets; where no swap helps, a point is put on it |
+//! | edges | `edges`, `path`, `swap`, `split` | a missing edge of the surface is recovered by swaps of tets; where no swap helps, a point is put on it |
 //! | facets | `facets`, `pierce`, `cut`, `wrap` | a missing triangle is recovered by swaps; or the tets that it cuts are removed and both hollows are refilled; or points are put in it |
 //! | bodies | `bodies` | the bodies that the surfaces separate |
-//! | surface | `keep`, `restore`, `recone`, `grow` | points on edges and in triangles are moved inside |
+//! | surface | `repair`, `restore`, `refill`, `grow` | points on edges and in triangles are moved inside |
 //!
 //! At first, triangles in one plane form one flat facet (`flats`). Where such a facet does not come out with
 //! its given triangles, or comes out with tets that have no volume in the digits of their coordinates,
@@ -36,15 +36,19 @@ mod edges;
 mod facets;
 mod finish;
 mod flat_tets;
+mod flatness;
 mod flats;
 mod grow;
+mod grown;
 mod hollow;
 mod insert;
-mod keep;
 mod levels;
+mod path;
 mod pierce;
 mod plane;
-mod recone;
+mod recovery;
+mod refill;
+mod repair;
 mod restore;
 mod segments;
 mod share;
@@ -54,8 +58,6 @@ mod sites;
 mod split;
 mod swap;
 mod tets;
-mod unmade;
-mod way;
 mod wrap;
 
 use hashbrown::HashSet;
@@ -69,13 +71,14 @@ use crate::geometry::vector::{add, distance, scale};
 use crate::mesh::bounds;
 use bodies::Bodies;
 use edges::Edges;
-use flat_tets::is_flat;
-use flats::{Flats, Grown};
-use keep::Keep;
+use flatness::is_flat;
+use flats::FlatFacets;
+use grown::GrownFacets;
+use recovery::{Order, Unrecovered};
+use repair::SurfaceRepair;
 use segments::Segments;
 use sites::Sites;
 use tets::Tets;
-use unmade::{Order, Unmade};
 
 /// The box around all points is larger than their own by this factor: at this distance it hardly makes an
 /// edge less Delaunay.
@@ -161,7 +164,7 @@ pub fn constrain(
     check_distinct(&triangulation, triangles)?;
     given.extend(far_around(&given));
     let moves = edge_points == EdgePoints::MoveInside;
-    let fill = |flats: &Flats, order: &Order| {
+    let fill = |flats: &FlatFacets, order: &Order| {
         let (tets, sites) = (Tets::new(&triangulation), Sites::new(given.clone(), &sorted));
         Filled::new(tets, sites, points.len(), triangles, flats.clone(), edge_points, order)
     };
@@ -169,8 +172,9 @@ pub fn constrain(
     let filled = if moves {
         attempts::best(&sites, triangles, back.rounding(rounding::of(points)), threads.watch(), fill)?
     } else {
-        let flats = Flats::of_each(triangles);
-        Order::retried(0, threads.watch(), |order| fill(&flats, order)).map_err(|unmade| unmade.error)?
+        let flats = FlatFacets::of_each(triangles);
+        Order::with_retries(0, threads.watch(), |order| fill(&flats, order))
+            .map_err(|unrecovered| unrecovered.error)?
     };
     Ok(filled.finish(points, triangles, back))
 }
@@ -179,7 +183,7 @@ pub fn constrain(
 /// or up to a `rounding` of each coordinate, have the same number. Points must be finite, and each triangle
 /// must name three different ones.
 pub(crate) fn flat_facets(points: &[Point], triangles: &[[VertexId; 3]], rounding: f64) -> Vec<u32> {
-    Grown::find(&Sites::new(points.to_vec(), &[]), triangles, [rounding; 3]).number
+    GrownFacets::find(&Sites::new(points.to_vec(), &[]), triangles, [rounding; 3]).number
 }
 
 fn check_ids(points: &[Point], triangles: &[[VertexId; 3]]) -> Result<()> {
@@ -266,7 +270,7 @@ struct Filled {
     tets: Tets,
     sites: Sites,
     segments: Segments,
-    flats: Flats,
+    flats: FlatFacets,
     bodies: Bodies,
     parts: Csr<[VertexId; 3]>,
     /// Flat facets whose triangles differ from those given.
@@ -279,10 +283,10 @@ impl Filled {
         mut sites: Sites,
         n_points: usize,
         triangles: &[[VertexId; 3]],
-        flats: Flats,
+        flats: FlatFacets,
         edge_points: EdgePoints,
         order: &Order,
-    ) -> Result<Self, Unmade> {
+    ) -> Result<Self, Unrecovered> {
         let is_kept = edge_points == EdgePoints::MoveInside;
         let mut segments = Segments::new(flats.creases.clone());
         if is_kept {
@@ -294,7 +298,7 @@ impl Filled {
         let mut bodies = Bodies::find(&mut tets, &flats, &parts, VertexId::new(n_points))?;
         let mut unrestored = Vec::new();
         if is_kept {
-            let keep = Keep::new(&mut tets, &mut sites, &mut bodies, triangles, &flats, &parts);
+            let keep = SurfaceRepair::new(&mut tets, &mut sites, &mut bodies, triangles, &flats, &parts);
             (parts, unrestored) = keep.run(&segments, &order.watch)?;
         }
         Ok(Self { tets, sites, segments, flats, bodies, parts, unrestored })

@@ -9,20 +9,20 @@ use hashbrown::HashSet;
 use super::plane::Plane;
 use super::sides::Sides;
 use super::sites::Sites;
-use super::split::{Kept, Split, faces_around, positive_part, round_between};
-use super::swap::{Swap, Wanted};
+use super::split::{Protected, Split, faces_around, positive_part, round_between};
+use super::swap::{Swap, Target};
 use super::tets::Tets;
 use crate::base::{TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 
 /// The largest number of points put in one flat facet.
-const MOST: usize = 4000;
+const MAX_POINTS: usize = 4000;
 
 /// The number of times that a point is moved to the middle of its permitted range, in each of two directions.
 const STEPS: usize = 3;
 
 /// A flat facet that is missing.
-pub(super) struct Pierce {
+pub(super) struct PiercedFacet {
     /// The triangles given, with their numbers.
     triangles: Vec<(u32, [VertexId; 3])>,
     sides: Sides,
@@ -49,7 +49,7 @@ struct Whole<'a, K> {
     kept: &'a K,
 }
 
-impl<K: Kept> Kept for Whole<'_, K> {
+impl<K: Protected> Protected for Whole<'_, K> {
     fn has_edge(&self, edge: [VertexId; 2]) -> bool {
         self.kept.has_edge(edge)
     }
@@ -59,7 +59,7 @@ impl<K: Kept> Kept for Whole<'_, K> {
     }
 }
 
-impl<K: Kept> Wanted for Whole<'_, K> {
+impl<K: Protected> Target for Whole<'_, K> {
     fn meets_facet(&self, _: [VertexId; 3]) -> u32 {
         0
     }
@@ -82,7 +82,7 @@ fn pierces(sites: &Sites, [u, v]: [VertexId; 2], [a, b, c]: [VertexId; 3]) -> bo
     is_in(sites, [u, v], [a, b, c]) && sites.orient3d([a, b, c, u]) * sites.orient3d([a, b, c, v]) < 0
 }
 
-impl Pierce {
+impl PiercedFacet {
     /// A missing flat facet given as `triangles`, at least one, that is to consist of `parts`, oriented like
     /// the first triangle.
     pub(super) fn new(triangles: Vec<(u32, [VertexId; 3])>, parts: &[[VertexId; 3]]) -> Self {
@@ -113,7 +113,7 @@ impl Pierce {
     }
 
     /// Makes it a union of facets by swaps, without points inside; returns whether that succeeded.
-    pub(super) fn swap_all(&mut self, tets: &mut Tets, sites: &Sites, kept: &impl Kept) -> bool {
+    pub(super) fn swap_all(&mut self, tets: &mut Tets, sites: &Sites, kept: &impl Protected) -> bool {
         loop {
             self.find_piercing(tets, sites, kept);
             let wanted = Whole { sites, sides: &self.sides, parts: &self.parts, kept };
@@ -129,10 +129,10 @@ impl Pierce {
         mut self,
         tets: &mut Tets,
         sites: &mut Sites,
-        kept: &impl Kept,
+        kept: &impl Protected,
     ) -> Option<Vec<[VertexId; 3]>> {
         while !self.swap_all(tets, sites, kept) {
-            if self.n_added == MOST {
+            if self.n_added == MAX_POINTS {
                 return None;
             }
             self.pierce(tets, sites, kept)?;
@@ -142,7 +142,7 @@ impl Pierce {
 
     /// Inserts a point where one of the edges pierces: the first possible one, starting from the middle of
     /// the list.
-    fn pierce(&mut self, tets: &mut Tets, sites: &mut Sites, kept: &impl Kept) -> Option<()> {
+    fn pierce(&mut self, tets: &mut Tets, sites: &mut Sites, kept: &impl Protected) -> Option<()> {
         let n = self.piercing.len();
         for i in 0..n {
             let (tet, edge) = self.piercing[(n / 2 + i) % n];
@@ -164,7 +164,7 @@ impl Pierce {
     }
 
     /// Collects the edges that pierce the triangle, each once, with one tet of each.
-    fn find_piercing(&mut self, tets: &mut Tets, sites: &Sites, kept: &impl Kept) {
+    fn find_piercing(&mut self, tets: &mut Tets, sites: &Sites, kept: &impl Protected) {
         self.sides.grow(sites);
         let mut cut = std::mem::take(&mut self.cut);
         cut.clear();

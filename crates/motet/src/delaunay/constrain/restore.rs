@@ -2,14 +2,14 @@
 
 use std::collections::VecDeque;
 
-use super::keep::{Exchange, Keep};
 use super::plane::Net;
+use super::repair::{Exchange, SurfaceRepair};
 use super::tets::Tets;
 use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::kernel::HalfFacet;
 
-impl Keep<'_> {
+impl SurfaceRepair<'_> {
     /// Gives a flat facet back its given triangles, edge by edge, by flips (Sloan 1993, *A fast algorithm for
     /// generating constrained Delaunay triangulations*); `None` where a flip has no space.
     pub(super) fn restore(&mut self, flat: usize, list: &mut [[VertexId; 3]]) -> Option<()> {

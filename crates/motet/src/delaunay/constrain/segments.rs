@@ -19,24 +19,24 @@ use std::collections::VecDeque;
 use hashbrown::HashMap;
 
 use super::insert::Insertion;
+use super::recovery::{Part, Unrecovered};
 use super::share::Share;
 use super::sites::{OnSegment, Place, SegmentId, Sites};
 use super::tets::Tets;
-use super::unmade::{Part, Unmade};
 use crate::base::{Csr, Error, TetId, VertexId, Watch, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{distance, dot, sub};
 
 /// The number of points on segments beyond which recovery is given up as endless, in addition to
-/// [`POINTS_A_SEGMENT`] per segment.
-const SPARE_POINTS: usize = 8_000;
-const POINTS_A_SEGMENT: usize = 40;
+/// [`POINTS_PER_SEGMENT`] per segment.
+const BASE_POINTS: usize = 8_000;
+const POINTS_PER_SEGMENT: usize = 40;
 
 /// Pieces below this fraction of their segment are small.
 const SMALL: f64 = 1.0 / 256.0;
 
 /// A piece is not divided nearer to an end than this fraction of its length.
-const LEAST: f64 = 0.005;
+const MIN_FRACTION: f64 = 0.005;
 
 /// The edges of the surface and the pieces into which they are divided.
 pub(super) struct Segments {
@@ -123,9 +123,9 @@ impl Segments {
         tets: &mut Tets,
         sites: &mut Sites,
         watch: &Watch,
-    ) -> Result<(), Unmade> {
+    ) -> Result<(), Unrecovered> {
         let mut queue: VecDeque<[VertexId; 2]> = self.missing(tets).into();
-        let most = SPARE_POINTS + POINTS_A_SEGMENT * self.ends.len();
+        let most = BASE_POINTS + POINTS_PER_SEGMENT * self.ends.len();
         let (mut insertion, mut star) = (Insertion::default(), Vec::new());
         let mut n_made = 0;
         while let Some(piece) = queue.pop_front() {
@@ -136,7 +136,11 @@ impl Segments {
                 continue;
             }
             if sites.n_on_segments() == most {
-                return Err(self.refused(sites, segment, "needs, together with other edges, too many points on edges"));
+                return Err(self.refused(
+                    sites,
+                    segment,
+                    "needs, together with other edges, too many points on edges",
+                ));
             }
             let Some(share) = self.where_to_divide(tets, sites, segment, piece, &mut star) else {
                 return Err(self.refused(
@@ -154,12 +158,12 @@ impl Segments {
         Ok(())
     }
 
-    pub(super) fn refused(&self, sites: &Sites, segment: SegmentId, why: &str) -> Unmade {
+    pub(super) fn refused(&self, sites: &Sites, segment: SegmentId, why: &str) -> Unrecovered {
         let [a, b] = self.ends(segment);
         let error = Error::input(format!("the edge of points {a} and {b} {why}"))
             .at(format!("the edge from {:?} to {:?}", sites.near(a), sites.near(b)))
             .remedy("use less stretched triangles there, or keep the surface farther from itself");
-        Unmade { what: Some(Part::Edge([a, b])), error }
+        Unrecovered { what: Some(Part::Edge([a, b])), error }
     }
 
     /// The segments that are not edges of tets; ascending.
@@ -195,7 +199,8 @@ impl Segments {
         let [low, high] = ends.map(|v| self.share(sites, segment, v).near());
         let sharpest = sharpest(tets, sites, ends, star);
         let from_corner = sharpest.and_then(|p| self.as_far(sites, segment, p));
-        let is_well_within = |&s: &f64| (LEAST..1.0 - LEAST).contains(&((s - low) / (high - low)));
+        let is_well_within =
+            |&s: &f64| (MIN_FRACTION..1.0 - MIN_FRACTION).contains(&((s - low) / (high - low)));
         let share = from_corner.filter(is_well_within).unwrap_or_else(|| {
             low + (high - low) * sharpest.map_or(0.5, |p| within(sites, ends, p, high - low < SMALL))
         });
@@ -223,7 +228,7 @@ fn within(sites: &Sites, ends: [VertexId; 2], p: VertexId, is_small: bool) -> f6
     let length = distance(a, b);
     if !is_small {
         let foot = dot(sub(p, a), sub(b, a)) / (length * length);
-        return if (LEAST..1.0 - LEAST).contains(&foot) { foot } else { 0.5 };
+        return if (MIN_FRACTION..1.0 - MIN_FRACTION).contains(&foot) { foot } else { 0.5 };
     }
     let [to_a, to_b] = [distance(a, p) / length, distance(b, p) / length];
     let or_middle = |x: f64| if x > 0.0 && x < 0.8 { x } else { 0.5 };

@@ -4,17 +4,17 @@
 //! in between. These are positive, but too flat for anything to be done with them: no number lies between
 //! their vertices. On which side of them the facet passes is free to choose. Where all of them are outside,
 //! each tet inside at the facet has an apex away from it, and the triangles of the facet can be changed as if
-//! it were exactly flat (`keep`).
+//! it were exactly flat (`repair`).
 
 use hashbrown::HashSet;
 
-use super::keep::{Exchange, Keep};
 use super::plane::Net;
+use super::repair::{Exchange, SurfaceRepair};
 use super::tets::Tets;
 use crate::base::{TetId, VertexId, sorted_ids};
 use crate::kernel::HalfFacet;
 
-impl Keep<'_> {
+impl SurfaceRepair<'_> {
     /// Assigns the flat tets in flat facets to the outside, where that leaves valid facets.
     pub(super) fn shed(&mut self) {
         let mut star = Vec::new();

@@ -8,7 +8,7 @@ use crate::geometry::tet::EDGES;
 use crate::kernel::HalfFacet;
 
 /// The edges and facets that must not be lost.
-pub(super) trait Kept {
+pub(super) trait Protected {
     fn has_edge(&self, edge: [VertexId; 2]) -> bool;
     fn has_facet(&self, face: [VertexId; 3]) -> bool;
 }
@@ -30,7 +30,7 @@ impl Split {
         sites: &Sites,
         vertex: VertexId,
         (among, wanted): (&[TetId], &[TetId]),
-        kept: &impl Kept,
+        kept: &impl Protected,
     ) -> bool {
         let holds = |&tet: &TetId| holds(tets, sites, tet, vertex);
         let mut core: Vec<TetId> = among.iter().copied().filter(holds).collect();
@@ -60,7 +60,7 @@ impl Split {
         vertex: VertexId,
         start: &[TetId],
         grows: bool,
-        kept: &impl Kept,
+        kept: &impl Protected,
     ) -> bool {
         tets.begin();
         self.cavity.clear();
@@ -107,7 +107,7 @@ impl Split {
         !self.shell.is_empty() && self.loses_nothing(tets, kept)
     }
 
-    fn loses_nothing(&self, tets: &Tets, kept: &impl Kept) -> bool {
+    fn loses_nothing(&self, tets: &Tets, kept: &impl Protected) -> bool {
         let mut around: Vec<[VertexId; 2]> =
             self.shell.iter().flat_map(|&(_, [a, b, c])| [[a, b], [b, c], [c, a]].map(sorted_ids)).collect();
         around.sort_unstable();

@@ -7,17 +7,17 @@
 //! dynamic programming).
 
 use super::sites::Sites;
-use super::split::Kept;
+use super::split::Protected;
 use super::tets::Tets;
 use crate::base::{TetId, VertexId};
 use crate::kernel::HalfFacet;
 
 /// The most tets that an edge may have to be removed.
-const LARGEST_RING: usize = 10;
+const MAX_RING: usize = 10;
 
 /// Counts what would be in the way of the part to be recovered; edges and facets that must not be lost are
 /// never swapped away.
-pub(super) trait Wanted: Kept {
+pub(super) trait Target: Protected {
     fn meets_facet(&self, face: [VertexId; 3]) -> u32;
     fn meets_edge(&self, edge: [VertexId; 2]) -> u32;
 }
@@ -35,7 +35,7 @@ pub(super) struct Swap {
 impl Swap {
     /// Replaces the two tets at a facet that is in the way by three, if these are positive and the facets and
     /// the edge that they share are not in the way. Returns whether it did.
-    pub(super) fn open(tets: &mut Tets, sites: &Sites, half: HalfFacet, wanted: &impl Wanted) -> bool {
+    pub(super) fn open(tets: &mut Tets, sites: &Sites, half: HalfFacet, wanted: &impl Target) -> bool {
         let ([p, q, r], other) = (tets.inward(half), tets.across(half));
         let [c, d] = [half, other].map(|half| tets.vertices(half.tet())[half.facet()]);
         let new = [[p, q, d, c], [q, r, d, c], [r, p, d, c]];
@@ -57,7 +57,7 @@ impl Swap {
         sites: &Sites,
         edge: [VertexId; 2],
         first: TetId,
-        wanted: &impl Wanted,
+        wanted: &impl Target,
         spare: u32,
     ) -> bool {
         let [u, v] = edge;
@@ -89,7 +89,7 @@ impl Swap {
 
     /// Finds the best triangulation of the polygon around `edge` among those with less than `limit` in the
     /// way.
-    fn plan(&mut self, sites: &Sites, [u, v]: [VertexId; 2], limit: u32, wanted: &impl Wanted) {
+    fn plan(&mut self, sites: &Sites, [u, v]: [VertexId; 2], limit: u32, wanted: &impl Target) {
         let (n, w) = (self.around.len(), &self.around);
         self.best.clear();
         self.best.resize(n * n, None);
@@ -147,7 +147,7 @@ impl Swap {
         loop {
             self.ring.push(tet);
             let other = tets.across(half);
-            if other.is_none() || self.ring.len() > LARGEST_RING {
+            if other.is_none() || self.ring.len() > MAX_RING {
                 return None;
             }
             if other.tet() == first {

@@ -19,11 +19,11 @@ use crate::geometry::tet::{EDGES, FACETS};
 use crate::kernel::HalfFacet;
 
 /// Hollows of at most this many faces are filled without a guide.
-const UNGUIDED: usize = 32;
+const MAX_UNGUIDED: usize = 32;
 
 /// Buffers reused from one hollow to the next, and the tets made.
 #[derive(Default)]
-pub(super) struct Wrap {
+pub(super) struct GiftWrap {
     /// The faces around what is still hollow, by their vertices as seen from there: a wall inside has two
     /// sides.
     open: HashMap<[VertexId; 3], Face>,
@@ -40,7 +40,7 @@ pub(super) struct Wrap {
     made: Vec<TetId>,
 }
 
-impl Wrap {
+impl GiftWrap {
     /// Fills the hollow within `faces`; `vertices` are those of its old tets.
     pub(super) fn fill(
         &mut self,
@@ -79,7 +79,7 @@ impl Wrap {
         self.vertices.extend(faces.iter().flat_map(|f| f.vertices).chain(vertices.iter().copied()));
         self.vertices.sort_unstable();
         self.vertices.dedup();
-        self.is_guided = faces.len() > UNGUIDED;
+        self.is_guided = faces.len() > MAX_UNGUIDED;
         if self.is_guided {
             self.guide.build(sites, &self.vertices);
         }

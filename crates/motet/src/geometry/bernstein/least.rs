@@ -27,7 +27,7 @@ pub struct Least {
 }
 
 /// The number of parts of the domain after which a search is given up.
-const MOST_PARTS: usize = 1 << 10;
+const MAX_PARTS: usize = 1 << 10;
 
 impl Domain {
     /// Prepares the domain for polynomials of this basis.
@@ -134,7 +134,7 @@ pub fn least(domain: &Domain, coefficients: &[f64], is_enough: impl Fn(f64, f64)
     let mut n_made = 1;
     while let Some(part) = parts.pop() {
         least.bound = part.bound.min(least.value);
-        if least.bound == least.value || is_enough(least.bound, least.value) || n_made >= MOST_PARTS {
+        if least.bound == least.value || is_enough(least.bound, least.value) || n_made >= MAX_PARTS {
             return least;
         }
         for half in part.halves(domain, n_made) {

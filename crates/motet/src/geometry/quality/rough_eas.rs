@@ -31,7 +31,7 @@ struct All<'a> {
 }
 
 /// The largest number of tets processed at a time on any machine.
-const MOST_LANES: usize = 8;
+const MAX_LANES: usize = 8;
 
 impl WithSimd for All<'_> {
     type Output = ();
@@ -42,7 +42,7 @@ impl WithSimd for All<'_> {
         for (tets, out) in tets.chunks(S::F64_LANES).zip(out.chunks_mut(S::F64_LANES)) {
             let rough = match tets.len() == S::F64_LANES {
                 true => some(simd, points, tets),
-                false => [f64::NAN; MOST_LANES],
+                false => [f64::NAN; MAX_LANES],
             };
             for l in 0..tets.len() {
                 // Over- and underflow end up here, and flat tets.
@@ -60,8 +60,8 @@ fn slowly(points: &[Point], [a, b, c, d]: [VertexId; 4]) -> f32 {
 
 /// The rough EAS of as many tets as the machine has lanes.
 #[inline(always)]
-fn some<S: Simd>(simd: S, points: &[Point], tets: &[[VertexId; 4]]) -> [f64; MOST_LANES] {
-    let mut gathered = [[[0.0; MOST_LANES]; 3]; 4];
+fn some<S: Simd>(simd: S, points: &[Point], tets: &[[VertexId; 4]]) -> [f64; MAX_LANES] {
+    let mut gathered = [[[0.0; MAX_LANES]; 3]; 4];
     for (l, tet) in tets.iter().enumerate() {
         for i in 0..4 {
             let point = points[tet[i].index()];
@@ -84,7 +84,7 @@ fn some<S: Simd>(simd: S, points: &[Point], tets: &[[VertexId; 4]]) -> [f64; MOS
 #[derive(Clone, Debug, Default)]
 pub struct RoughStar {
     /// For each group of tets, the coordinates of the other three vertices.
-    others: Vec<[[[f64; MOST_LANES]; 3]; 3]>,
+    others: Vec<[[[f64; MAX_LANES]; 3]; 3]>,
     n_tets: usize,
 }
 
@@ -96,10 +96,10 @@ impl RoughStar {
         self.others.clear();
         self.n_tets = 0;
         for (corners, vertex) in tets {
-            let lane = self.n_tets % MOST_LANES;
+            let lane = self.n_tets % MAX_LANES;
             if lane == 0 {
                 // Lanes that remain zero hold no tet.
-                self.others.push([[[0.0; MOST_LANES]; 3]; 3]);
+                self.others.push([[[0.0; MAX_LANES]; 3]; 3]);
             }
             let group = self.others.len() - 1;
             for (i, &corner) in FROM[vertex].iter().enumerate() {
@@ -135,7 +135,7 @@ impl WithSimd for At<'_> {
             corners[0][axis] = Lanes::splat(simd, place[axis]);
         }
         for (g, others) in star.others.iter().enumerate() {
-            let n = (star.n_tets - g * MOST_LANES).min(MOST_LANES);
+            let n = (star.n_tets - g * MAX_LANES).min(MAX_LANES);
             for start in (0..n).step_by(S::F64_LANES) {
                 for i in 0..3 {
                     for axis in 0..3 {
@@ -153,7 +153,7 @@ impl WithSimd for At<'_> {
 }
 
 #[cold]
-fn exactly(others: &[[[f64; MOST_LANES]; 3]; 3], place: Point, lane: usize) -> f64 {
+fn exactly(others: &[[[f64; MAX_LANES]; 3]; 3], place: Point, lane: usize) -> f64 {
     let other = |i: usize| [0, 1, 2].map(|axis| others[i][axis][lane]);
     eas([place, other(0), other(1), other(2)])
 }
@@ -289,8 +289,8 @@ impl<S: Simd> Lanes<S> {
     }
 
     #[inline(always)]
-    fn stored(self) -> [f64; MOST_LANES] {
-        let mut numbers = [0.0; MOST_LANES];
+    fn stored(self) -> [f64; MAX_LANES] {
+        let mut numbers = [0.0; MAX_LANES];
         S::as_mut_simd_f64s(&mut numbers).0[0] = self.1;
         numbers
     }

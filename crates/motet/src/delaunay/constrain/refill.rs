@@ -5,7 +5,7 @@
 //! same space (a cone). So the surface can be triangulated differently at the price of a point inside,
 //! whatever tets there are.
 
-use super::flat_tets::{is_flat, is_needle};
+use super::flatness::{is_flat, is_needle};
 use super::sites::Sites;
 use super::tets::Tets;
 use crate::base::{Point, TetId, VertexId};
@@ -29,7 +29,7 @@ pub(super) struct Side {
 
 /// Distances of the point from the surface to try, as fractions of the distance to the centre of the facets
 /// around.
-const WAYS: [f64; 12] = [0.6, 0.4, 0.25, 0.15, 0.08, 0.04, 0.02, 0.005, 1e-3, 1e-4, 1e-6, 1e-8];
+const FRACTIONS: [f64; 12] = [0.6, 0.4, 0.25, 0.15, 0.08, 0.04, 0.02, 0.005, 1e-3, 1e-4, 1e-6, 1e-8];
 
 impl Side {
     pub(super) fn faces(&self) -> impl Iterator<Item = [VertexId; 3]> + Clone + '_ {
@@ -40,7 +40,7 @@ impl Side {
     pub(super) fn place(&self, sites: &Sites, middle: Point) -> Option<Point> {
         let (directions, reach) = self.directions(sites, middle);
         let mut best: Option<(f64, Point)> = None;
-        for way in WAYS {
+        for way in FRACTIONS {
             for direction in directions {
                 let p = add(middle, scale(direction, way));
                 let worst = self.worst(sites, p);

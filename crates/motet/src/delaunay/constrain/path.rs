@@ -7,18 +7,18 @@ use crate::kernel::HalfFacet;
 
 /// After this many steps around a vertex all its tets are examined: a walk may cycle among tets that are not
 /// Delaunay.
-const STEPS: usize = 100;
+const MAX_STEPS: usize = 100;
 
 /// The tets that a segment touches, from one of its ends to the other.
 #[derive(Default)]
-pub(super) struct Way {
+pub(super) struct SegmentPath {
     pub(super) tets: Vec<TetId>,
     /// The facets between them that it meets, including those that it touches in an edge; each once.
     pub(super) facets: Vec<HalfFacet>,
     star: Vec<TetId>,
 }
 
-impl Way {
+impl SegmentPath {
     /// Follows the segment between two vertices; false where it is an edge of tets already, or no tet to
     /// start from is found.
     pub(super) fn find(&mut self, tets: &mut Tets, sites: &Sites, ends: [VertexId; 2]) -> bool {
@@ -51,25 +51,25 @@ impl Way {
     /// The tet at the first end into which the segment leads; `None` where it is an edge.
     fn first(&mut self, tets: &mut Tets, sites: &Sites, [a, b]: [VertexId; 2]) -> Option<TetId> {
         // A facet of the cone from a whose other side has b; `None` for the tet whose cone from a contains b.
-        let step = |tets: &Tets, tet: TetId, came: HalfFacet, turn: usize| {
+        let step = |tets: &Tets, tet: TetId, entered: HalfFacet, turn: usize| {
             let v = tets.vertices(tet);
             let leads = |half: &HalfFacet| {
                 let [p, q, r] = tets.inward(*half);
-                *half != came && v[half.facet()] != a && sites.orient3d([p, q, r, b]) < 0
+                *half != entered && v[half.facet()] != a && sites.orient3d([p, q, r, b]) < 0
             };
             (0..4).map(|i| HalfFacet::new(tet, (i + turn) % 4)).find(leads)
         };
-        let (mut tet, mut came) = (tets.at(a), HalfFacet::NONE);
-        for turn in 0..STEPS {
+        let (mut tet, mut entered) = (tets.at(a), HalfFacet::NONE);
+        for turn in 0..MAX_STEPS {
             if tets.vertices(tet).contains(&b) {
                 return None;
             }
-            let Some(half) = step(tets, tet, came, turn) else { return Some(tet) };
-            came = tets.across(half);
-            if came.is_none() {
+            let Some(half) = step(tets, tet, entered, turn) else { return Some(tet) };
+            entered = tets.across(half);
+            if entered.is_none() {
                 break;
             }
-            tet = came.tet();
+            tet = entered.tet();
         }
         tets.star(a, &mut self.star);
         if self.star.iter().any(|&tet| tets.vertices(tet).contains(&b)) {

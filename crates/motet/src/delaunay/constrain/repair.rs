@@ -1,7 +1,7 @@
 //! Repairs the surface: points on its edges and in its triangles move inside, and flat facets get back their
 //! given triangles.
 //!
-//! To remove such a point, each side that has tets gets a point inside (`recone`). A point stays on its edge
+//! To remove such a point, each side that has tets gets a point inside (`refill`). A point stays on its edge
 //! where a side has no space for one, such as at the free edge of a membrane. Tets outside are removed first:
 //! then nothing there can be in the way. They stay only where some triangles have no body on either side, to
 //! keep together what lies around an edge or a vertex; they are then remade like the others, but need not be
@@ -10,10 +10,9 @@
 use hashbrown::HashMap;
 
 use super::bodies::Bodies;
-use super::flats::Flats;
-use super::grow::MOST_IN_VAIN;
+use super::flats::FlatFacets;
 use super::plane::Plane;
-use super::recone::Side;
+use super::refill::Side;
 use super::segments::Segments;
 use super::sites::{Place, SegmentId, Sites};
 use super::tets::Tets;
@@ -25,20 +24,24 @@ use crate::kernel::HalfFacet;
 const FAIR: f64 = 1e-3;
 
 /// The number of rounds in which points without space are tried again.
-const ROUNDS: usize = 4;
+const MAX_ROUNDS: usize = 4;
+
+/// The number of failed attempts at enlarging cavities that are allowed, each success allowing one more:
+/// where walls are as close to each other as floating-point numbers allow, nothing helps.
+const MAX_FAILURES: usize = 128;
 
 /// The tets and the surface during the repair.
-pub(super) struct Keep<'a> {
+pub(super) struct SurfaceRepair<'a> {
     pub(super) tets: &'a mut Tets,
     pub(super) sites: &'a mut Sites,
     pub(super) bodies: &'a mut Bodies,
     /// The triangles as given.
     pub(super) triangles: &'a [[VertexId; 3]],
-    pub(super) flats: &'a Flats,
+    pub(super) flats: &'a FlatFacets,
     /// The flat facet of each facet of the surface; vertices in ascending order.
     pub(super) walls: HashMap<[VertexId; 3], u32>,
     /// The number of further failed attempts at enlarging cavities that are allowed (`grow`).
-    pub(super) n_in_vain_left: usize,
+    pub(super) n_failures_left: usize,
     /// The tets of each vertex, together with some that no longer have it.
     incident: Vec<Vec<TetId>>,
 }
@@ -51,13 +54,13 @@ pub(super) struct Exchange<'a> {
     pub(super) base: &'a [(u32, [VertexId; 3])],
 }
 
-impl<'a> Keep<'a> {
+impl<'a> SurfaceRepair<'a> {
     pub(super) fn new(
         tets: &'a mut Tets,
         sites: &'a mut Sites,
         bodies: &'a mut Bodies,
         triangles: &'a [[VertexId; 3]],
-        flats: &'a Flats,
+        flats: &'a FlatFacets,
         parts: &Csr<[VertexId; 3]>,
     ) -> Self {
         let of_flat = |(flat, list): (usize, &[[VertexId; 3]])| {
@@ -71,7 +74,7 @@ impl<'a> Keep<'a> {
             triangles,
             flats,
             walls,
-            n_in_vain_left: MOST_IN_VAIN,
+            n_failures_left: MAX_FAILURES,
             incident: Vec::new(),
         }
     }
@@ -84,7 +87,7 @@ impl<'a> Keep<'a> {
         watch: &Watch,
     ) -> Result<(Csr<[VertexId; 3]>, Vec<u32>)> {
         self.shed();
-        self.leave_out();
+        self.remove_outside();
         let on_segments = segments.points(self.sites);
         let mut chains: Vec<(u32, Vec<VertexId>)> = (0..on_segments.len() as u32)
             .map(|s| (s, on_segments.list(s as usize).to_vec()))
@@ -93,12 +96,12 @@ impl<'a> Keep<'a> {
         let is_in = |(v, place): (VertexId, Place)| matches!(place, Place::In(..)).then_some(v);
         let mut in_triangles: Vec<VertexId> = self.sites.all_placed().filter_map(is_in).collect();
         // Points without space at first may find some once their neighbours have moved.
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             in_triangles.retain(|&vertex| self.free(vertex, None).is_none());
             let n_chains = chains.len();
             for (i, (segment, points)) in chains.iter_mut().enumerate() {
                 watch.report_and_check("moving points off edges", i, n_chains)?;
-                self.free_all(segments.ends(SegmentId(*segment)), points);
+                self.move_all_inside(segments.ends(SegmentId(*segment)), points);
             }
             chains.retain(|(_, points)| !points.is_empty());
         }
@@ -117,7 +120,7 @@ impl<'a> Keep<'a> {
 
     /// Removes the tets outside where each triangle has a body at it: they are no longer needed. Records the
     /// remaining tets by vertex, since those of one vertex need not be connected then.
-    fn leave_out(&mut self) {
+    fn remove_outside(&mut self) {
         if self.bodies.sides.iter().all(|sides| *sides != [0; 2]) {
             let is_outside = |tet: &TetId| self.bodies.of_slot[tet.index()] == 0;
             let outside: Vec<TetId> = self.tets.iter().map(|(tet, _)| tet).filter(is_outside).collect();
@@ -151,7 +154,7 @@ impl<'a> Keep<'a> {
     }
 
     /// Moves inside those points of a segment that can be; leaves the others in the list.
-    fn free_all(&mut self, [mut before, last]: [VertexId; 2], points: &mut Vec<VertexId>) {
+    fn move_all_inside(&mut self, [mut before, last]: [VertexId; 2], points: &mut Vec<VertexId>) {
         let mut left = Vec::new();
         for (i, &vertex) in points.iter().enumerate() {
             let after = points.get(i + 1).copied().unwrap_or(last);
@@ -347,12 +350,12 @@ impl<'a> Keep<'a> {
                 self.find_apex(&mut sides, i, middle, may_be_flat)?
             });
         }
-        let (mut on_base, mut came) = (Vec::new(), Vec::new());
+        let (mut on_base, mut new_inside) = (Vec::new(), Vec::new());
         for (side, place) in sides.iter().zip(places) {
             let is_inside = self.bodies.of_slot[side.tets[0].index()] != 0;
             let vertex = self.sites.add_point(place);
             let made = self.make(side, vertex);
-            came.extend(is_inside.then_some(vertex));
+            new_inside.extend(is_inside.then_some(vertex));
             let bare = side.base.iter().zip(&made[side.shell.len()..]);
             on_base.extend(bare.map(|(&face, &tet)| (sorted_ids(face), HalfFacet::new(tet, 3))));
         }
@@ -366,7 +369,7 @@ impl<'a> Keep<'a> {
             self.walls.remove(face);
         }
         self.walls.extend(base.iter().map(|&(flat, face)| (sorted_ids(face), flat)));
-        came.into_iter().for_each(|vertex| self.settle(vertex));
+        new_inside.into_iter().for_each(|vertex| self.remove_or_improve(vertex));
         Some(())
     }
 
@@ -382,7 +385,7 @@ impl<'a> Keep<'a> {
 
     /// Removes a point inside if another vertex can take its place; otherwise moves it to a better place.
     /// Without this, points nearby would have less and less space.
-    fn settle(&mut self, vertex: VertexId) {
+    fn remove_or_improve(&mut self, vertex: VertexId) {
         let mut star = Vec::new();
         self.tets.star(vertex, &mut star);
         let side = Side::of_star(self.tets, vertex, &star);

@@ -5,13 +5,13 @@ use crate::base::{Error, VertexId, Watch};
 
 /// An edge or a triangle of the surface that could not be made, and why.
 #[derive(Debug)]
-pub(super) struct Unmade {
+pub(super) struct Unrecovered {
     /// The part; `None` where the work was merely stopped by the watch or by another error.
     pub(super) what: Option<Part>,
     pub(super) error: Error,
 }
 
-impl From<Error> for Unmade {
+impl From<Error> for Unrecovered {
     fn from(error: Error) -> Self {
         Self { what: None, error }
     }
@@ -38,25 +38,27 @@ pub(super) struct Order {
 
 impl Order {
     /// Repeats `work`, moving each part that could not be made to the front of the line, then to its end,
-    /// until all are made. Gives up after `most` repetitions, or when a part could be made neither first nor
+    /// until all are made. Gives up after `max_retries` repetitions, or when a part could be made neither first nor
     /// last.
     ///
     /// # Errors
     /// The last failure.
-    pub(super) fn retried<T>(
-        most: usize,
+    pub(super) fn with_retries<T>(
+        max_retries: usize,
         watch: &Watch,
-        mut work: impl FnMut(&Self) -> Result<T, Unmade>,
-    ) -> Result<T, Unmade> {
+        mut work: impl FnMut(&Self) -> Result<T, Unrecovered>,
+    ) -> Result<T, Unrecovered> {
         let mut order = Self { watch: watch.clone(), ..Self::default() };
         let mut n_retries = 0;
         loop {
-            let unmade = match work(&order) {
+            let unrecovered = match work(&order) {
                 Ok(done) => return Ok(done),
-                Err(unmade) => unmade,
+                Err(unrecovered) => unrecovered,
             };
-            let is_hopeless = |what: &Part| n_retries == most || order.last.contains(what);
-            let Some(what) = unmade.what.filter(|what| !is_hopeless(what)) else { return Err(unmade) };
+            let is_hopeless = |what: &Part| n_retries == max_retries || order.last.contains(what);
+            let Some(what) = unrecovered.what.filter(|what| !is_hopeless(what)) else {
+                return Err(unrecovered);
+            };
             let was_first = order.first.first() == Some(&what);
             order.first.retain(|part| *part != what);
             if was_first {

@@ -1,10 +1,11 @@
 //! The triangle: area vector, centroid, angles, and the point on it closest to a given point; the normal of a
 //! surface where triangles meet.
 
+mod needle;
+
 use std::ops::Range;
 
 use crate::base::Point;
-use crate::geometry::needle;
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub, unit};
 
 /// Half the cross product of two sides: its length is the area, its direction the normal (from its tip the
