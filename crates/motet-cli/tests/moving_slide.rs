@@ -1,4 +1,5 @@
-//! `motet move` with patches that slide, interfaces that are driven, motions that contradict each other; `motet cap --flatten`.
+//! `motet move` with patches that slide, interfaces that are driven, motions that contradict each other;
+//! `motet cap --flatten`.
 
 mod common;
 

@@ -105,7 +105,8 @@ fn a_cycle_is_run_and_every_step_is_written_and_told() {
         assert!(mesh.point_field("velocity").is_some() && mesh.point_field("gap").is_some());
         assert!((content(&mesh) - before).abs() < 1e-11 * first.cells.len() as f64);
         let gap = line["gaps"]["least"].as_f64().unwrap();
-        // The sphere turns about its centre, so only its shift counts; where its facets are nearest may differ a little.
+        // The sphere turns about its centre, so only its shift counts; where its facets are nearest may
+        // differ a little.
         let shift = 3.0 * (std::f64::consts::TAU * k as f64 / 6.0).sin();
         assert!((gap - (4.0 - shift.abs())).abs() < 0.2, "{gap} {shift}");
     }

@@ -1,4 +1,5 @@
-//! Fills closed surfaces with tets that have every triangle among their facets: `constrain [--stay] SURFACE...`.
+//! Fills closed surfaces with tets that have every triangle among their facets:
+//! `constrain [--stay] SURFACE...`.
 //!
 //! With `--stay`, points inserted on edges stay there.
 //!

@@ -1,9 +1,9 @@
 //! The cases of the paper on dynamic remeshing, in numbers.
 //!
-//! `remesh_cases channel | membrane | shear | twist | transfer [N]`, N the number of cycles (channel: of steps of 0.1);
-//! `membrane [N] [A]`: the membrane comes within 0.5 - A of the wall;
-//! `shear [N] [SIZE]`: with edges brought to a size at each step;
-//! `sphere FILE` writes a mesh of the channel after motion, for docs/pictures.py
+//! `remesh_cases channel | membrane | shear | twist | transfer [N]`, N the number of cycles (channel: of
+//! steps of 0.1); `membrane [N] [A]`: the membrane comes within 0.5 - A of the wall; `shear [N] [SIZE]`: with
+//! edges brought to a size at each step; `sphere FILE` writes a mesh of the channel after motion, for
+//! docs/pictures.py
 
 #[path = "../tests/moving_cases/mod.rs"]
 #[allow(dead_code, unreachable_pub, reason = "tests share it, and use other parts of it")]

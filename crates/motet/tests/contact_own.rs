@@ -44,7 +44,8 @@ fn two_sheets_of_one_plane_see_each_other_rim_to_rim() {
     }
 }
 
-/// A closed wedge of eight degrees whose knife edge is the line x = 0, z = 0, from y = 0 to 1; it lies where x is negative.
+/// A closed wedge of eight degrees whose knife edge is the line x = 0, z = 0, from y = 0 to 1; it lies where
+/// x is negative.
 fn wedge() -> Shape {
     let points = vec![
         [0.0, 0.0, 0.0],

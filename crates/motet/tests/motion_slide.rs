@@ -49,7 +49,8 @@ fn leaning() -> [Affine; 2] {
 
 const SAME: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
-/// An affine motion of the box that keeps the planes of the sides in `slides`: bit `2 k + s` is the lower or upper side along axis `k`.
+/// An affine motion of the box that keeps the planes of the sides in `slides`: bit `2 k + s` is the lower or
+/// upper side along axis `k`.
 fn keeping(slides: usize) -> Affine {
     let free = [[0.9, 0.15, -0.1, 0.05], [0.1, 1.1, 0.2, -0.1], [-0.2, 0.1, 0.7, 0.3]];
     [0, 1, 2].map(|k| match slides >> (2 * k) & 3 {

@@ -18,8 +18,8 @@ pub struct Progress {
 }
 
 /// A channel between a call and whoever started it: the call reports its progress and checks from time to
-/// time whether to stop; the other side reads the progress and may stop the call. Clones share one channel. The
-/// default watch is connected to nobody and costs nothing.
+/// time whether to stop; the other side reads the progress and may stop the call. Clones share one channel.
+/// The default watch is connected to nobody and costs nothing.
 ///
 /// ```
 /// use motet::base::{Threads, Watch};

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use serde::Serialize;
 
 use super::body::{BodyView, PreparedBody};
-use super::handle::Contact;
+use super::measure::Contact;
 use super::rule::Rule;
 use super::surface_graph::PathSearch;
 use super::sweep::{Sweep, sweep, sweep_own};

@@ -1,7 +1,7 @@
 //! Finds the new tet at a directed edge of the cavity's surface: in a small matrix, or in a hash table.
 
-/// A map from directed edges (pairs of local vertex numbers) to the facet of a new tet on their left. An entry is
-/// read only after it was written for the same cavity, so nothing needs clearing in between.
+/// A map from directed edges (pairs of local vertex numbers) to the facet of a new tet on their left. An
+/// entry is read only after it was written for the same cavity, so nothing needs clearing in between.
 pub(super) trait EdgeMap {
     fn put(&mut self, from: u32, to: u32, link: u32);
     fn get(&self, from: u32, to: u32) -> u32;

@@ -1,12 +1,18 @@
 //! Detection of boundary layers: tets that are thin on purpose.
 //!
 //! ```text
-//!     v2 ------- .        A column rises from a wall vertex along the normal of the wall, edge by edge, each much shorter than
-//!     |  layer 2          the edges of the wall. A tet belongs to a layer when its vertices stand in the columns of one
-//!     v1 ------- .        wall facet, at most one level apart. It is well shaped when it is so after it has been
-//!     |  layer 1          stretched along the normal to the width of the facet.
+//!     v2 ------- .
+//!     |  layer 2
+//!     v1 ------- .
+//!     |  layer 1
 //!     w ======== .  wall
 //! ```
+//!
+//! A column rises from a wall vertex along the normal of the wall, edge by edge, each much shorter than the
+//! edges of the wall. A tet belongs to a layer if its vertices stand in the columns of one wall facet, at most
+//! one level apart. It is well shaped if it is so after it has been stretched along the normal to the width of
+//! the facet.
+//!
 //! If a mesh has layers, most of its low-quality tets are thin on purpose; if only a minority of them are,
 //! the mesh is taken to have no layers. Slivers in a mesh without layers have no short edge, and the short
 //! edges of needles do not stand side by side in columns, so neither is mistaken for a layer tet.

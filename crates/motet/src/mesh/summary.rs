@@ -26,7 +26,8 @@ pub struct Summary {
     pub cells: BTreeMap<String, usize>,
     /// The lowest and the highest corner of the bounding box of all finite points.
     pub bounds: Option<[Point; 2]>,
-    /// The sum of the signed volumes of all volume cells, tets oriented by their neighbours, edges taken as straight.
+    /// The sum of the signed volumes of all volume cells, tets oriented by their neighbours, edges taken as
+    /// straight.
     pub volume: f64,
     /// Volume cells by label; empty if the mesh has no labels for them.
     pub regions: BTreeMap<String, RegionSummary>,
@@ -251,7 +252,8 @@ fn patch(mesh: &Mesh, cells: &[SurfaceCell]) -> PatchSummary {
     summary
 }
 
-/// Shape of the triangles whose points are finite; other surface cells count as the triangles that they are divided into.
+/// Shape of the triangles whose points are finite; other surface cells count as the triangles that they are
+/// divided into.
 fn triangle_shapes(mesh: &Mesh) -> Option<TriangleSummary> {
     let mut all: Vec<[VertexId; 3]> = Vec::new();
     let (mut worst, mut sum, mut min_angle) = ((f64::INFINITY, CellId::new(0), [0.0; 3]), 0.0, f64::INFINITY);

@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use serde::Serialize;
 
-use super::fill::Options;
 use super::surfaces::Surfaces;
 use crate::base::{Error, Point, Result, VertexId, same_orientation, sorted_ids};
 use crate::delaunay::Constrained;
@@ -87,6 +86,16 @@ pub(super) struct NumberedBodies {
     pub(super) n_left_out: usize,
 }
 
+/// Which bodies have names, and which are left out.
+pub(super) struct Named<'a> {
+    /// Places in bodies, with names for their regions.
+    pub(super) seeds: &'a [Seed],
+    /// Places in bodies that are left out.
+    pub(super) holes: &'a [Point],
+    /// Whether bodies enclosed by closed surfaces turned inward are left out.
+    pub(super) leaves_voids_out: bool,
+}
+
 /// Removes bodies with holes and, on request, voids that no seed names; numbers the others from the outside
 /// in.
 ///
@@ -99,9 +108,9 @@ pub(super) fn arrange(
     tets: &mut Constrained,
     surfaces: &Surfaces,
     triangles: &[[VertexId; 3]],
-    options: &Options,
+    named: &Named,
 ) -> Result<NumberedBodies> {
-    let Options { seeds, holes, .. } = options;
+    let Named { seeds, holes, leaves_voids_out } = *named;
     let mut names = BTreeMap::new();
     for seed in seeds {
         let body = body_at(tets, seed.place)?;
@@ -112,7 +121,7 @@ pub(super) fn arrange(
         holes.iter().map(|&place| hole_at(tets, place, &names)).collect::<Result<BTreeSet<_>>>()?;
     let voids: BTreeSet<u32> = &voids(tets, surfaces, triangles) - &holes;
     let left_out: BTreeSet<u32> =
-        voids.iter().copied().filter(|body| options.voids && !names.contains_key(body)).collect();
+        voids.iter().copied().filter(|body| leaves_voids_out && !names.contains_key(body)).collect();
     holes.extend(&left_out);
     let order = from_outside(&tets.triangle_to_bodies);
     let by_surface = EnclosingSurfaces::find(tets, surfaces, triangles).names(surfaces, &order);

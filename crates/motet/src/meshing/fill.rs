@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::bodies::{self, Body, NumberedBodies, Seed};
+use super::bodies::{self, Body, Named, NumberedBodies, Seed};
 use super::compact::{compact, used_vertices};
 use super::divide::{Divided, divide};
 use super::graded;
@@ -198,6 +198,7 @@ pub fn fill(
     if let Some(error) = preflight.first_error() {
         return Err(error);
     }
+    let named = Named { seeds: &options.seeds, holes: &options.holes, leaves_voids_out: options.voids };
     options.sizes.as_ref().map_or(Ok(()), |sizes| sizes.check(surfaces))?;
     options.improve.as_ref().map_or(Ok(()), remesh::Options::check)?;
     let coarse = options.sizes.as_ref().and_then(|sizes| sizes.coarse(surfaces));
@@ -221,7 +222,7 @@ pub fn fill(
         // This finds out which bodies lie on the two sides of each triangle, and which bodies seeds and holes
         // lie in.
         let mut whole = fill_tets(&joined, Vec::new(), options, threads)?;
-        let arranged = bodies::arrange(&mut whole, surfaces, &triangles, options)?;
+        let arranged = bodies::arrange(&mut whole, surfaces, &triangles, &named)?;
         let grown = GrownLayers::new(&joined, layers, whole.triangle_to_bodies, threads)?;
         let mut filled = fill_with_layers(grown, &at_corners, arranged, layers, options, threads)?;
         (filled.report.coarse, filled.report.divided) = (coarse, divided);
@@ -231,7 +232,7 @@ pub fn fill(
     let n_points = joined.points.len() + points.len();
     let mut tets = fill_tets(&joined, points, options, threads)?;
     threads.watch().report_and_check("finding regions", 0, 0)?;
-    let arranged = bodies::arrange(&mut tets, surfaces, &triangles, options)?;
+    let arranged = bodies::arrange(&mut tets, surfaces, &triangles, &named)?;
     let mut report = report(&joined, &tets, n_points);
     let (mut mesh, _) = mesh(&joined, &tets);
     mesh.label_names.regions = region_names(&arranged);

@@ -53,8 +53,8 @@ pub enum Sizes {
 /// whole surface, so sizes at two places never differ by more than `growth` times their distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grading {
-    /// The size at each of [`Surfaces::points`], linear on triangles; `None`: the mean length of the edges of the surface there.
-    /// Default: `None`.
+    /// The size at each of [`Surfaces::points`], linear on triangles; `None`: the mean length of the edges of
+    /// the surface there. Default: `None`.
     pub at_points: Option<Vec<f64>>,
     /// By how much sizes grow per unit of distance, above 0 and at most [`MOST_GROWTH`]. Default: 0.3.
     pub growth: f64,

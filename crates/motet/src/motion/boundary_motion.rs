@@ -129,8 +129,8 @@ impl BoundaryMotion {
         all.filter(|(_, (half, whole))| **half != [0.0; 3] || **whole != [0.0; 3]).map(|(&v, _)| v).collect()
     }
 
-    /// The displacement of each of [`Self::vertices()`], in their order, at `fraction` of the motion; `points`
-    /// are those of the undeformed mesh.
+    /// The displacement of each of [`Self::vertices()`], in their order, at `fraction` of the motion;
+    /// `points` are those of the undeformed mesh.
     pub fn displacements(&self, points: &[Point], fraction: f64) -> Vec<Point> {
         let one = |(i, vertex): (usize, &VertexId)| self.displacement(i, points[vertex.index()], fraction);
         self.vertices.iter().enumerate().map(one).collect()

@@ -68,8 +68,9 @@ pub struct Quality {
     /// For cells of other kinds: the worst scaled Jacobian at a corner, the volume that
     /// its three edges span over the product of their lengths (Knupp 2000).
     pub worst_scaled_jacobian: Option<Worst>,
-    /// For quadratic cells: the least scaled Jacobian anywhere within, and where;
-    /// see [`LeastJacobian::scaled`](crate::mesh::curved::LeastJacobian::scaled). 0 or less where a cell is folded.
+    /// For quadratic cells: the least scaled Jacobian anywhere within, and where; see
+    /// [`LeastJacobian::scaled`](crate::mesh::curved::LeastJacobian::scaled). 0 or less where a cell is
+    /// folded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub worst_curved_jacobian: Option<Worst>,
 }

@@ -155,8 +155,8 @@ impl MemberMotion {
 }
 
 /// Which vertices share a cell with another one whose foot is more than [`MAX_FOOT_RATIO`] times as far from
-/// theirs as they are from each other. Where the wall has a crease, each would follow another side, and the cells
-/// between would be crushed: they are left to the graph.
+/// theirs as they are from each other. Where the wall has a crease, each would follow another side, and the
+/// cells between would be crushed: they are left to the graph.
 fn spans_crease(points: &[Point], cells: &Cells, wall: &[VertexId], members: &[Member]) -> Vec<bool> {
     let mut foot = vec![None; points.len()];
     wall.iter().for_each(|v| foot[v.index()] = Some(points[v.index()]));

@@ -1,4 +1,5 @@
-//! Middle nodes of quadratic cells that stay in the middle of their corners, so that straight edges stay straight.
+//! Middle nodes of quadratic cells that stay in the middle of their corners, so that straight edges stay
+//! straight.
 //!
 //! A method moves each vertex independently. The middle node of a straight edge would leave the edge wherever
 //! displacements are not linear along it, and a cell whose corners move well would be folded between them.

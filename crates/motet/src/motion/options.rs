@@ -28,9 +28,11 @@ pub enum Method {
     /// Each coordinate of the displacement by a Laplace equation that is stiff at the wall. A linear system
     /// per step.
     Laplace(Laplace),
-    /// By the mean of the rigid motions of all boundary vertices, weighted by distance (Luke, Collins, Blades 2012).
+    /// By the mean of the rigid motions of all boundary vertices, weighted by distance (Luke, Collins, Blades
+    /// 2012).
     InverseDistance,
-    /// By radial basis functions of compact support on chosen centres (de Boer, van der Schoot, Bijl 2007; Rendall, Allen 2009).
+    /// By radial basis functions of compact support on chosen centres (de Boer, van der Schoot, Bijl 2007;
+    /// Rendall, Allen 2009).
     Radial,
 }
 

@@ -22,10 +22,10 @@
 mod choose;
 mod fixed_edges;
 mod forest;
-mod handle;
 mod inverted;
 mod memory;
 mod reach;
+mod refinement;
 mod shapes;
 mod true_surface;
 mod whole;
@@ -34,9 +34,9 @@ pub use choose::{
     Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Limits, Relation, Size, Target, estimate,
     fix_sizes, hessian, mark, marks_of_all, sizes, wish, wishes_of_all,
 };
-pub use handle::{Left, Options, Refinement, Rule, Summary};
 pub use memory::{Memory, UNKNOWN};
 pub use reach::{Reached, Step, Stop, Wanted};
+pub use refinement::{Left, Options, Refinement, Rule, Summary};
 pub use shapes::Shapes;
 pub use true_surface::OnSurface;
 pub use whole::MeshRefinement;

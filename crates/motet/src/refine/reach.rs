@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::choose::wish::{Wish, check_expected, coarser, marked};
 use super::choose::{Condition, Criterion, Limits, Target, wishes_of_all};
-use super::handle::{Refinement, Summary};
+use super::refinement::{Refinement, Summary};
 use super::shapes::Shapes;
 use super::true_surface::OnSurface;
 use super::whole::MeshRefinement;

@@ -112,8 +112,8 @@ fn longest_axis(triangles: &[[Point; 3]]) -> usize {
     (0..3).max_by(|&i, &j| extent(i).total_cmp(&extent(j))).unwrap_or(0)
 }
 
-/// The solid angle of a triangle seen from `p`, positive from behind (van Oosterom and Strackee 1983, *The solid
-/// angle of a plane triangle*).
+/// The solid angle of a triangle seen from `p`, positive from behind (van Oosterom and Strackee 1983, *The
+/// solid angle of a plane triangle*).
 fn solid_angle(triangle: [Point; 3], p: Point) -> f64 {
     let [a, b, c] = triangle.map(|q| sub(q, p));
     let [la, lb, lc] = [norm(a), norm(b), norm(c)];

@@ -12,7 +12,8 @@ pub(crate) struct Cad {
     pub(crate) triangles: Vec<[VertexId; 3]>,
 }
 
-/// Numbers in [0, 1), the same for the same seed (Steele, Lea and Flood 2014, *Fast splittable pseudorandom number generators*).
+/// Numbers in [0, 1), the same for the same seed (Steele, Lea and Flood 2014, *Fast splittable pseudorandom
+/// number generators*).
 struct Numbers(u64);
 
 impl Numbers {

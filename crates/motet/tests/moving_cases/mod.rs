@@ -1,4 +1,5 @@
-//! The three cases of the paper on dynamic remeshing: a sphere in a channel, a box with a membrane, a cube that is distorted.
+//! The three cases of the paper on dynamic remeshing: a sphere in a channel, a box with a membrane, a cube
+//! that is distorted.
 
 pub mod channel;
 pub mod cube;

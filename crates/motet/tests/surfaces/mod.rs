@@ -87,7 +87,8 @@ pub(crate) fn cube() -> Shape {
     Shape { points, triangles }
 }
 
-/// A ring around the z axis swept along circles: a torus of these radii, or with `rise` a coil that is open at its ends.
+/// A ring around the z axis swept along circles: a torus of these radii, or with `rise` a coil that is open
+/// at its ends.
 pub(crate) fn torus(around: u32, along: u32, [large, small]: [f64; 2]) -> Shape {
     coil(around, along, [large, small], 0.0, 1.0)
 }

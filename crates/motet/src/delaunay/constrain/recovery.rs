@@ -38,8 +38,8 @@ pub(super) struct Order {
 
 impl Order {
     /// Repeats `work`, moving each part that could not be made to the front of the line, then to its end,
-    /// until all are made. Gives up after `max_retries` repetitions, or when a part could be made neither first nor
-    /// last.
+    /// until all are made. Gives up after `max_retries` repetitions, or when a part could be made neither
+    /// first nor last.
     ///
     /// # Errors
     /// The last failure.

@@ -36,7 +36,8 @@ use crate::geometry::vector::{dot, scale, sub};
 pub struct Closest<const A: usize, const B: usize> {
     /// The squared distance.
     pub distance_squared: f64,
-    /// Weights of the vertices of the first primitive that give its closest point: each in [0, 1], their sum 1 up to rounding.
+    /// Weights of the vertices of the first primitive that give its closest point: each in [0, 1], their sum
+    /// 1 up to rounding.
     pub on_a: [f64; A],
     /// Weights of the vertices of the second primitive that give its closest point: each in [0, 1], their sum
     /// 1 up to rounding.

@@ -30,8 +30,8 @@ pub fn closest(a: [Point; 3], b: [Point; 3]) -> Closest<3, 3> {
 /// because a slab between the triangles, at right angles to the best pair so far, is as wide as the bound.
 /// `None` is never returned for triangles that are nearer than the bound by more than rounding.
 ///
-/// For triangles half an edge apart, where [`closest`] takes 330 ns: 60 ns if the bound is a tenth of the distance, 75 ns at a
-/// quarter, 115 ns at half, 250 ns at nine tenths, and 350 ns if they are below it.
+/// For triangles half an edge apart, where [`closest`] takes 330 ns: 60 ns if the bound is a tenth of the
+/// distance, 75 ns at a quarter, 115 ns at half, 250 ns at nine tenths, and 350 ns if they are below it.
 pub fn closest_below(a: [Point; 3], b: [Point; 3], bound_squared: f64) -> Option<Closest<3, 3>> {
     let (frame, local_a, local_b) = Frame::around(a, b);
     let bound = bound_squared.sqrt() / frame.unit;

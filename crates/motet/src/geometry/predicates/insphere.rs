@@ -7,11 +7,13 @@
 //! each tet.
 //!
 //! Error bounds, with `P = |b||c||d|`, `S = |b|+|c|+|d|`, `r = |x|`, `m = |x|_1 >= r`, `u = 2^-53`:
-//! - `f64`: a component of N costs 5u (|b|^2: difference twice, square, two sums), 1u (c: difference), product,
-//!   subtraction: 8u; 1u (d), product, subtraction: 11u; one sum: 12u P S. (The second term: 5u, 4u for
-//!   b x c, product, sum.) V: 8u times 2/sqrt(3) P, at most 10u P. Evaluation: 5u P S m + 7u P r^2. In all 17u P (S m + r^2); 20u is used.
+//! - `f64`: a component of N costs 5u (|b|^2: difference twice, square, two sums), 1u (c: difference),
+//!   product, subtraction: 8u; 1u (d), product, subtraction: 11u; one sum: 12u P S. (The second term: 5u, 4u
+//!   for b x c, product, sum.) V: 8u times 2/sqrt(3) P, at most 10u P. Evaluation: 5u P S m + 7u P r^2. In
+//!   all 17u P (S m + r^2); 20u is used.
 //! - pairs, differences exact: by the rules in `pair` 236 u^2, times 2/sqrt(3) for sums of absolute products
-//!   in V: 273 u^2 P (S m + r^2); 640 u^2 is used, so that the second bound costs one product: 32u times the first.
+//!   in V: 273 u^2 P (S m + r^2); 640 u^2 is used, so that the second bound costs one product: 32u times the
+//!   first.
 
 use super::exact;
 use super::pair::{Pair, U, cross, difference, dot};

@@ -131,7 +131,8 @@ const SIZES: std::ops::Range<f64> = 1e-30..1e30;
 struct Reach {
     /// An upper bound on the length of the differences.
     length: f64,
-    /// The largest coordinate, including those of the ends of segments: errors remain where coordinates cancel.
+    /// The largest coordinate, including those of the ends of segments: errors remain where coordinates
+    /// cancel.
     coordinate: f64,
 }
 

@@ -151,7 +151,8 @@ proptest! {
                 q.swap((i + 1) % 4, (i + 2) % 4);
                 r.swap((i + 1) % 4, (i + 2) % 4);
             }
-            // The lifted determinant changes sign with the exchange; the test multiplies it by the tet's own sign.
+            // The lifted determinant changes sign with the exchange; the test multiplies it by the tet's own
+            // sign.
             if orientation != 0 {
                 prop_assert_eq!(insphere_perturbed(q, r), -ours * orientation);
             }
@@ -247,7 +248,8 @@ mod spots {
             let on: Vec<Between> = kinds.iter().map(|kind| between(&p, kind)).collect();
             let spot = |k: usize| if kinds[k].0 { Spot::On(&on[k]) } else { Spot::Given(p[k]) };
             let spots = [spot(0), spot(1), spot(2), spot(3), spot(4)];
-            // Differences of numbers near the largest f64 overflow; such points are scaled before they get here.
+            // Differences of numbers near the largest f64 overflow; such points are scaled before they get
+            // here.
             prop_assume!(p.iter().flatten().all(|x| x.abs() < 1e300));
             prop_assert_eq!(orient3d_of([spots[0], spots[1], spots[2], spots[3]]), orient_exact(&spots[..4]));
             prop_assert_eq!(insphere_of(spots), insphere_exact(&spots));

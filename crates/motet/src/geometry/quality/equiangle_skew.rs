@@ -4,8 +4,8 @@
 //!
 //! ```text
 //!   lane   facet    one side   another   the third
-//!    0     b c d      bc         bd         cd        Sides go from the first end to the second; the normal of
-//!    1     a d c      ad         ac         cd        a facet, one side cross another, points outward.
+//!    0     b c d      bc         bd         cd     Sides go from the first end to the second;
+//!    1     a d c      ad         ac         cd     the normal of a facet, one side cross another, points outward.
 //!    2     a b d      ab         ad         bd
 //!    3     a c b      ac         ab         bc
 //! ```

@@ -20,8 +20,8 @@
 //! Nodes, elements and sets are written; patches that lie on volume cells are also written as surfaces, for
 //! loads. Surface cells are written as shells (`S3` and so on): to keep only the solids, remove those blocks.
 //!
-//! Layout: Abaqus Keywords Guide (`*NODE`, `*ELEMENT`, `*ELSET`, `*SURFACE`, `*INSTANCE`), "Input syntax rules", and
-//! the element library, whose numbering of nodes and faces the CalculiX manual repeats.
+//! Layout: Abaqus Keywords Guide (`*NODE`, `*ELEMENT`, `*ELSET`, `*SURFACE`, `*INSTANCE`), "Input syntax
+//! rules", and the element library, whose numbering of nodes and faces the CalculiX manual repeats.
 
 mod assemble;
 mod kinds;

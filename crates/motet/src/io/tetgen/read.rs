@@ -18,7 +18,8 @@ struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Reads the head, which starts with the number of lines and is padded with zeros to `min_columns` numbers.
+    /// Reads the head, which starts with the number of lines and is padded with zeros to `min_columns`
+    /// numbers.
     fn new(bytes: &'a [u8], what: &str, min_columns: usize) -> Result<Self> {
         let mut text = Text::with_comments(bytes, b'#');
         text.peek().ok_or_else(|| text.unexpected_end(&format!("the head of the {what}")))?;

@@ -26,8 +26,8 @@ pub(in crate::io) struct Tail {
 }
 
 impl Tail {
-    /// Opens a file and reads only its head; `None` for a file to be read as a whole: one without the extension of VTU or
-    /// VTP, a small one, one without raw appended data, or one that cannot be read.
+    /// Opens a file and reads only its head; `None` for a file to be read as a whole: one without the
+    /// extension of VTU or VTP, a small one, one without raw appended data, or one that cannot be read.
     pub(in crate::io) fn of(path: &Path) -> Option<Self> {
         path.extension().filter(|e| e.eq_ignore_ascii_case("vtu") || e.eq_ignore_ascii_case("vtp"))?;
         let mut file = File::open(path).ok()?;

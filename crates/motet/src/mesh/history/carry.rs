@@ -4,7 +4,7 @@ use super::origins::{Origin, Origins};
 use super::rule::is_averageable;
 use super::{History, Row, Rows, Rule, Rules};
 use crate::base::{Error, Id, Result};
-use crate::mesh::exchange::check_rows;
+use crate::mesh::data::check_rows;
 use crate::mesh::{Field, Mesh, Values};
 
 impl History {

@@ -1,13 +1,17 @@
 //! Three arms that meet, as triangles on an implicit surface: branching vessels, or a sac on a vessel.
 //!
 //! ```text
-//!      \    |    /     Seen from above: the arms lie in one plane. Between each two of them a curve runs over the surface
-//!       \   |   /      from the pole above the middle to the pole below it. Two of the three curves are the first ring
-//!   arm  \  |  /       of an arm; further rings lead to its end. All is then put onto the surface and made even.
+//!      \    |    /
+//!       \   |   /
+//!   arm  \  |  /
 //!         \ | /
 //!          (P)------
 //!         /
 //! ```
+//!
+//! Seen from above: the arms lie in one plane. Between each two of them a curve runs over the surface from the
+//! pole above the middle to the pole below it. Two of the three curves are the first ring of an arm; further
+//! rings lead to its end. All points are then projected onto the surface and spaced evenly.
 
 use std::f64::consts::{PI, TAU};
 

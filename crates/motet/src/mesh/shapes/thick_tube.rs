@@ -1,4 +1,5 @@
-//! A vessel with a wall of finite thickness, as one surface: two closed regions, lumen and wall, that share an interface.
+//! A vessel with a wall of finite thickness, as one surface: two closed regions, lumen and wall, that share
+//! an interface.
 
 use crate::base::{Error, Result, VertexId};
 use crate::geometry::vector::{add, scale};

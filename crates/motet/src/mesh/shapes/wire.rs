@@ -1,4 +1,5 @@
-//! Wires as closed surfaces: round tubes along line segments, such as a braided stent or a coil given by its nodes.
+//! Wires as closed surfaces: round tubes along line segments, such as a braided stent or a coil given by its
+//! nodes.
 
 use std::f64::consts::TAU;
 

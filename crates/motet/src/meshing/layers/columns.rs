@@ -1,14 +1,18 @@
 //! Columns on the vertices of walls, and the prisms between them.
 //!
 //! ```text
-//!   a2----c2        A column has a place for each level, the wall's own vertex the lowest. Where one has fewer levels than
-//!   | \  / |        those beside it, or none, its last place is all of the levels above: the prisms there are pyramids
-//!   |  b2  |        (one corner that does not rise), tets (two), or nothing (three).
+//!   a2----c2
+//!   | \  / |
+//!   |  b2  |
 //!   a1-|--c1
 //!   | \b1/ |
 //!   a--|--c   wall
 //!    \ b /
 //! ```
+//!
+//! A column has a place for each level, the wall's own vertex the lowest. Where one has fewer levels than those
+//! beside it, or none, its last place stands for all levels above: the prisms there are pyramids (one corner
+//! that does not rise), tets (two), or nothing (three).
 
 use super::neighbors::NONE;
 use super::skin::Skin;

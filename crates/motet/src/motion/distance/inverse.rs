@@ -1,4 +1,5 @@
-//! Inverse-distance weighting with rotations (Luke, Collins, Blades 2012, *A fast mesh deformation method using explicit interpolation*).
+//! Inverse-distance weighting with rotations (Luke, Collins, Blades 2012, *A fast mesh deformation method
+//! using explicit interpolation*).
 //!
 //! Each boundary vertex moves all of space rigidly, by its displacement and its rotation. An interior vertex
 //! gets the mean of these motions, weighted by `area ((L / r)^3 + (L / (4 r))^5)`, where `r` is its distance

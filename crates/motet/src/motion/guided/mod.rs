@@ -304,7 +304,8 @@ impl Guided {
         Ok((rotation_vectors, solved.iterations))
     }
 
-    /// The affine map of every node: its displacement there, and half the mean gradient of the displacement in its tets.
+    /// The affine map of every node: its displacement there, and half the mean gradient of the displacement
+    /// in its tets.
     fn affine(&self, moved: &[Point]) -> Vec<Affine> {
         let mut sums = vec![[[0.0; 3]; 3]; moved.len()];
         for tet in &self.tets {

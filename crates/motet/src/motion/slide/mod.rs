@@ -113,7 +113,8 @@ impl Slide {
     }
 }
 
-/// What each of `sliding` follows: a triangle of the Delaunay triangulation of the other vertices in the plane.
+/// What each of `sliding` follows: a triangle of the Delaunay triangulation of the other vertices in the
+/// plane.
 fn in_plane(
     points: &[Point],
     PatchPlane { set, plane }: &PatchPlane,

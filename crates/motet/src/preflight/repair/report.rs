@@ -10,8 +10,8 @@ use crate::base::{Point, VertexId};
 pub enum RepairKind {
     /// A vertex was merged into another.
     MergedVertex,
-    /// An edge was divided at a vertex that lies on it: a T-junction. The vertex comes first, then the ends of
-    /// the edge.
+    /// An edge was divided at a vertex that lies on it: a T-junction. The vertex comes first, then the ends
+    /// of the edge.
     TJunction,
     /// Two triangles that overlap in one plane were divided alike.
     Imprinted,

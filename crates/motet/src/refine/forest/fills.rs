@@ -5,8 +5,8 @@
 use hashbrown::HashMap;
 
 use super::bey;
+use super::bounds::ShapeBounds;
 use super::classes::{Class, corners_at, inner_part};
-use super::close::ShapeBounds;
 use super::eight::ends;
 use super::patterns::patterns;
 use super::{Forest, with_middles};

@@ -16,6 +16,7 @@
 //! same result.
 
 mod bey;
+mod bounds;
 mod classes;
 mod close;
 mod divide;
@@ -25,7 +26,8 @@ mod facets;
 mod fills;
 mod patterns;
 
-pub(super) use close::{Closed, ShapeBounds, close};
+pub(super) use bounds::ShapeBounds;
+pub(super) use close::{Closed, close};
 pub(super) use eight::{IMAGES, eight};
 pub(super) use extract::{Extracted, extract};
 pub(super) use patterns::{FACET_EDGES, patterns};

@@ -3,7 +3,7 @@
 use super::super::forest::{Extracted, extract};
 use super::super::forest::{Forest, NONE};
 use super::super::forest::{ShapeBounds, close};
-use super::super::handle::{Options, Refinement, Summary, check_roots};
+use super::super::refinement::{Options, Refinement, Summary, check_roots};
 use super::trees::Trees;
 use super::triangles::Gathered;
 use super::{Memory, dissolve, lines, triangles, unfit};

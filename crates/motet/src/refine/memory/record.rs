@@ -2,7 +2,7 @@
 
 use super::super::forest::Extracted;
 use super::super::forest::{Forest, NONE};
-use super::super::handle::Refinement;
+use super::super::refinement::Refinement;
 use super::Memory;
 use crate::base::Threads;
 use crate::mesh::TetMesh;

@@ -3,7 +3,7 @@
 
 use super::super::forest::Extracted;
 use super::super::forest::NONE;
-use super::super::handle::Refinement;
+use super::super::refinement::Refinement;
 use super::Slot;
 use crate::base::{CellId, Csr, Id, VertexId};
 use crate::mesh::{CellKind, Cells, Mesh};

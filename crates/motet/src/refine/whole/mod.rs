@@ -5,7 +5,7 @@ mod joined;
 mod memory_arrays;
 mod origins;
 
-use super::handle::{Options, Refinement, Summary};
+use super::refinement::{Options, Refinement, Summary};
 use super::true_surface::OnSurface;
 use crate::base::{CellId, Result, TetId, Threads, VertexId};
 use crate::mesh::history::{History, Origins, Rules, number_anew};

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use super::super::choose::estimate;
 use super::super::forest::Extracted;
 use super::super::forest::{Forest, NONE};
-use super::super::handle::Refinement;
+use super::super::refinement::Refinement;
 use super::joined::Joined;
 use crate::base::{CellId, Point, Result, Threads, VertexId};
 use crate::geometry::overlap::Solid;

@@ -97,8 +97,8 @@ pub(crate) fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i8 {
     orient3d(flat(a), flat(b), flat(c), below)
 }
 
-/// The triangles of a simple polygon, counter-clockwise, by cutting ears (Meisters 1975); no triangle is flat, and corners on
-/// straight sides are kept.
+/// The triangles of a simple polygon, counter-clockwise, by cutting ears (Meisters 1975); no triangle is
+/// flat, and corners on straight sides are kept.
 pub(crate) fn ears(polygon: &[[f64; 2]]) -> Vec<[usize; 3]> {
     let mut left: Vec<usize> = (0..polygon.len()).collect();
     let mut triangles = Vec::new();

@@ -8,7 +8,8 @@ use motet::geometry::vector::{add, scale, sub};
 use super::super::Numbers;
 use super::body::{Body, cuboid};
 
-/// A box with about `steps` points on its surface, at fractions of eighths of edges and triangles: many are in line.
+/// A box with about `steps` points on its surface, at fractions of eighths of edges and triangles: many are
+/// in line.
 pub(crate) fn cut_box(steps: usize, numbers: &mut Numbers) -> Body {
     cut(steps, |n| (1 + n.below(7)) as f64 / 8.0, numbers)
 }

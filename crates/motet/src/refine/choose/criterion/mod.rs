@@ -23,7 +23,8 @@ pub use condition::{Condition, Relation};
 pub use fixed::fix_sizes;
 pub use target::Target;
 
-/// What to refine. Lengths are in the units of the mesh, values in those of its arrays; an array is named as in [`Condition::array`].
+/// What to refine. Lengths are in the units of the mesh, values in those of its arrays; an array is named as
+/// in [`Condition::array`].
 #[derive(Clone, Debug)]
 pub enum Criterion {
     /// All tets, once more.
