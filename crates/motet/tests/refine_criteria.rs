@@ -184,7 +184,7 @@ fn what_is_not_there_is_told_with_what_is() {
         (array("v:w>1"), ["no array `v:w`", "point arrays"]),
         (Criterion::Region("left".into()), ["no region `left`", "it has 3, right"]),
         (Criterion::Patch { patch: "wall".into(), within: None }, ["no patch `wall`", "it has sphere, 2"]),
-        (jump("x", share), ["`x` has values on cells", "point arrays: v, p, h"]),
+        (jump("x", share), ["`x` is a cell array", "point arrays: v, p, h"]),
         (jump("p", Amount::Share(1.5)), ["fraction of the error is 1.5", "at most 1"]),
         (jump("p", Amount::Share(f64::NAN)), ["NaN", "at most 1"]),
         (Criterion::Vorticity { array: "p".into(), above: 1.0 }, ["array p", "1 component(s), but a vector"]),

@@ -296,7 +296,7 @@ fn a_memory_of_another_mesh_is_refused_or_falls_apart() {
     let mut short = memory.clone();
     short.paths.pop();
     let error = recall(fine.mesh(), &short).unwrap_err().to_string();
-    assert!(error.contains("not an entry for each"), "{error}");
+    assert!(error.contains("one entry for each"), "{error}");
 
     // Arbitrary numbers: either refused, or the mesh conforms.
     let mut numbers = Numbers(11);
