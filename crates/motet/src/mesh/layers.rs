@@ -9,9 +9,9 @@
 //! ```
 //!
 //! A column rises from a wall vertex along the normal of the wall, edge by edge, each much shorter than the
-//! edges of the wall. A tet belongs to a layer if its vertices stand in the columns of one wall facet, at most
-//! one level apart. It is well shaped if it is so after it has been stretched along the normal to the width of
-//! the facet.
+//! edges of the wall. A tet belongs to a layer if its vertices stand in the columns of one wall facet, at
+//! most one level apart. It is well shaped if it is so after it has been stretched along the normal to the
+//! width of the facet.
 //!
 //! If a mesh has layers, most of its low-quality tets are thin on purpose; if only a minority of them are,
 //! the mesh is taken to have no layers. Slivers in a mesh without layers have no short edge, and the short

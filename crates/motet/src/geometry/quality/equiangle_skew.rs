@@ -5,7 +5,7 @@
 //! ```text
 //!   lane   facet    one side   another   the third
 //!    0     b c d      bc         bd         cd     Sides go from the first end to the second;
-//!    1     a d c      ad         ac         cd     the normal of a facet, one side cross another, points outward.
+//!    1     a d c      ad         ac         cd     the normal, one side cross another, points outward.
 //!    2     a b d      ab         ad         bd
 //!    3     a c b      ac         ab         bc
 //! ```

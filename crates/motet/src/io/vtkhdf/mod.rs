@@ -6,7 +6,7 @@
 //! VTKHDF  Version, Type        UnstructuredGrid or PolyData
 //!   NumberOfPoints, NumberOfCells, NumberOfConnectivityIds       of each part: an array each
 //!   Points, Types, Offsets, Connectivity    part after part; ids and offsets start at 0 in each
-//!   FaceConnectivity, FaceOffsets, PolyhedronToFaces, PolyhedronOffsets, and their counts    if there are polyhedra
+//!   FaceConnectivity, FaceOffsets, PolyhedronToFaces, PolyhedronOffsets, their counts    of polyhedra
 //!   Vertices, Lines, Polygons, Strips     in polygonal data: a group each, with the cells' arrays
 //!   PointData, CellData, FieldData        an array each
 //!   Steps  NSteps     for each step its time, its parts, and where in each array it begins

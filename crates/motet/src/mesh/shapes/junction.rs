@@ -9,9 +9,9 @@
 //!         /
 //! ```
 //!
-//! Seen from above: the arms lie in one plane. Between each two of them a curve runs over the surface from the
-//! pole above the middle to the pole below it. Two of the three curves are the first ring of an arm; further
-//! rings lead to its end. All points are then projected onto the surface and spaced evenly.
+//! Seen from above: the arms lie in one plane. Between each two of them a curve runs over the surface from
+//! the pole above the middle to the pole below it. Two of the three curves are the first ring of an arm;
+//! further rings lead to its end. All points are then projected onto the surface and spaced evenly.
 
 use std::f64::consts::{PI, TAU};
 

@@ -10,9 +10,9 @@
 //!    \ b /
 //! ```
 //!
-//! A column has a place for each level, the wall's own vertex the lowest. Where one has fewer levels than those
-//! beside it, or none, its last place stands for all levels above: the prisms there are pyramids (one corner
-//! that does not rise), tets (two), or nothing (three).
+//! A column has a place for each level, the wall's own vertex the lowest. Where one has fewer levels than
+//! those beside it, or none, its last place stands for all levels above: the prisms there are pyramids (one
+//! corner that does not rise), tets (two), or nothing (three).
 
 use super::neighbors::NONE;
 use super::skin::Skin;
