@@ -223,7 +223,7 @@ fn bad_input_ends_with_the_reason_and_nothing_written() {
     refused(&["coil.stl", "ball.vtu"], 3, &["coil.stl", "no linear tetrahedra"]);
     refused(&["host.vtu", "none.stl"], 3, &["none.stl"]);
     refused(&["host.vtu"], 2, &["DEVICE"]);
-    refused(&["host.vtu", "ball.vtu", "--growth", "5"], 2, &["grow by 5"]);
+    refused(&["host.vtu", "ball.vtu", "--growth", "5"], 2, &["the growth of sizes is 5"]);
     refused(&["host.vtu", "ball.vtu", "--carve", "9"], 2, &["9"]);
     refused(&["host.vtu", "ball.vtu", "--carry", "none=drop"], 2, &["none"]);
     refused(&["host.vtu", "ball.vtu", "--stray=-1"], 2, &["a number of 0 or more is expected"]);

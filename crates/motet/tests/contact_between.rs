@@ -376,7 +376,7 @@ fn what_cannot_be_measured_is_refused_with_the_place() {
         assert!(error.remedy_text().is_some());
         error.to_string()
     };
-    assert!(refused(&[]).contains("needs a body"));
+    assert!(refused(&[]).contains("no body to measure"));
     assert!(refused(&[ids(&[[0, 1, 1]]), vec![]]).contains("body 1 has no triangles"));
     assert!(refused(&[ids(&[[0, 1, 1], [0, 1, 3]])]).contains("body 0, triangle 1: names point 3"));
     assert!(refused(&[ids(&[[0, 1, 2]])]).contains("body 0, point 2"));

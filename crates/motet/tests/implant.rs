@@ -503,11 +503,11 @@ fn a_tolerance_is_kept_and_what_goes_round_nothing_refused() {
     let too_fine = refused(device.mesh.clone(), &conform(Some(1e-6)));
     assert!(too_fine.what().contains("too many cubes"));
     assert!(too_fine.remedy_text().unwrap().contains("a tolerance of at least 2"), "{too_fine}");
-    assert!(refused(device.mesh.clone(), &conform(Some(-1.0))).what().contains("tolerance of -1"));
+    assert!(refused(device.mesh.clone(), &conform(Some(-1.0))).what().contains("the tolerance is -1"));
     let mut odd = together(&device.mesh, &Mesh::default());
     let first = odd.cells.vertices(CellId(0))[0];
     odd.points[first.index()][1] = f64::NAN;
-    assert!(refused(odd, &conform(None)).what().contains("no number"));
+    assert!(refused(odd, &conform(None)).what().contains("not finite"));
 }
 
 /// `MOTET_CASES=500` makes more placements. Those that meet walls have their own test.

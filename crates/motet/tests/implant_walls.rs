@@ -317,7 +317,7 @@ fn what_takes_all_the_room_or_holds_cells_of_other_kinds_is_refused() {
     with_wire.cell_data.clear();
     let ball = filled(small_ball(0.3, [0.375, 0.05, 1.5]), "ball");
     let error = put(&with_wire, &[ball], &strict()).unwrap_err();
-    assert!(error.what().contains("cells of other kinds") && error.place().is_some(), "{error}");
+    assert!(error.what().contains("cells that are not tets") && error.place().is_some(), "{error}");
 }
 
 /// `MOTET_CASES=500` makes more placements.
