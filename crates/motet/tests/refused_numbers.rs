@@ -76,7 +76,7 @@ fn shapes_of_too_many_points_and_of_no_size() {
     }
     let tube = TubeOptions::default();
     assert!(tube.check().is_ok());
-    refused(TubeOptions { wall_layers: 10, ..tube.clone() }.check(), "no room");
+    refused(TubeOptions { wall_layers: 10, ..tube.clone() }.check(), "no space");
     refused(TubeOptions { wall_layers: usize::MAX, ..tube.clone() }.check(), "points");
     refused(TubeOptions { n: 0, ..tube.clone() }.check(), "1 or more");
     refused(TubeOptions { n: usize::MAX, ..tube.clone() }.check(), "points");
