@@ -232,7 +232,7 @@ static void motion(void)
         motet_mover_options_init(&options, sizeof options);
         options.method = (int32_t)i;
         if (i == MOTET_BODIES) {
-            REFUSED(motet_mover_new(mesh, &options, &mover, &error), MOTET_ERROR_OPTIONS, "no part of them is a body");
+            REFUSED(motet_mover_new(mesh, &options, &mover, &error), MOTET_ERROR_OPTIONS, "no part of them is a separate body");
             continue;
         }
         OK(motet_mover_new(mesh, i == MOTET_DELAUNAY ? NULL : &options, &mover, &error));
