@@ -224,7 +224,11 @@ fn displacements_of_nodes_over_time_are_written_and_read() {
     folder.write("strange.dat", b"3 1 1\n0\n17\n0 0 1\n");
     let call =
         folder.motet(["move", "cube.vtu", "-o", "no.vtu", "--displacement", "strange.dat"]).assert().code(3);
-    assert!(stderr(&call).starts_with("error: strange.dat: point 0: no point of the mesh has GlobalNodeID 17"), "{}", stderr(&call));
+    assert!(
+        stderr(&call).starts_with("error: strange.dat: point 0: no point of the mesh has GlobalNodeID 17"),
+        "{}",
+        stderr(&call)
+    );
 }
 
 #[test]

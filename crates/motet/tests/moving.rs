@@ -321,7 +321,9 @@ fn what_cannot_be_done_leaves_all_as_it_was() -> Result<()> {
         moving.advance(f64::INFINITY, &far, &threads()).unwrap_err(),
         moving.advance(2.0, &far, &stopped).unwrap_err(),
     ];
-    for (error, part) in told.iter().zip(["driven", "vertex 7", "not after the current time 1", "not after", "stopped"]) {
+    for (error, part) in
+        told.iter().zip(["driven", "vertex 7", "not after the current time 1", "not after", "stopped"])
+    {
         assert!(error.to_string().contains(part), "{error}");
     }
     assert_eq!((moving.mesh(), moving.velocity(), moving.step()), (&before, velocity, 1));

@@ -226,7 +226,7 @@ impl Complex {
         all.filter(|(_, wall)| !wall.sides[0].is_none())
     }
 
-    /// A tet of a vertex; [`NO_TET`] if it has none.
+    /// A tet of a vertex; `NO_TET` if it has none.
     #[inline]
     pub fn tet_of(&self, vertex: VertexId) -> TetId {
         self.vertex_to_tet[vertex.index()]

@@ -54,7 +54,7 @@ impl Frame {
 
     /// Converts a place in units of the frame back to a point.
     #[inline(always)]
-    pub(super) fn to_point(&self, x: [f32; 3]) -> Point {
+    pub(super) fn point_of(&self, x: [f32; 3]) -> Point {
         add(scale(x.map(f64::from), 1.0 / self.scale), self.centre)
     }
 }

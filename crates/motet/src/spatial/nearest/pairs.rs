@@ -231,7 +231,7 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> PairSearch<'_, F> {
     /// Converts a box from the frame of `from` to that of `to`.
     #[inline(always)]
     fn framed(&self, corners: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
-        corners.map(|x| self.to.frame.of(self.from.frame.to_point(x)))
+        corners.map(|x| self.to.frame.of(self.from.frame.point_of(x)))
     }
 }
 
