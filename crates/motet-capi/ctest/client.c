@@ -400,8 +400,8 @@ static void numbers(void)
         REFUSED(IMPLANT(stray), MOTET_ERROR_OPTIONS, "stray");
         REFUSED(IMPLANT(edge_length), MOTET_ERROR_OPTIONS, "size");
         REFUSED(IMPLANT(growth), MOTET_ERROR_OPTIONS, "grow");
-        REFUSED(IMPLANT(carve), MOTET_ERROR_OPTIONS, "edges");
-        REFUSED(IMPLANT(reach), MOTET_ERROR_OPTIONS, "edges");
+        REFUSED(IMPLANT(carve), MOTET_ERROR_OPTIONS, "edge lengths");
+        REFUSED(IMPLANT(reach), MOTET_ERROR_OPTIONS, "edge lengths");
         REFUSED(IMPLANT(min_eas), MOTET_ERROR_OPTIONS, "EAS");
         REFUSED(FILL(edge_length), MOTET_ERROR_OPTIONS, "size");
         REFUSED(FILL(growth), MOTET_ERROR_OPTIONS, "grow");
@@ -577,7 +577,7 @@ static void loop(void)
     CHECK(changes > 0 && motet_mesh_n_points(motet_moving_mesh(moving)) > n_new);
     CHECK(fabs(integral(motet_moving_mesh(moving), "density") / before - 1) < 1e-12);
 
-    REFUSED(motet_moving_advance(moving, 1, displacement, n, 3, NULL, &error), MOTET_ERROR_OPTIONS, "not after 1");
+    REFUSED(motet_moving_advance(moving, 1, displacement, n, 3, NULL, &error), MOTET_ERROR_OPTIONS, "not after the current time 1");
     REFUSED(motet_moving_advance(moving, 2, displacement, n - 1, 3, NULL, &error), MOTET_ERROR_OPTIONS, "expected");
     REFUSED(motet_moving_advance(moving, 2, NULL, n, 3, NULL, &error), MOTET_ERROR_OPTIONS, "displacement is NULL");
     REFUSED(motet_moving_advance(NULL, 2, displacement, n, 3, NULL, &error), MOTET_ERROR_OPTIONS, "moving is NULL");
@@ -594,7 +594,7 @@ static void loop(void)
     options.watch = watched, options.n_watch = 1;
     REFUSED(motet_moving_new(mesh, &options, &none, &error), MOTET_ERROR_OPTIONS, "nowhere");
     options.n_watch = 0, options.surface = 7;
-    REFUSED(motet_moving_new(mesh, &options, &none, &error), MOTET_ERROR_OPTIONS, "no rule 7");
+    REFUSED(motet_moving_new(mesh, &options, &none, &error), MOTET_ERROR_OPTIONS, "unknown surface rule 7");
     CHECK(none == NULL && motet_moving_mesh(none) == NULL && isnan(motet_moving_time(none)));
     free(places), free(displacement), free(density), free(x), free(first), free(now);
     motet_moving_free(moving), motet_moving_free(none);
