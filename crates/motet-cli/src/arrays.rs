@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_rule_is_told() {
+    fn what_is_no_rule_is_reported() {
         assert!(carry("u").is_err() && carry("=drop").is_err() && carry("u=keep").is_err());
     }
 }

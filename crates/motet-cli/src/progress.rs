@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_is_told_of_a_stage_alone_and_by_work_done() {
+    fn what_is_left_is_reported_of_a_stage_alone_and_by_work_done() {
         let mut activity = Activity::default();
         activity.take(Progress { stage: "reading", done: 0, of: 0 }, seconds(0));
         assert_eq!((activity.remaining(seconds(50)), activity.text(seconds(50)).as_str()), (None, "reading"));

@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_off_is_told() {
+    fn what_is_off_is_reported() {
         assert!(numbers("1,x").is_err_and(|why| why.contains("`x` is not a finite number")));
         for text in ["0", "-1", "nan", "inf", "x", ""] {
             assert_eq!(positive(text), Err("a positive number is expected".into()));

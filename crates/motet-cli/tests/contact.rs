@@ -42,13 +42,13 @@ fn values(mesh: &Mesh, name: &str) -> Vec<f64> {
 #[test]
 fn two_blocks_have_their_gap_on_both_and_in_the_report() {
     let folder = folder();
-    let told = report(&folder, "contact left.vtp right.vtp -o gaps.vtp --warn 0.6");
-    let step = &told["steps"][0];
+    let reported = report(&folder, "contact left.vtp right.vtp -o gaps.vtp --warn 0.6");
+    let step = &reported["steps"][0];
     assert_eq!(step["least"], 0.5);
     assert_eq!(step["pairs"][0]["distance"], 0.5);
     assert_eq!(step["pairs"][0]["bodies"], serde_json::json!(["left", "right"]));
-    assert_eq!(told["bodies"][1]["closed"], true);
-    assert_eq!((&told["warning"], &step["time"]), (&Value::Bool(true), &Value::from(0.0)));
+    assert_eq!(reported["bodies"][1]["closed"], true);
+    assert_eq!((&reported["warning"], &step["time"]), (&Value::Bool(true), &Value::from(0.0)));
     let mesh = read(folder.path("gaps.vtp")).expect("it is written");
     let (gap, warning) = (values(&mesh, "gap"), values(&mesh, "warning"));
     let (body, cell) = (values(&mesh, "closest_body"), values(&mesh, "closest_cell"));
@@ -70,7 +70,7 @@ fn two_blocks_have_their_gap_on_both_and_in_the_report() {
     assert_eq!(on_face, 9);
     assert_eq!(
         mesh.cells.len(),
-        told["bodies"]
+        reported["bodies"]
             .as_array()
             .expect("a list")
             .iter()
@@ -80,7 +80,7 @@ fn two_blocks_have_their_gap_on_both_and_in_the_report() {
 }
 
 #[test]
-fn it_is_told_in_words_with_a_histogram() {
+fn it_is_reported_in_words_with_a_histogram() {
     let folder = folder();
     let call = folder
         .motet(["contact", "left.vtp", "right.vtp", "-o", "gaps.vtp", "--warn", "0.6"])
@@ -99,15 +99,15 @@ fn it_is_told_in_words_with_a_histogram() {
 #[test]
 fn velocities_tell_when_it_will_touch() {
     let folder = folder();
-    let told = report(&folder, "contact left.vtp right.vtp -o gaps.vtp --velocity v");
-    let after = told["steps"][0]["first_contact"]["after"].as_f64().expect("a time");
+    let reported = report(&folder, "contact left.vtp right.vtp -o gaps.vtp --velocity v");
+    let after = reported["steps"][0]["first_contact"]["after"].as_f64().expect("a time");
     assert!(after <= 0.25 && after > 0.249, "{after}");
     let times = values(&read(folder.path("gaps.vtp")).expect("it is written"), "time_to_contact");
     let least = times.iter().copied().fold(f64::INFINITY, f64::min);
     assert!((least - after).abs() < 1e-15, "{least}");
     assert!(times.iter().any(|t| t.is_nan()), "the far sides never touch");
-    let told = report(&folder, "contact left.vtp right.vtp -o gaps.vtp --velocity v --horizon 0.2");
-    assert_eq!(told["steps"][0]["first_contact"], Value::Null);
+    let reported = report(&folder, "contact left.vtp right.vtp -o gaps.vtp --velocity v --horizon 0.2");
+    assert_eq!(reported["steps"][0]["first_contact"], Value::Null);
 }
 
 #[test]
@@ -119,13 +119,16 @@ fn a_series_goes_in_and_a_series_comes_out() {
         series.add(f64::from(k), &block).expect("it is written");
         block.points.iter_mut().for_each(|p| p[0] -= 0.2);
     }
-    let told = report(&folder, "contact left.vtp right.pvd -o out/gaps.pvd --warn 0.25");
-    let steps = told["steps"].as_array().expect("a list");
+    let reported = report(&folder, "contact left.vtp right.pvd -o out/gaps.pvd --warn 0.25");
+    let steps = reported["steps"].as_array().expect("a list");
     let least: Vec<f64> = steps.iter().map(|step| step["least"].as_f64().expect("a gap")).collect();
     for (got, expected) in least.iter().zip([0.5, 0.3, 0.1, 0.0, 0.0]) {
         assert!((got - expected).abs() < 1e-12, "{least:?}");
     }
-    assert_eq!((&told["first_warning"], &told["first_touch"]), (&Value::from(2.0), &Value::from(3.0)));
+    assert_eq!(
+        (&reported["first_warning"], &reported["first_touch"]),
+        (&Value::from(2.0), &Value::from(3.0))
+    );
     // At time 2 the contact is half a step away; none is visible from time 0.
     let after = steps[2]["first_contact"]["after"].as_f64().expect("a time");
     assert!(after <= 0.5 && after > 0.499, "{after}");
@@ -144,8 +147,8 @@ fn a_series_goes_in_and_a_series_comes_out() {
 fn patches_of_a_mesh_are_bodies() {
     let folder = Folder::new();
     folder.mesh("box.vtu", &box_grid([4; 3], [[0.0; 3], [1.0, 2.0, 3.0]]));
-    let told = report(&folder, "contact box.vtu --patches zmin,zmax,xmin -o gaps.vtp");
-    let pairs = told["steps"][0]["pairs"].as_array().expect("a list");
+    let reported = report(&folder, "contact box.vtu --patches zmin,zmax,xmin -o gaps.vtp");
+    let pairs = reported["steps"][0]["pairs"].as_array().expect("a list");
     assert_eq!(pairs.len(), 3);
     assert_eq!(pairs[0]["distance"], 3.0);
     assert_eq!(pairs[1]["bodies"], serde_json::json!(["zmin", "xmin"]));
@@ -162,13 +165,16 @@ fn a_room_is_found_and_reported_and_can_be_told() {
     let found = "room is treated as the room of thing, 100 % of whose area lies inside";
     assert!(stdout(&call).contains(found), "{}", stdout(&call));
     for words in ["", " --room room", " --method delaunay"] {
-        let told = report(&folder, &format!("contact thing.vtp room.vtp -o gaps.vtp --warn 0.5{words}"));
-        assert_eq!(told["steps"][0]["pairs"][0]["wrong"], serde_json::json!([0, 0]));
-        assert_eq!(told["steps"][0]["gaps"][0]["min"], 1.0);
-        assert_eq!((&told["warning"], &told["bodies"][1]["room"]), (&Value::Bool(false), &Value::Bool(true)));
+        let reported = report(&folder, &format!("contact thing.vtp room.vtp -o gaps.vtp --warn 0.5{words}"));
+        assert_eq!(reported["steps"][0]["pairs"][0]["wrong"], serde_json::json!([0, 0]));
+        assert_eq!(reported["steps"][0]["gaps"][0]["min"], 1.0);
+        assert_eq!(
+            (&reported["warning"], &reported["bodies"][1]["room"]),
+            (&Value::Bool(false), &Value::Bool(true))
+        );
         let share = if words.contains("--room") { Value::Null } else { 1.0.into() };
         assert_eq!(
-            told["rooms"],
+            reported["rooms"],
             serde_json::json!([{ "room": "room", "surface": "thing", "share": share }])
         );
     }
@@ -187,9 +193,11 @@ fn vertices_that_delaunay_tets_do_not_measure_have_finite_depths() {
     let call = folder.motet(words.split(' ')).assert().success();
     let text = stdout(&call) + &stderr(&call);
     assert!(!text.contains("inf") && !text.contains("NaN"), "{text}");
-    let told = report(&folder, words);
-    assert_eq!(told["steps"][0]["gaps"][0]["max"], -1.0, "as deep as it is");
-    assert!(told["steps"][0]["warned"].as_array().expect("groups").iter().all(|group| group["gap"].is_f64()));
+    let reported = report(&folder, words);
+    assert_eq!(reported["steps"][0]["gaps"][0]["max"], -1.0, "as deep as it is");
+    assert!(
+        reported["steps"][0]["warned"].as_array().expect("groups").iter().all(|group| group["gap"].is_f64())
+    );
     let mesh = read(folder.path("gaps.vtp")).expect("it is written");
     assert!(values(&mesh, "gap")[..26].iter().all(|gap| gap.is_finite() && *gap < 0.0));
 }
@@ -207,9 +215,9 @@ fn rooms_of_a_series_are_those_of_its_first_frame() {
     for (k, mesh) in (0u8..).zip(&frames) {
         series.add(f64::from(k), mesh).expect("a frame is written");
     }
-    let told = report(&folder, "contact thing.pvd room.vtp -o out/gaps.pvd --warn 0.5");
-    assert_eq!(told["rooms"].as_array().map(Vec::len), Some(1));
-    let wrong: Vec<_> = (0..3).map(|k| told["steps"][k]["pairs"][0]["wrong"][0].as_u64()).collect();
+    let reported = report(&folder, "contact thing.pvd room.vtp -o out/gaps.pvd --warn 0.5");
+    assert_eq!(reported["rooms"].as_array().map(Vec::len), Some(1));
+    let wrong: Vec<_> = (0..3).map(|k| reported["steps"][k]["pairs"][0]["wrong"][0].as_u64()).collect();
     assert_eq!(wrong, [Some(0), Some(19), Some(8)]);
 }
 
@@ -224,13 +232,14 @@ fn a_surface_is_held_against_itself() {
     other.cells.iter().for_each(|(_, kind, v)| two.cells.push(kind, v.iter().map(|v| VertexId(v.0 + first))));
     two.points.extend(&other.points);
     folder.mesh("two.vtp", &two);
-    let told = report(&folder, "contact two.vtp --self -o gaps.vtp --warn 0.3");
-    assert_eq!(told["steps"][0]["least"], 0.25);
+    let reported = report(&folder, "contact two.vtp --self -o gaps.vtp --warn 0.3");
+    assert_eq!(reported["steps"][0]["least"], 0.25);
     // As two files they have the same warnings.
     let apart = report(&folder, "contact one.vtp other.vtp -o apart.vtp --warn 0.3");
-    let warned =
-        |told: &Value, body: usize| told["steps"][0]["gaps"][body]["warned"].as_u64().expect("a count");
-    assert_eq!(warned(&told, 0), warned(&apart, 0) + warned(&apart, 1));
+    let warned = |reported: &Value, body: usize| {
+        reported["steps"][0]["gaps"][body]["warned"].as_u64().expect("a count")
+    };
+    assert_eq!(warned(&reported, 0), warned(&apart, 0) + warned(&apart, 1));
     let gap = |name: &str| values(&read(folder.path(name)).expect("it is written"), "gap");
     for (alone, among) in gap("gaps.vtp").into_iter().zip(gap("apart.vtp")) {
         // Vertices half way along the sides are measured along their own surface.

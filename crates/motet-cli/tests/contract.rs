@@ -10,17 +10,17 @@ fn a_call_without_a_verb_shows_the_usage_and_exits_2() {
     for words in [&[][..], &["fly"], &["convert", "only-one.vtu"], &["info", "a.vtu", "--threads", "many"]] {
         let call = folder.motet(words).assert().code(2);
         assert_eq!(stdout(&call), "", "{words:?}");
-        let told = stderr(&call);
-        assert!(told.contains("Usage: motet") || told.contains("--help"), "{words:?}: {told}");
+        let reported = stderr(&call);
+        assert!(reported.contains("Usage: motet") || reported.contains("--help"), "{words:?}: {reported}");
     }
 }
 
 #[test]
-fn a_wrong_call_with_json_is_told_as_an_object() {
+fn a_wrong_call_with_json_is_reported_as_an_object() {
     let call = Folder::new().motet(["fly", "--json"]).assert().code(2);
-    let told: serde_json::Value = serde_json::from_str(&stdout(&call)).expect("one object");
-    assert_eq!(told["error"]["exit"], 2);
-    assert!(told["error"]["what"].as_str().is_some_and(|t| t.contains("fly")), "{told}");
+    let reported: serde_json::Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    assert_eq!(reported["error"]["exit"], 2);
+    assert!(reported["error"]["what"].as_str().is_some_and(|t| t.contains("fly")), "{reported}");
 }
 
 #[test]
@@ -46,13 +46,13 @@ fn a_file_that_is_not_there_is_an_unreadable_input() {
     let folder = Folder::new();
     let call = folder.motet(["info", "nowhere.vtu", "--json"]).assert().code(3);
     assert!(stderr(&call).starts_with("error: nowhere.vtu: "), "{}", stderr(&call));
-    let told: serde_json::Value = serde_json::from_str(&stdout(&call)).expect("one object");
-    assert_eq!(told["error"]["file"], "nowhere.vtu");
-    assert_eq!(told["error"]["exit"], 3);
+    let reported: serde_json::Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    assert_eq!(reported["error"]["file"], "nowhere.vtu");
+    assert_eq!(reported["error"]["exit"], 3);
 }
 
 #[test]
-fn a_folder_that_is_not_there_is_told_before_work_begins() {
+fn a_folder_that_is_not_there_is_reported_before_work_begins() {
     let folder = Folder::new();
     let mesh = folder.cube("cube.vtu");
     let call = folder.motet(["convert", &mesh, "no/such/folder/out.vtu"]).assert().code(3);
@@ -74,9 +74,9 @@ fn json_is_one_object_on_standard_output_and_nothing_else() {
     let folder = Folder::new();
     let mesh = folder.cube("cube.vtu");
     let call = folder.motet(["convert", &mesh, "out.vtu", "--json"]).assert().code(0);
-    let told: serde_json::Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    let reported: serde_json::Value = serde_json::from_str(&stdout(&call)).expect("one object");
     for key in ["input", "output", "points", "cells", "lost", "seconds"] {
-        assert!(!told[key].is_null(), "{key}");
+        assert!(!reported[key].is_null(), "{key}");
     }
     assert_eq!(folder.names(), ["cube.vtu", "out.vtu"]);
 }

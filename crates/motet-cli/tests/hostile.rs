@@ -39,7 +39,7 @@ fn a_name_that_is_no_unicode_is_a_name() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_behind_standard_output_is_told() {
+fn a_full_disk_behind_standard_output_is_reported() {
     let folder = Folder::new();
     let mesh = folder.cube("cube.vtu");
     for words in [&["info", &mesh][..], &["info", &mesh, "--json"], &["help"], &["--version"]] {

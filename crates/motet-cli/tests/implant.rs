@@ -36,13 +36,13 @@ fn report(folder: &Folder, words: &[&str]) -> Value {
 fn a_coil_and_what_the_report_says_of_it() {
     let folder = folder();
     let words = ["implant", "host.vtu", "coil.stl", "-o", "out.vtu", "--quality", "--history", "h.json"];
-    let told = report(&folder, &words);
+    let reported = report(&folder, &words);
     assert_eq!(
-        (&told["complete"], &told["valid"], &told["unforced"]),
+        (&reported["complete"], &reported["valid"], &reported["unforced"]),
         (&true.into(), &true.into(), &0.into())
     );
-    assert!(told["volume_deviation"].as_f64().unwrap() < 1e-9);
-    let device = &told["report"]["devices"][0];
+    assert!(reported["volume_deviation"].as_f64().unwrap() < 1e-9);
+    let device = &reported["report"]["devices"][0];
     assert_eq!(device["triangles"], device["triangles_kept"]);
     assert_eq!((device["name"].as_str(), device["regions"][0].as_i64()), (Some("coil"), Some(2)));
     let mesh = read(folder.path("out.vtu")).unwrap();
@@ -67,10 +67,11 @@ fn a_coil_and_what_the_report_says_of_it() {
 fn devices_keep_their_tets_are_filled_or_hollow() {
     let folder = folder();
     let regions = |words: &[&str]| {
-        let told = report(&folder, &[&["implant", "host.vtu", "ball.vtu", "-o", "out.vtu"], words].concat());
+        let reported =
+            report(&folder, &[&["implant", "host.vtu", "ball.vtu", "-o", "out.vtu"], words].concat());
         let mesh = read(folder.path("out.vtu")).unwrap();
         let ids = mesh.regions().unwrap().ids;
-        (told["report"]["regions"].as_array().unwrap().len(), ids.iter().filter(|id| **id == 2).count())
+        (reported["report"]["regions"].as_array().unwrap().len(), ids.iter().filter(|id| **id == 2).count())
     };
     let n_own = ball(3, 2).cells.tets().count();
     assert_eq!(regions(&[]), (2, n_own));
@@ -78,9 +79,13 @@ fn devices_keep_their_tets_are_filled_or_hollow() {
     assert!(n == 2 && n_new != n_own);
     assert_eq!(regions(&["--hollow"]), (1, 0));
     folder.mesh("ball_2.vtu", &small_ball(0.3, 0.9));
-    let told = report(&folder, &["implant", "host.vtu", "ball.vtu", "ball_2.vtu", "-o", "out.vtu"]);
-    let names: Vec<_> =
-        told["report"]["devices"].as_array().unwrap().iter().map(|d| d["name"].as_str().unwrap()).collect();
+    let reported = report(&folder, &["implant", "host.vtu", "ball.vtu", "ball_2.vtu", "-o", "out.vtu"]);
+    let names: Vec<_> = reported["report"]["devices"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|d| d["name"].as_str().unwrap())
+        .collect();
     assert_eq!(names, ["ball", "ball_2"]);
 }
 
@@ -89,20 +94,20 @@ fn a_device_through_a_wall_is_cut_off_or_kept() {
     let folder = folder();
     folder.mesh("wall.vtu", &small_ball(0.5, 1.2));
     let words = ["implant", "host.vtu", "wall.vtu", "-o", "out.vtu", "--fill", "--stray", "0.01"];
-    let told = report(&folder, &words);
-    let device = &told["report"]["devices"][0];
+    let reported = report(&folder, &words);
+    let device = &reported["report"]["devices"][0];
     let n = |key: &str| device[key].as_u64().unwrap();
     assert_eq!(n("triangles"), n("triangles_kept") + n("triangles_at_walls") + n("triangles_outside"));
-    assert!(n("triangles_at_walls") > 0 && told["report"]["volume"].as_f64().unwrap() < 27.01);
+    assert!(n("triangles_at_walls") > 0 && reported["report"]["volume"].as_f64().unwrap() < 27.01);
     let mesh = read(folder.path("out.vtu")).unwrap();
     assert!(check(&mesh).is_empty());
     assert_eq!(
         mesh.patches().unwrap().find("wall-contact"),
         device["contact_patch"].as_i64().map(|id| id as i32)
     );
-    let told = report(&folder, &[&words[..], &["--outside", "keep"]].concat());
-    assert!(told["report"]["volume"].as_f64().unwrap() > 27.01);
-    assert!(told["report"]["devices"][0]["contact_patch"].is_null());
+    let reported = report(&folder, &[&words[..], &["--outside", "keep"]].concat());
+    assert!(reported["report"]["volume"].as_f64().unwrap() > 27.01);
+    assert!(reported["report"]["devices"][0]["contact_patch"].is_null());
     let call = folder.motet(words).assert().code(0);
     assert!(stdout(&call).contains("wall: meets walls of the host"), "{}", stdout(&call));
 }
@@ -186,10 +191,10 @@ fn an_implanted_mesh_moves_with_its_wall_and_is_repaired() {
         .assert()
         .success();
     let call = folder.motet(["remesh", "moved.vtu", "-o", "good.vtu", "--json"]).assert().success();
-    let told: Value = serde_json::from_str(&stdout(&call)).unwrap();
-    let repaired = &told["after"];
-    assert_eq!((&repaired["bad"], &repaired["inverted"]), (&0.into(), &0.into()), "{told}");
-    assert!(told["before"]["bad"].as_u64() > Some(0), "nothing to repair");
+    let reported: Value = serde_json::from_str(&stdout(&call)).unwrap();
+    let repaired = &reported["after"];
+    assert_eq!((&repaired["bad"], &repaired["inverted"]), (&0.into(), &0.into()), "{reported}");
+    assert!(reported["before"]["bad"].as_u64() > Some(0), "nothing to repair");
     let good = read(folder.path("good.vtu")).unwrap();
     assert!(check(&good).is_empty());
     let key = |p: &Point| p.map(|x| (x + 0.0).to_bits());

@@ -27,10 +27,10 @@ fn report(folder: &Folder, words: &[&str]) -> Value {
 fn a_ball_is_filled() {
     let folder = Folder::new();
     folder.mesh("ball.stl", &ball_surface(0));
-    let told = report(&folder, &["mesh", "ball.stl", "-o", "ball.vtu", "--size", "0.3"]);
-    assert_eq!(told["complete"], true, "{told}");
-    assert_eq!(told["filled"]["triangles"], told["filled"]["triangles_kept"]);
-    assert!(told["improved"]["after"]["bad"] == 0, "{told}");
+    let reported = report(&folder, &["mesh", "ball.stl", "-o", "ball.vtu", "--size", "0.3"]);
+    assert_eq!(reported["complete"], true, "{reported}");
+    assert_eq!(reported["filled"]["triangles"], reported["filled"]["triangles_kept"]);
+    assert!(reported["improved"]["after"]["bad"] == 0, "{reported}");
     let mesh = read(folder.path("ball.vtu")).unwrap();
     assert!(check(&mesh).is_empty());
 }
@@ -39,8 +39,8 @@ fn a_ball_is_filled() {
 fn regions_and_patches_are_those_of_the_surface() {
     let folder = Folder::new();
     folder.mesh("vessel.vtp", &ThickTube::default().mesh().unwrap());
-    let told = report(&folder, &["mesh", "vessel.vtp", "-o", "vessel.vtu"]);
-    assert_eq!(told["filled"]["bodies"].as_array().map(Vec::len), Some(2), "{told}");
+    let reported = report(&folder, &["mesh", "vessel.vtp", "-o", "vessel.vtu"]);
+    assert_eq!(reported["filled"]["bodies"].as_array().map(Vec::len), Some(2), "{reported}");
     let mesh = read(folder.path("vessel.vtu")).unwrap();
     let patches = mesh.patches().unwrap();
     for name in ["lumen_inlet", "interface", "outer", "wall_outlet"] {
@@ -63,8 +63,8 @@ fn a_flap_in_the_same_file_or_its_own_has_two_sides() {
     };
     folder.mesh("lumen.vtp", &part(false));
     folder.mesh("flap.vtp", &part(true));
-    let told = report(&folder, &["mesh", "lumen.vtp", "--membrane", "flap.vtp", "-o", "out.vtu"]);
-    assert_eq!(told["filled"]["triangles"], told["filled"]["triangles_kept"], "{told}");
+    let reported = report(&folder, &["mesh", "lumen.vtp", "--membrane", "flap.vtp", "-o", "out.vtu"]);
+    assert_eq!(reported["filled"]["triangles"], reported["filled"]["triangles_kept"], "{reported}");
     assert!(read(folder.path("out.vtu")).unwrap().patches().unwrap().find("flap").is_some());
     // Without `--membrane`, the flap is an open surface.
     folder.motet(["mesh", "lumen.vtp", "flap.vtp", "-o", "no.vtu"]).assert().code(3);
@@ -88,9 +88,9 @@ fn files_that_end_at_common_edges_are_one_surface() {
         let words: Vec<&str> = words.iter().map(String::as_str).chain(["-o", output]).collect();
         report(&folder, &words)
     };
-    let told = call(&words, "vessel.vtu");
-    assert_eq!(told["preflight"]["n_surfaces"], 1, "{told}");
-    assert_eq!(told["filled"]["bodies"].as_array().map(Vec::len), Some(2), "{told}");
+    let reported = call(&words, "vessel.vtu");
+    assert_eq!(reported["preflight"]["n_surfaces"], 1, "{reported}");
+    assert_eq!(reported["filled"]["bodies"].as_array().map(Vec::len), Some(2), "{reported}");
     let mesh = read(folder.path("vessel.vtu")).unwrap();
     for name in labels.names.values() {
         assert!(mesh.patches().unwrap().find(name).is_some(), "{name}");
@@ -98,7 +98,7 @@ fn files_that_end_at_common_edges_are_one_surface() {
     // A wall between two meshes may be given by both: it is used once.
     std::fs::copy(folder.path("interface.stl"), folder.path("inner.stl")).unwrap();
     let twice: Vec<String> = words.iter().cloned().chain(["inner.stl".to_owned()]).collect();
-    assert_eq!(call(&twice, "twice.vtu")["filled"]["triangles"], told["filled"]["triangles"]);
+    assert_eq!(call(&twice, "twice.vtu")["filled"]["triangles"], reported["filled"]["triangles"]);
     // Without the last of them it is open, and all the others are named.
     words.pop();
     let call = folder.motet(words.iter().map(String::as_str).chain(["-o", "no.vtu"])).assert().code(3);
@@ -114,8 +114,8 @@ fn a_hole_is_refused_with_its_place_and_mended_on_request() {
     assert!(stderr(&call).contains("open_edge"), "{}", stderr(&call));
     assert!(!folder.path("out.vtu").exists());
     assert!(read(folder.path("wrong.vtp")).unwrap().cells.len() > 2);
-    let told = report(&folder, &["mesh", "torn.stl", "-o", "out.vtu", "--repair"]);
-    assert!(!told["repairs"].as_array().unwrap().is_empty());
+    let reported = report(&folder, &["mesh", "torn.stl", "-o", "out.vtu", "--repair"]);
+    assert!(!reported["repairs"].as_array().unwrap().is_empty());
     assert!(folder.path("out.vtu").exists());
 }
 
@@ -136,20 +136,20 @@ fn words_that_mean_nothing_are_refused() {
 }
 
 #[test]
-fn sizes_grow_from_the_surface_when_asked() {
+fn sizes_grow_from_the_surface_on_request() {
     let folder = Folder::new();
     let mut ball = ball_surface(0);
     ball.point_data.push(Field::scalars("h", vec![0.2; ball.points.len()]));
     ball.cell_data.push(Field::scalars("bad", vec![-1.0; ball.cells.len()]));
     folder.mesh("ball.vtp", &ball);
     let inside = |words: &[&str]| {
-        let told = report(&folder, &[&["mesh", "ball.vtp", "-o", "out.vtu"], words].concat());
+        let reported = report(&folder, &[&["mesh", "ball.vtp", "-o", "out.vtu"], words].concat());
         assert_eq!(
-            (&told["complete"], &told["improved"]["after"]["bad"]),
+            (&reported["complete"], &reported["improved"]["after"]["bad"]),
             (&true.into(), &0.into()),
-            "{told}"
+            "{reported}"
         );
-        told["filled"]["points_inside"].as_u64().unwrap()
+        reported["filled"]["points_inside"].as_u64().unwrap()
     };
     let auto = inside(&["--size", "auto"]);
     let slow = inside(&["--size", "auto", "--growth", "0.1"]);
@@ -179,9 +179,9 @@ fn regions_are_named_and_left_out_by_their_places() {
     folder.mesh("outer.stl", &outer);
     folder.mesh("inner.stl", &inner);
     let words = ["mesh", "inner.stl", "outer.stl", "-o", "out.vtu", "--seed", "-0.01,0,0=core"];
-    let told = report(&folder, &words);
+    let reported = report(&folder, &words);
     let names: Vec<_> =
-        told["filled"]["bodies"].as_array().unwrap().iter().map(|b| b["name"].clone()).collect();
+        reported["filled"]["bodies"].as_array().unwrap().iter().map(|b| b["name"].clone()).collect();
     assert_eq!(names, ["outer", "core"]);
     let regions = read(folder.path("out.vtu")).unwrap().regions().unwrap();
     assert_eq!((regions.find("outer"), regions.find("core")), (Some(1), Some(2)));
@@ -189,7 +189,7 @@ fn regions_are_named_and_left_out_by_their_places() {
     assert!(stdout(&said).contains("region 2 core: "), "{}", stdout(&said));
     let hole = report(&folder, &[&words[..5], &["--hole", "0,0,0"]].concat());
     assert_eq!(hole["filled"]["bodies"].as_array().map(Vec::len), Some(1), "{hole}");
-    let whole = told["filled"]["bodies"][0]["volume"].as_f64().unwrap();
+    let whole = reported["filled"]["bodies"][0]["volume"].as_f64().unwrap();
     assert!((hole["filled"]["bodies"][0]["volume"].as_f64().unwrap() - whole).abs() < 1e-9);
     for (word, code) in [("9,0,0=far", 3), ("0,0=two", 2), ("0,0,0=", 2)] {
         folder.motet(["mesh", "outer.stl", "-o", "no.vtu", "--seed", word]).assert().code(code);
@@ -200,7 +200,7 @@ fn regions_are_named_and_left_out_by_their_places() {
 }
 
 #[test]
-fn layers_grow_on_walls_and_are_told() {
+fn layers_grow_on_walls_and_are_reported() {
     let folder = Folder::new();
     let whole = ThickTube::default().mesh().unwrap();
     let labels = whole.patches().unwrap();
@@ -228,17 +228,17 @@ fn layers_grow_on_walls_and_are_told() {
     assert!(made.patches().unwrap().find("interface").is_some());
     // Given by patch, in two ways.
     for words in [&["interface=4,0.02,1.2"][..], &["4,0.02,1.2", "--layers-on", "interface"]] {
-        let told = report(&folder, &with(words));
-        assert_eq!(told["layers"], everywhere["layers"]);
+        let reported = report(&folder, &with(words));
+        assert_eq!(reported["layers"], everywhere["layers"]);
         assert_eq!(read(folder.path("lumen.vtu")).unwrap(), made);
     }
-    let told = report(&folder, &with(&["4,0.02,1.2", "--keep-prisms"]));
-    assert_eq!(told["layers"], everywhere["layers"]);
+    let reported = report(&folder, &with(&["4,0.02,1.2", "--keep-prisms"]));
+    assert_eq!(reported["layers"], everywhere["layers"]);
     let prisms = read(folder.path("lumen.vtu")).unwrap();
     assert!(check(&prisms).is_empty());
     assert!(prisms.cells.counts().contains(&(CellKind::WEDGE, 4 * 2 * 24 * 24)));
     let sum = |what: &str| -> u64 {
-        told["filled"]["bodies"].as_array().unwrap().iter().map(|body| body[what].as_u64().unwrap()).sum()
+        reported["filled"]["bodies"].as_array().unwrap().iter().map(|body| body[what].as_u64().unwrap()).sum()
     };
     let n_tets = prisms.cells.tets().count() as u64;
     let n_volume = prisms.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)).count() as u64;

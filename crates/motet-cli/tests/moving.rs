@@ -60,14 +60,14 @@ fn a_patch_is_shifted_in_steps_and_a_series_written() {
         "0.5",
         "--json",
     ];
-    let told = report(&folder.motet(words).assert().code(0));
-    assert_eq!(told["complete"], true);
-    assert_eq!(told["steps"].as_array().map(Vec::len), Some(5));
+    let reported = report(&folder.motet(words).assert().code(0));
+    assert_eq!(reported["complete"], true);
+    assert_eq!(reported["steps"].as_array().map(Vec::len), Some(5));
     for key in ["points", "cells", "untouched", "setup", "before", "after", "seconds"] {
-        assert!(!told[key].is_null(), "{key}");
+        assert!(!reported[key].is_null(), "{key}");
     }
     for key in ["worst_eas", "bad", "inverted", "substeps", "fraction", "time", "file"] {
-        assert!(!told["steps"][4][key].is_null(), "{key}");
+        assert!(!reported["steps"][4][key].is_null(), "{key}");
     }
     let series = read_series(folder.path("out.pvd")).unwrap();
     assert_eq!(series.iter().map(|(time, _)| *time).collect::<Vec<_>>(), [0.0, 0.5, 1.0, 1.5, 2.0]);
@@ -101,12 +101,12 @@ fn a_motion_beyond_the_wall_stops_where_it_must_and_exits_4() {
     folder.mesh("box.vtu", &sphere_in_box(6, 3));
     let words = ["move", "box.vtu", "-o", "out.vtu", "--translate", "sphere=6,0,0", "--json"];
     let call = folder.motet(words).assert().code(4);
-    let told = report(&call);
-    assert_eq!(told["complete"], false);
-    assert_eq!(told["after"]["inverted"], 0);
-    let fraction = told["after"]["fraction"].as_f64().expect("a number");
+    let reported = report(&call);
+    assert_eq!(reported["complete"], false);
+    assert_eq!(reported["after"]["inverted"], 0);
+    let fraction = reported["after"]["fraction"].as_f64().expect("a number");
     assert!(0.0 < fraction && fraction < 4.0 / 6.0, "{fraction}");
-    let why = told["not_reached"].as_str().expect("a reason");
+    let why = reported["not_reached"].as_str().expect("a reason");
     assert!(stderr(&call).contains(&format!("not reached: {why}")), "{}", stderr(&call));
     let mut near =
         folder.motet(["move", "box.vtu", "-o", "out.vtu", "--translate", "sphere=0.1,0,0", "--json"]);
@@ -211,7 +211,7 @@ fn displacements_of_nodes_over_time_are_written_and_read() {
     for (p, q) in lifted.points.iter().zip(&again.points) {
         assert!((0..3).all(|i| (p[i] - q[i]).abs() < 1e-15), "{p:?} {q:?}");
     }
-    for (words, code, told) in [
+    for (words, code, reported) in [
         (["--displacement", "lid.dat", "--steps", "3"], 2, "omit --steps"),
         (["--displacement", "lid.dat", "--nodal", "lid=lid.dat"], 2, "would overwrite a file of the call"),
         (["--displacement", "lid.dat", "--nodal", "no=no.dat"], 2, "no patch `no`"),
@@ -219,7 +219,7 @@ fn displacements_of_nodes_over_time_are_written_and_read() {
     ] {
         let call =
             folder.motet(["move", "cube.vtu", "-o", "no.vtu"].iter().chain(&words)).assert().code(code);
-        assert!(stderr(&call).contains(told), "{}", stderr(&call));
+        assert!(stderr(&call).contains(reported), "{}", stderr(&call));
     }
     folder.write("strange.dat", b"3 1 1\n0\n17\n0 0 1\n");
     let call =
@@ -417,14 +417,16 @@ fn the_cheapest_method_that_keeps_the_mesh_good_is_taken() {
         let words = ["move", "box.vtu", "-o", "out.vtu", "--method", "auto", "--steps", "2", "--json"];
         report(&folder.motet(words.iter().chain(&motion).chain(more)).assert().code(0))
     };
-    let told = auto(["--translate", "sphere=0.3,0,0"], &[]);
-    assert_eq!(told["choice"]["method"], "delaunay");
-    assert_eq!(told["choice"]["tried"].as_array().unwrap().len(), 1);
-    let told = auto(["--rotate", "sphere=0,0,1,90"], &["--smooth", "2"]);
-    assert_eq!(told["choice"]["method"], "bodies");
-    assert!(told["choice"]["tried"][0]["kept"] == false && told["choice"]["tried"][1]["kept"] == true);
-    let least = told["choice"]["least"].as_f64().unwrap();
-    assert!(told["after"]["worst_eas"]["value"].as_f64().unwrap() >= least);
+    let reported = auto(["--translate", "sphere=0.3,0,0"], &[]);
+    assert_eq!(reported["choice"]["method"], "delaunay");
+    assert_eq!(reported["choice"]["tried"].as_array().unwrap().len(), 1);
+    let reported = auto(["--rotate", "sphere=0,0,1,90"], &["--smooth", "2"]);
+    assert_eq!(reported["choice"]["method"], "bodies");
+    assert!(
+        reported["choice"]["tried"][0]["kept"] == false && reported["choice"]["tried"][1]["kept"] == true
+    );
+    let least = reported["choice"]["least"].as_f64().unwrap();
+    assert!(reported["after"]["worst_eas"]["value"].as_f64().unwrap() >= least);
     // No method is as good as that: the best is taken, and a message says so.
     let words = [
         "move",

@@ -28,9 +28,9 @@ fn a_piston_goes_down_between_sliding_sides_and_all_is_stretched_evenly() {
     folder.mesh("box.vtu", &mesh);
     let mut words = vec!["move", "box.vtu", "-o", "out.vtu", "--translate", "zmax=0,0,-0.4", "--json"];
     ["xmin", "xmax", "ymin", "ymax"].iter().for_each(|side| words.extend(["--slide", side]));
-    let told = report(&folder.motet(words).assert().code(0));
-    assert_eq!(told["complete"], true);
-    let planes = told["sliding"].as_array().unwrap();
+    let reported = report(&folder.motet(words).assert().code(0));
+    assert_eq!(reported["complete"], true);
+    let planes = reported["sliding"].as_array().unwrap();
     assert_eq!(planes.len(), 4);
     assert!(planes.iter().all(|plane| plane["deviation"] == 0.0 && plane["sliding"].as_u64() > Some(9)));
     let moved = read(folder.path("out.vtu")).unwrap();
@@ -83,9 +83,9 @@ fn an_array_on_an_interface_alone_moves_it_and_the_report_says_so() {
     let (mesh, inside) = with_interface();
     folder.mesh("two.vtu", &mesh);
     let words = ["move", "two.vtu", "-o", "out.vtu", "--displacement", "u", "--json"];
-    let told = report(&folder.motet(words).assert().code(0));
-    assert_eq!(told["interfaces"].as_array().unwrap().len(), 1);
-    assert_eq!(told["interfaces"][0]["vertices"], 25);
+    let reported = report(&folder.motet(words).assert().code(0));
+    assert_eq!(reported["interfaces"].as_array().unwrap().len(), 1);
+    assert_eq!(reported["interfaces"][0]["vertices"], 25);
     let moved = read(folder.path("out.vtu")).unwrap();
     for &v in &inside {
         assert_eq!(moved.points[v], add(mesh.points[v], [0.1, 0.0, 0.0]));
@@ -93,7 +93,7 @@ fn an_array_on_an_interface_alone_moves_it_and_the_report_says_so() {
 }
 
 #[test]
-fn an_array_that_moves_nothing_is_told() {
+fn an_array_that_moves_nothing_is_reported() {
     let folder = Folder::new();
     let mut mesh = unit_box(4);
     let inner = mesh.points.iter().position(|p| *p == [0.25, 0.25, 0.5]).unwrap();
@@ -106,7 +106,7 @@ fn an_array_that_moves_nothing_is_told() {
 }
 
 #[test]
-fn a_rim_that_leaves_its_plane_is_told() {
+fn a_rim_that_leaves_its_plane_is_reported() {
     let folder = Folder::new();
     folder.mesh("box.vtu", &unit_box(3));
     let words = |by| ["move", "box.vtu", "-o", "out.vtu", "--translate", by, "--slide", "xmin"];
@@ -114,8 +114,9 @@ fn a_rim_that_leaves_its_plane_is_told() {
     assert!(!stderr(&call).contains("leaves its plane"), "{}", stderr(&call));
     let call = folder.motet(words("zmax=0.1,0,-0.2")).assert().code(0);
     assert!(stderr(&call).contains("sliding patch xmin leaves its plane, by 0.1"), "{}", stderr(&call));
-    let told = report(&folder.motet(words("zmax=0.1,0,-0.2").into_iter().chain(["--json"])).assert().code(0));
-    let leaves = &told["steps"][0]["leaves_plane"];
+    let reported =
+        report(&folder.motet(words("zmax=0.1,0,-0.2").into_iter().chain(["--json"])).assert().code(0));
+    let leaves = &reported["steps"][0]["leaves_plane"];
     assert_eq!((leaves["patch"].as_str(), leaves["distance"].as_f64()), (Some("xmin"), Some(0.1)));
 }
 
@@ -142,18 +143,18 @@ fn hanging() -> Mesh {
 }
 
 #[test]
-fn hanging_vertices_and_how_far_the_mesh_opens_at_them_are_told() {
+fn hanging_vertices_and_how_far_the_mesh_opens_at_them_are_reported() {
     let folder = Folder::new();
     folder.mesh("hang.vtu", &hanging());
     let words = ["move", "hang.vtu", "-o", "out.vtu", "--displacement", "w"];
     let call = folder.motet(words).assert().code(0);
     assert!(stderr(&call).contains("hanging_vertex") && stderr(&call).contains("opens"), "{}", stderr(&call));
-    let told = report(&folder.motet(words.into_iter().chain(["--json"])).assert().code(0));
+    let reported = report(&folder.motet(words.into_iter().chain(["--json"])).assert().code(0));
     // 25 vertices of the fine side minus the 9 that both have. The one below the middle of the upper edge
     // stays; the coarse edge that it lies on moves half as far as its upper end, 0.1 / 4. Along the upper
     // edge the parabola is 0.1 / 16 above its chords.
-    assert_eq!(told["hanging"]["vertices"], 16);
-    let opening = told["hanging"]["opening"].as_f64().unwrap();
+    assert_eq!(reported["hanging"]["vertices"], 16);
+    let opening = reported["hanging"]["opening"].as_f64().unwrap();
     assert!((opening - 0.1 / 8.0).abs() < 1e-15, "{opening}");
 }
 
@@ -206,8 +207,8 @@ fn a_rim_that_was_cut_by_hand_is_capped_flat_and_slides() {
         ];
         folder.motet(words.into_iter().chain(more.iter().copied()))
     };
-    let told = report(&slide("flat.vtu", &["--json"]).assert().code(0));
-    for plane in told["sliding"].as_array().unwrap() {
+    let reported = report(&slide("flat.vtu", &["--json"]).assert().code(0));
+    for plane in reported["sliding"].as_array().unwrap() {
         assert!(plane["deviation"].as_f64().unwrap() < 1e-12 * plane["radius"].as_f64().unwrap(), "{plane}");
     }
     let call = slide("closed.vtu", &[]).assert().code(3);

@@ -44,15 +44,15 @@ fn report(folder: &Folder, words: &[&str]) -> Value {
 #[test]
 fn what_is_divided_is_remembered_and_taken_back() {
     let folder = folder();
-    let told = report(
+    let reported = report(
         &folder,
         &["refine", "lumen.vtu", "-o", "one.vtu", "--ball", "0.2,0.2,0.2,0.1", "--generations", "2"],
     );
-    let steps = told["steps"].as_array().unwrap();
+    let steps = reported["steps"].as_array().unwrap();
     assert_eq!(steps.iter().map(|s| s["step"].as_str().unwrap()).collect::<Vec<_>>(), ["came", "1", "2"]);
     assert!(steps.windows(2).all(|w| w[0]["tets"].as_u64() < w[1]["tets"].as_u64()));
-    assert_eq!((told["complete"].as_bool(), told["first_tets"].as_u64()), (Some(true), Some(384)));
-    assert!(told["volume_deviation"].as_f64().unwrap() < 1e-13);
+    assert_eq!((reported["complete"].as_bool(), reported["first_tets"].as_u64()), (Some(true), Some(384)));
+    assert!(reported["volume_deviation"].as_f64().unwrap() < 1e-13);
     let one = read(folder.path("one.vtu")).unwrap();
     assert!(check(&one).is_empty());
     let values = one.point_field("linear").unwrap().values.to_f64().unwrap();
@@ -101,8 +101,8 @@ fn edges_get_short_at_a_device() {
         "--history",
         "h.json",
     ];
-    let told = report(&folder, &words);
-    assert_eq!(told["complete"].as_bool(), Some(true));
+    let reported = report(&folder, &words);
+    assert_eq!(reported["complete"].as_bool(), Some(true));
     let fine = read(folder.path("fine.vtu")).unwrap();
     assert!(check(&fine).is_empty() && fine.cell_field("eas").is_some());
     let history: History = serde_json::from_slice(&folder.read("h.json")).unwrap();
@@ -121,8 +121,11 @@ fn edges_get_short_at_a_device() {
     let call = folder.motet(words).assert().code(4);
     assert!(stderr(&call).contains("not reached: not all edges are as short"), "{}", stderr(&call));
     let call = folder.motet(words.iter().chain(&["--json"])).assert().code(4);
-    let told: Value = serde_json::from_str(&stdout(&call)).unwrap();
-    assert!(told["not_reached"].as_str().is_some_and(|why| why.starts_with("not all edges")), "{told}");
+    let reported: Value = serde_json::from_str(&stdout(&call)).unwrap();
+    assert!(
+        reported["not_reached"].as_str().is_some_and(|why| why.starts_with("not all edges")),
+        "{reported}"
+    );
     assert!(folder.path("short.vtu").exists());
 }
 
@@ -132,11 +135,12 @@ fn new_points_lie_on_the_true_surface() {
     let sphere = |n| ball(n, 2);
     folder.mesh("ball.vtu", &sphere(3));
     folder.mesh("true.vtu", &sphere(24));
-    let told = report(&folder, &["refine", "ball.vtu", "-o", "straight.vtu", "--all"]);
-    assert!(told["on_surface"].is_null());
-    let told = report(&folder, &["refine", "ball.vtu", "-o", "round.vtu", "--all", "--surface", "true.vtu"]);
-    assert!(told["on_surface"]["moved"].as_u64().unwrap() > 50, "{told}");
-    assert_eq!(told["on_surface"]["short"].as_u64(), Some(0));
+    let reported = report(&folder, &["refine", "ball.vtu", "-o", "straight.vtu", "--all"]);
+    assert!(reported["on_surface"].is_null());
+    let reported =
+        report(&folder, &["refine", "ball.vtu", "-o", "round.vtu", "--all", "--surface", "true.vtu"]);
+    assert!(reported["on_surface"]["moved"].as_u64().unwrap() > 50, "{reported}");
+    assert_eq!(reported["on_surface"]["short"].as_u64(), Some(0));
     let volume = |name: &str| {
         let mesh = read(folder.path(name)).unwrap();
         assert!(check(&mesh).is_empty(), "{name}");

@@ -59,18 +59,18 @@ fn qualities(mesh: &Mesh) -> Vec<(CellId, f64)> {
 fn a_mesh_is_repaired_and_the_report_is_true() {
     let folder = folder();
     let call = folder.motet(["remesh", "shaken.vtu", "-o", "out.vtu", "--json"]).assert().code(0);
-    let told = report(&call);
+    let reported = report(&call);
     for key in ["mesh", "output", "complete", "min_eas", "operations", "kept", "untouched", "layers", "left"]
     {
-        assert!(!told[key].is_null(), "{key}");
+        assert!(!reported[key].is_null(), "{key}");
     }
     for stage in ["read", "join", "repair", "extract", "history", "fields", "write", "total"] {
-        assert!(told["seconds"][stage].as_f64().is_some_and(|s| s >= 0.0), "{stage}");
+        assert!(reported["seconds"][stage].as_f64().is_some_and(|s| s >= 0.0), "{stage}");
     }
-    assert_eq!(told["complete"], true);
-    assert_eq!(told["left"].as_array().map(Vec::len), Some(0));
+    assert_eq!(reported["complete"], true);
+    assert_eq!(reported["left"].as_array().map(Vec::len), Some(0));
     for (state, file) in [("before", "shaken.vtu"), ("after", "out.vtu")] {
-        let (state, mesh) = (&told[state], read(folder.path(file)).unwrap());
+        let (state, mesh) = (&reported[state], read(folder.path(file)).unwrap());
         let qualities = qualities(&mesh);
         let n = |holds: &dyn Fn(f64) -> bool| qualities.iter().filter(|q| holds(q.1)).count();
         assert_eq!(state["points"], mesh.points.len());
@@ -85,7 +85,7 @@ fn a_mesh_is_repaired_and_the_report_is_true() {
         assert_eq!(state["worst_eas"]["cell"], worst.0.0);
         assert_eq!(state["worst_eas"]["place"].as_array().map(Vec::len), Some(3));
     }
-    assert!(told["before"]["bad"].as_u64() > Some(5));
+    assert!(reported["before"]["bad"].as_u64() > Some(5));
     assert_eq!(folder.names(), ["flat.vtu", "out.vtu", "shaken.vtu"]);
 }
 
@@ -93,8 +93,8 @@ fn a_mesh_is_repaired_and_the_report_is_true() {
 fn a_smallest_angle_may_be_asked() {
     let folder = folder();
     let words = ["remesh", "shaken.vtu", "-o", "out.vtu", "--min-dihedral", "16", "--json"];
-    let told = report(&folder.motet(words).assert().code(0));
-    assert!(told["min_eas"].as_f64().is_some_and(|eas| eas > 0.2), "{told}");
+    let reported = report(&folder.motet(words).assert().code(0));
+    assert!(reported["min_eas"].as_f64().is_some_and(|eas| eas > 0.2), "{reported}");
     let info = report(&folder.motet(["info", "out.vtu", "--json"]).assert().code(0));
     assert!(info["quality"]["dihedral_deg"]["min"].as_f64().is_some_and(|deg| deg >= 16.0), "{info}");
 }
@@ -103,7 +103,7 @@ fn a_smallest_angle_may_be_asked() {
 fn the_table_tells_what_was_found_and_done() {
     let folder = folder();
     let call = folder.motet(["remesh", "shaken.vtu", "-o", "out.vtu"]).assert().code(0);
-    let told = stdout(&call);
+    let reported = stdout(&call);
     for word in [
         "type",
         "found",
@@ -121,7 +121,7 @@ fn the_table_tells_what_was_found_and_done() {
         "wrote out.vtu",
         "repaired",
     ] {
-        assert!(told.contains(word), "{word}: {told}");
+        assert!(reported.contains(word), "{word}: {reported}");
     }
     assert_eq!(stderr(&call), "");
     let call = folder.motet(["remesh", "shaken.vtu", "-o", "out.vtu", "-q"]).assert().code(0);
@@ -129,14 +129,14 @@ fn the_table_tells_what_was_found_and_done() {
 }
 
 #[test]
-fn what_cannot_be_repaired_is_told_with_place_and_reason() {
+fn what_cannot_be_repaired_is_reported_with_place_and_reason() {
     let folder = folder();
     let words = ["remesh", "flat.vtu", "-o", "out.vtu", "--layers", "repair"];
     let call = folder.motet(words.into_iter().chain(["--json"])).assert().code(4);
-    let told = report(&call);
-    assert_eq!(told["complete"], false);
-    let left = told["left"].as_array().unwrap();
-    assert_eq!(told["after"]["bad"], left.len());
+    let reported = report(&call);
+    assert_eq!(reported["complete"], false);
+    let left = reported["left"].as_array().unwrap();
+    assert_eq!(reported["after"]["bad"], left.len());
     assert!(left.len() > 10);
     let mesh = read(folder.path("out.vtu")).unwrap();
     for left in left {
@@ -151,7 +151,7 @@ fn what_cannot_be_repaired_is_told_with_place_and_reason() {
     }
     // The first ten and a count; all of them with -v.
     let call = folder.motet(words).assert().code(4);
-    let lines = |told: &str| told.lines().filter(|line| line.starts_with("  cell ")).count();
+    let lines = |reported: &str| reported.lines().filter(|line| line.starts_with("  cell ")).count();
     assert_eq!(lines(&stdout(&call)), 10);
     assert!(stdout(&call).contains(&format!("and {} more", left.len() - 10)));
     assert!(stderr(&call).contains("not reached: "), "{}", stderr(&call));
@@ -163,7 +163,7 @@ fn what_cannot_be_repaired_is_told_with_place_and_reason() {
 fn what_is_not_bad_stays_to_the_bit_and_fields_keep_what_they_mean() {
     let folder = folder();
     let words = ["remesh", "shaken.vtu", "-o", "out.vtu", "--history", "history.json", "--json"];
-    let told = report(&folder.motet(words).assert().code(0));
+    let reported = report(&folder.motet(words).assert().code(0));
     let (old, new) = (read(folder.path("shaken.vtu")).unwrap(), read(folder.path("out.vtu")).unwrap());
     let history: History = serde_json::from_slice(&folder.read("history.json")).unwrap();
     assert_eq!((history.vertices.len(), history.cells.len()), (new.points.len(), new.cells.len()));
@@ -175,7 +175,7 @@ fn what_is_not_bad_stays_to_the_bit_and_fields_keep_what_they_mean() {
         assert_eq!(bits(&new, new.cells.vertices(CellId(id))), bits(&old, old.cells.vertices(*was)));
         n_kept += u64::from(new.cells.kind(CellId(id)) == CellKind::TETRA);
     }
-    assert_eq!(told["kept"], n_kept);
+    assert_eq!(reported["kept"], n_kept);
     // The arrays carried by the history are those written.
     for field in &old.point_data {
         assert_eq!(Some(&history.transfer_points(field).unwrap()), new.point_field(&field.name));
@@ -220,9 +220,9 @@ fn the_report_tells_how_well_arrays_were_carried() {
     folder.mesh("shaken.vtu", &mesh);
     let words = ["remesh", "shaken.vtu", "-o", "out.vtu", "--json", "--quality"];
     let words = words.into_iter().chain(["--carry", "constant=inherit", "--carry", "linear=linear"]);
-    let told = report(&folder.motet(words).assert().code(0));
+    let reported = report(&folder.motet(words).assert().code(0));
     let new = read(folder.path("out.vtu")).unwrap();
-    let fields = told["fields"].as_array().unwrap();
+    let fields = reported["fields"].as_array().unwrap();
     let heads: Vec<_> = fields.iter().map(|f| [&f["name"], &f["on"], &f["rule"]]).collect();
     // Integer arrays have no integrals; the quality was not carried.
     assert_eq!(
@@ -296,8 +296,8 @@ fn a_mesh_without_linear_tets_is_refused_with_a_remedy() {
     folder.mesh("quadratic.vtu", &quadratic(&box_grid([2; 3], [[0.0; 3], [1.0; 3]])));
     let call = folder.motet(["remesh", "quadratic.vtu", "-o", "out.vtu", "--json"]).assert().code(3);
     assert!(stderr(&call).starts_with("error: quadratic.vtu: "), "{}", stderr(&call));
-    let told = report(&call);
-    assert!(told["error"]["remedy"].is_string(), "{told}");
+    let reported = report(&call);
+    assert!(reported["error"]["remedy"].is_string(), "{reported}");
     assert_eq!(folder.names(), ["flat.vtu", "quadratic.vtu", "shaken.vtu"]);
 }
 
@@ -305,8 +305,8 @@ fn a_mesh_without_linear_tets_is_refused_with_a_remedy() {
 fn a_good_mesh_comes_back_as_it_is() {
     let folder = folder();
     let good = folder.cube("good.vtu");
-    let told = report(&folder.motet(["remesh", &good, "-o", "out.vtu", "--json"]).assert().code(0));
-    assert_eq!((&told["untouched"], &told["before"]["bad"]), (&1.0.into(), &0.into()));
+    let reported = report(&folder.motet(["remesh", &good, "-o", "out.vtu", "--json"]).assert().code(0));
+    assert_eq!((&reported["untouched"], &reported["before"]["bad"]), (&1.0.into(), &0.into()));
     assert_eq!(folder.read("good.vtu"), folder.read("out.vtu"));
 }
 
@@ -325,8 +325,8 @@ fn other_formats_in_and_out() {
     let folder = folder();
     for name in ["a.msh", "a.mesh", "a.vtk", "folder/"] {
         folder.motet(["remesh", "shaken.vtu", "-o", name]).assert().code(0);
-        let told = report(&folder.motet(["info", name, "--json"]).assert().code(0));
-        assert_eq!(told["quality"]["eas"]["bad"], 0, "{name}");
+        let reported = report(&folder.motet(["info", name, "--json"]).assert().code(0));
+        assert_eq!(reported["quality"]["eas"]["bad"], 0, "{name}");
         // Repaired again, nothing is bad any more.
         let again = folder.motet(["remesh", name, "-o", "again.vtu", "--json"]).assert().code(0);
         assert_eq!(report(&again)["untouched"], 1.0, "{name}");
@@ -350,9 +350,9 @@ fn a_surface_that_adapts_lets_more_be_repaired() {
         let words = ["remesh", "sides.vtu", "-o", "out.vtu", "--json"].iter().chain(more).copied();
         let call = folder.motet(words.collect::<Vec<_>>()).assert();
         let code = call.get_output().status.code();
-        let told = report(&call);
-        assert_eq!(code, Some(if told["complete"] == true { 0 } else { 4 }));
-        told["after"]["bad"].as_u64().unwrap()
+        let reported = report(&call);
+        assert_eq!(code, Some(if reported["complete"] == true { 0 } else { 4 }));
+        reported["after"]["bad"].as_u64().unwrap()
     };
     let kept = left(&[]);
     let adapted = left(&["--surface", "adapt", "--distance", "0.01"]);
@@ -391,11 +391,11 @@ fn sizes_may_be_a_number_or_an_array() {
     let folder = sized();
     for (sizes, n_tets) in [("0.11", 5_000..15_000), ("h", 1_000..5_000), ("0.6", 20..400)] {
         let words = ["remesh", "box.vtu", "-o", "out.vtu", "--surface", "adapt", "--sizes", sizes, "--json"];
-        let told = report(&folder.motet(words).assert().code(0));
-        let after = &told["sizes"]["after"];
-        println!("{sizes}: {} tets, {after}", told["after"]["tets"]);
-        assert_eq!((&after["too_long"], &told["after"]["bad"]), (&0.into(), &0.into()));
-        assert!(n_tets.contains(&told["after"]["tets"].as_u64().unwrap()), "{told}");
+        let reported = report(&folder.motet(words).assert().code(0));
+        let after = &reported["sizes"]["after"];
+        println!("{sizes}: {} tets, {after}", reported["after"]["tets"]);
+        assert_eq!((&after["too_long"], &reported["after"]["bad"]), (&0.into(), &0.into()));
+        assert!(n_tets.contains(&reported["after"]["tets"].as_u64().unwrap()), "{reported}");
         assert!(after["max"].as_f64() <= Some(1.5) && after["min"].as_f64() > Some(0.0));
         for key in ["edges", "too_short", "too_long_held", "too_short_held"] {
             assert!(after[key].is_u64(), "{key}");
@@ -409,8 +409,8 @@ fn sizes_may_be_a_number_or_an_array() {
     for word in ["longer than 1.5", "shorter than 0.5", "of them held", "edges split"] {
         assert!(stdout(&call).contains(word), "{}", stdout(&call));
     }
-    let told = report(&folder.motet(["remesh", "box.vtu", "-o", "out.vtu", "--json"]).assert().code(0));
-    assert!(told["sizes"].is_null());
+    let reported = report(&folder.motet(["remesh", "box.vtu", "-o", "out.vtu", "--json"]).assert().code(0));
+    assert!(reported["sizes"].is_null());
 }
 
 #[test]
@@ -437,8 +437,8 @@ fn what_is_named_is_held() {
     let folder = folder();
     // All tets belong to one region: where it is held, nothing can be done.
     let words = ["remesh", "shaken.vtu", "-o", "held.vtu", "--hold", "box", "--surface", "adapt", "--json"];
-    let told = report(&folder.motet(words).assert().success());
-    assert!(told["held"].as_u64().unwrap() > 0 && told["after"]["bad"] == 0, "{told}");
+    let reported = report(&folder.motet(words).assert().success());
+    assert!(reported["held"].as_u64().unwrap() > 0 && reported["after"]["bad"] == 0, "{reported}");
     let [before, after] = ["shaken.vtu", "held.vtu"].map(|name| read(folder.path(name)).unwrap());
     assert!(before.points == after.points && before.cells == after.cells);
     let call =

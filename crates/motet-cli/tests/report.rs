@@ -11,10 +11,10 @@ fn a_page_is_written_and_reported() {
     let mesh = folder.cube("cube.vtu");
     folder.write("run.jsonl", b"{\"step\": 0, \"bad\": 3}\n{\"step\": 1, \"bad\": 0}\n");
     let call = folder.motet(["report", &mesh, "run.jsonl", "-o", "page.html", "--json"]).assert().success();
-    let told: Value = serde_json::from_str(&stdout(&call)).expect("one object");
-    assert_eq!(told["inputs"][0]["whole"], 1);
-    assert_eq!(told["inputs"][1]["rows"], 2);
-    assert_eq!(told["bytes"], folder.read("page.html").len());
+    let reported: Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    assert_eq!(reported["inputs"][0]["whole"], 1);
+    assert_eq!(reported["inputs"][1]["rows"], 2);
+    assert_eq!(reported["bytes"], folder.read("page.html").len());
     assert_eq!(folder.names(), ["cube.vtu", "page.html", "run.jsonl"]);
 }
 

@@ -150,7 +150,7 @@ fn a_run_that_is_killed_goes_on_and_ends_with_the_same_bytes() {
 }
 
 #[test]
-fn a_run_ends_where_it_is_told_to_and_goes_on_from_there() {
+fn a_run_ends_where_it_is_reported_to_and_goes_on_from_there() {
     let whole = folder();
     whole.motet(["run", "job.toml", "-q"]).assert().code(0);
     let parted = folder();
@@ -195,7 +195,7 @@ fn a_run_ends_where_it_is_told_to_and_goes_on_from_there() {
 }
 
 #[test]
-fn what_is_missing_of_a_run_to_go_on_with_is_told() {
+fn what_is_missing_of_a_run_to_go_on_with_is_reported() {
     let folder = folder();
     folder.motet(["run", "job.toml", "-q", "--until", "3"]).assert().code(0);
     let whole = bytes(&folder, "out");
@@ -206,8 +206,8 @@ fn what_is_missing_of_a_run_to_go_on_with_is_told() {
             None => fs::remove_file(&path).unwrap(),
         }
         let call = folder.motet(["run", "job.toml", "--resume"]).assert().code(3);
-        let told = stderr(&call);
-        assert!(told.contains(name) && told.contains("--resume"), "{told}");
+        let reported = stderr(&call);
+        assert!(reported.contains(name) && reported.contains("--resume"), "{reported}");
         fs::write(&path, &whole[name]).unwrap();
     };
     refused("moved_0002.vtu", None);
@@ -233,8 +233,11 @@ fn one_run_at_a_time_writes_to_an_output_and_leftovers_of_killed_ones_go() {
     let held = motet::io::OutputLock::take(&folder.path("out/moved.pvd")).unwrap();
     assert!(held.is_held());
     let call = folder.motet(["run", "job.toml"]).assert().code(1);
-    let told = stderr(&call);
-    assert!(told.contains("another run") && told.contains(&std::process::id().to_string()), "{told}");
+    let reported = stderr(&call);
+    assert!(
+        reported.contains("another run") && reported.contains(&std::process::id().to_string()),
+        "{reported}"
+    );
     assert!(!folder.path("out/moved_0000.vtu").exists());
     drop(held);
     folder.motet(["run", "job.toml", "-q", "--until", "1"]).assert().code(0);
@@ -259,7 +262,7 @@ fn what_is_refined_at_first_and_on_the_way_is_in_the_frames() {
 }
 
 #[test]
-fn a_motion_that_cannot_be_gone_to_its_end_is_told() {
+fn a_motion_that_cannot_be_gone_to_its_end_is_reported() {
     let folder = folder();
     folder.write("job.toml", JOB.replace("shift = [3, 0, 0]", "shift = [5, 0, 0]").as_bytes());
     let call = folder.motet(["run", "job.toml"]).assert().code(4);
@@ -270,7 +273,7 @@ fn a_motion_that_cannot_be_gone_to_its_end_is_told() {
 }
 
 #[test]
-fn walls_that_would_meet_stop_where_they_are_told_to() {
+fn walls_that_would_meet_stop_where_they_are_reported_to() {
     let folder = folder();
     let job = JOB
         .replace("shift = [3, 0, 0]", "shift = [3.8, 0, 0]")
@@ -291,13 +294,13 @@ fn walls_that_would_meet_stop_where_they_are_told_to() {
 }
 
 #[test]
-fn what_is_wrong_with_a_job_is_told_with_its_line() {
+fn what_is_wrong_with_a_job_is_reported_with_its_line() {
     let folder = folder();
-    let refused = |from: &str, to: &str, told: &[&str]| {
+    let refused = |from: &str, to: &str, reported: &[&str]| {
         assert!(JOB.contains(from));
         folder.write("job.toml", JOB.replacen(from, to, 1).as_bytes());
         let call = folder.motet(["run", "job.toml"]).assert().code(3);
-        for part in told {
+        for part in reported {
             assert!(stderr(&call).contains(part), "{to}: {}", stderr(&call));
         }
     };
@@ -395,7 +398,7 @@ fn volume_of(file: &std::path::Path, of_boundary: &impl Fn(&std::path::Path) -> 
 }
 
 #[test]
-fn what_cannot_be_capped_is_told() {
+fn what_cannot_be_capped_is_reported() {
     let folder = Folder::new();
     folder.mesh("closed.vtp", &Aneurysm::default().mesh().unwrap());
     folder.mesh("a.vtp", &pulsing(0));

@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_object_is_told_with_its_line() {
+    fn what_is_no_object_is_reported_with_its_line() {
         let message = |text| lines(text).unwrap_err().to_string();
         assert!(
             message("{}\n3\n").contains("line 2: an object or a list of objects is expected, found a number")

@@ -160,7 +160,7 @@ fn surfaces_points_without_cells_and_arrays_without_numbers_have_a_page() {
 }
 
 #[test]
-fn points_that_are_no_numbers_are_told_and_not_drawn() {
+fn points_that_are_no_numbers_are_reported_and_not_drawn() {
     let folder = Folder::new();
     let mut mesh = ball(3, 2);
     mesh.points[0] = [f64::NAN; 3];
@@ -183,7 +183,7 @@ fn texts_from_files_are_no_markup() {
 }
 
 #[test]
-fn what_cannot_be_read_is_told_with_file_place_and_remedy() {
+fn what_cannot_be_read_is_reported_with_file_place_and_remedy() {
     let folder = Folder::new();
     let empty = "<VTKFile type=\"Collection\"><Collection></Collection></VTKFile>";
     let error = folder.refused(folder.text("empty.pvd", empty));

@@ -29,7 +29,7 @@ fn main() -> Result<()> {
     }
 }
 
-fn told(name: &str, value: f64) {
+fn print_value(name: &str, value: f64) {
     println!("{name} {value:?}");
 }
 
@@ -37,15 +37,15 @@ fn number(text: &str) -> Result<f64> {
     text.parse().map_err(|_| Error::options(format!("{text} is not a number")))
 }
 
-fn tell(mesh: &Mesh) {
+fn print_mesh(mesh: &Mesh) {
     let [x, y, z] = mesh.points.iter().fold([0.0; 3], |sum, p| [0, 1, 2].map(|k| sum[k] + p[k]));
     let tets = mesh.cells.tets().map(|(_, tet)| eas(tet.map(|v| mesh.points[v.index()])));
-    told("points", mesh.points.len() as f64);
-    told("tets", tets.clone().count() as f64);
-    told("sum_x", x);
-    told("sum_y", y);
-    told("sum_z", z);
-    told("worst_eas", tets.fold(1.0, f64::min));
+    print_value("points", mesh.points.len() as f64);
+    print_value("tets", tets.clone().count() as f64);
+    print_value("sum_x", x);
+    print_value("sum_y", y);
+    print_value("sum_z", z);
+    print_value("worst_eas", tets.fold(1.0, f64::min));
 }
 
 fn repair(mesh: &str, patch: &str, by: [&str; 3], smooth: &str) -> Result<()> {
@@ -59,16 +59,16 @@ fn repair(mesh: &str, patch: &str, by: [&str; 3], smooth: &str) -> Result<()> {
     let displacement: Vec<Point> =
         mover.boundary().iter().map(|v| if is_shifted(v) { by } else { [0.0; 3] }).collect();
     let certificate = mover.advance(&displacement, &mut mesh.points, &threads)?;
-    told("complete", f64::from(certificate.complete));
-    told("bad_after_motion", certificate.quality.bad as f64);
-    told("worst_after_motion", certificate.quality.worst_eas.map_or(1.0, |worst| worst.value));
+    print_value("complete", f64::from(certificate.complete));
+    print_value("bad_after_motion", certificate.quality.bad as f64);
+    print_value("worst_after_motion", certificate.quality.worst_eas.map_or(1.0, |worst| worst.value));
     let options = remesh::Options::default();
     let done = remesh::remesh_mesh(&mesh, &options, &Rules::default(), &threads)?;
-    told("repaired", f64::from(done.report.is_complete()));
-    tell(&done.mesh);
+    print_value("repaired", f64::from(done.report.is_complete()));
+    print_mesh(&done.mesh);
     let x = Field::scalars("x", mesh.points.iter().map(|p| p[0]).collect::<Vec<f64>>());
     let carried = done.history.transfer_points(&x)?.values.to_f64().unwrap_or_default();
-    told("sum_carried", carried.iter().sum());
+    print_value("sum_carried", carried.iter().sum());
     Ok(())
 }
 
@@ -76,10 +76,10 @@ fn put_in(host: &str, device: &str, name: &str) -> Result<()> {
     let devices = [Device::new(io::read(device)?, name)];
     let (options, rules) = (implant::Options::default(), Rules::default());
     let done = implant::implant(&io::read(host)?, &devices, &options, &rules, &Threads::single())?;
-    told("complete", f64::from(done.report.is_complete()));
+    print_value("complete", f64::from(done.report.is_complete()));
     let region = done.mesh.regions().and_then(|regions| regions.find(name));
-    told("region", region.map_or(-1.0, f64::from));
-    tell(&done.mesh);
+    print_value("region", region.map_or(-1.0, f64::from));
+    print_mesh(&done.mesh);
     Ok(())
 }
 
@@ -97,10 +97,10 @@ fn measure(first: &str, second: &str) -> Result<()> {
     let threads = Threads::single();
     let mut contact = Contact::new(points, bodies, contact::Options::default(), &threads)?;
     let gaps = contact.measure(&threads);
-    told("least", gaps.least());
+    print_value("least", gaps.least());
     let mut sum = 0.0;
     gaps.bodies.iter().flat_map(|body| &body.gap).filter(|gap| gap.is_finite()).for_each(|gap| sum += gap);
-    told("sum_of_gaps", sum);
+    print_value("sum_of_gaps", sum);
     Ok(())
 }
 
@@ -133,10 +133,10 @@ fn there_and_back(file: &str, patch: &str, by: [&str; 3], steps: &str) -> Result
             moving = MovingMesh::load(&state, options.clone(), &threads)?;
         }
     }
-    told("changes", n_changes as f64);
-    told("time", moving.time());
-    told("sum_velocity", moving.velocity().iter().fold(0.0, |sum, v| sum + v[0]));
-    told("sum_carried", x.values.to_f64().unwrap_or_default().iter().fold(0.0, |sum, x| sum + x));
-    tell(moving.mesh());
+    print_value("changes", n_changes as f64);
+    print_value("time", moving.time());
+    print_value("sum_velocity", moving.velocity().iter().fold(0.0, |sum, v| sum + v[0]));
+    print_value("sum_carried", x.values.to_f64().unwrap_or_default().iter().fold(0.0, |sum, x| sum + x));
+    print_mesh(moving.mesh());
     Ok(())
 }

@@ -6,7 +6,7 @@
 //! features of other bodies in its tets; `stars` measures to all triangles around these features; `paper`
 //! takes the tets of 2008, with every edge and facet taken for real: a vertex has the least distance of its
 //! tets, two edges have the distance of their lines, or else the length of the shortest edge between them.
-//! Its two-two tets are also compared with the true distance of their edges. `nearest_tenth` covers the tenth
+//! The two-two tets of the gap are also compared with the true distance of their edges. `nearest_tenth` covers the tenth
 //! of all vertices nearest to another body.
 
 mod common;

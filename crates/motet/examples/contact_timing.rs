@@ -245,8 +245,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let each = queries.iter().map(|p| tree.closest(*p));
         out["differ"] = each.zip(&at_rest).filter(|(x, y)| x != *y).count().into();
         out["gaps_differ"] = gaps.iter().zip(distances(&at_last)).filter(|(x, y)| **x != *y).count().into();
-        let asked = queries.iter().zip(&at_rest).step_by(100);
-        let wrong = asked.filter(|(p, c)| {
+        let sampled = queries.iter().zip(&at_rest).step_by(100);
+        let wrong = sampled.filter(|(p, c)| {
             c.map(|c| (c.distance_squared, c.triangle)) != Some(by_brute_force(points, triangles, **p))
         });
         out["wrong"] = wrong.count().into();

@@ -178,7 +178,7 @@ fn moved(
     Ok((now.points, seconds / steps as f64))
 }
 
-fn told(mesh: &Mesh, points: &[Point]) -> String {
+fn summary(mesh: &Mesh, points: &[Point]) -> String {
     let (mut inverted, mut smallest, mut all) = (0, f64::INFINITY, Vec::new());
     for (_, tet) in mesh.cells.tets() {
         let corners = tet.map(|v| points[v.index()]);
@@ -238,7 +238,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{} vertices, {} tets; input: {}\n",
         mesh.points.len(),
         mesh.cells.tets().count(),
-        told(&mesh, &mesh.points)
+        summary(&mesh, &mesh.points)
     );
     let elastic = Method::Elastic(Elastic::default());
     let methods = [
@@ -276,7 +276,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 Parts::Steps => row.steps,
             };
             let (points, seconds) = moved(&mesh, row, (&options, parts), &threads)?;
-            cells.push(format!("{}; {}", told(&mesh, &points), time(seconds)));
+            cells.push(format!("{}; {}", summary(&mesh, &points), time(seconds)));
         }
         println!("| {name} | {} |", cells.join(" | "));
     }

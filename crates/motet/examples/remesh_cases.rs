@@ -228,7 +228,7 @@ fn cube(distortion: Distortion, n_cycles: usize, sizes: Option<Sizes>) {
 }
 
 /// Prints a row after some cycles of a case that carries fields.
-fn tell_fields(cycle: usize, loaded: &Loaded) {
+fn print_fields(cycle: usize, loaded: &Loaded) {
     if cycle > 5 && !cycle.is_multiple_of(10) {
         return;
     }
@@ -243,14 +243,14 @@ fn tell_fields(cycle: usize, loaded: &Loaded) {
         t.linear_outside,
         t.off_constant
     );
-    let tell = |r: &Repairs| {
+    let print_row = |r: &Repairs| {
         print!(
             "{:5} {:5} {:8.1e} {:8.1e} {:8.1e} {:8.1e} {:5} {:8.1e} |",
             r.n, r.n_left, r.drift, r.beyond, r.allowed, r.deviation, r.n_outside, r.farthest_outside
         );
     };
-    tell(&t.kept);
-    tell(&t.adapted);
+    print_row(&t.kept);
+    print_row(&t.adapted);
     println!();
 }
 
@@ -272,14 +272,14 @@ fn transfer(n_cycles: usize) {
         println!("\nmembrane, surface {name}, 40 steps a cycle");
         head();
         let bending = Bending { amplitude: 0.45, n_steps: 40 };
-        transfer::bend(&mut Loaded::new(&membrane_mesh(0.1, 1), 1), &bending, then, n_cycles, tell_fields);
+        transfer::bend(&mut Loaded::new(&membrane_mesh(0.1, 1), 1), &bending, then, n_cycles, print_fields);
         println!("{:.0} s", begin.elapsed().as_secs_f64());
     }
     for distortion in [Distortion::Shear(60.0), Distortion::Twist(90.0), Distortion::Twist(180.0)] {
         let begin = Instant::now();
         println!("\n{distortion:?}, 40 steps a cycle");
         head();
-        transfer::distort(&mut Loaded::new(&cube_mesh(0.1, 1), 1), &distortion, 20, n_cycles, tell_fields);
+        transfer::distort(&mut Loaded::new(&cube_mesh(0.1, 1), 1), &distortion, 20, n_cycles, print_fields);
         println!("{:.0} s", begin.elapsed().as_secs_f64());
     }
 }

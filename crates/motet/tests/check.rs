@@ -269,7 +269,7 @@ fn the_summary_has_the_keys_that_scripts_rely_on() {
 }
 
 #[test]
-fn hopeless_meshes_are_told_about_in_bounded_time() {
+fn hopeless_meshes_are_reported_about_in_bounded_time() {
     // Every tet spans the whole mesh, and one facet has thousands of cells.
     let n = 3000u32;
     let points: Vec<Point> = (0..n)

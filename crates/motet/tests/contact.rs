@@ -364,7 +364,7 @@ fn what_is_remembered_of_far_parts_never_hides_a_near_one() {
 }
 
 #[test]
-fn a_vertex_deep_inside_is_told_however_short_the_reach() {
+fn a_vertex_deep_inside_is_reported_however_short_the_reach() {
     let (points, mut two) = bodies(&[cube().scaled(0.1).shifted([0.45; 3]), cube()]);
     two[1].room = Room::No;
     let options = Options { within: 0.01, ..Options::default() };

@@ -47,9 +47,9 @@ fn torus(r: f64, n: usize, m: usize, points: &mut Vec<Point>) -> Triangles {
 }
 
 /// `inside` for single points.
-fn lone(points: &mut Vec<Point>, asked: &[Point], b: &[[VertexId; 3]]) -> Vec<bool> {
+fn lone(points: &mut Vec<Point>, queries: &[Point], b: &[[VertexId; 3]]) -> Vec<bool> {
     let start = points.len();
-    points.extend(asked);
+    points.extend(queries);
     let vertices: Vec<_> = (start..points.len()).map(VertexId::new).collect();
     let found = inside(points, &vertices, &[], b, &[], &Threads::single());
     points.truncate(start);
@@ -136,7 +136,7 @@ proptest! {
     #[test]
     fn boxes_on_a_grid_hold_what_their_sides_say(
         low in prop::array::uniform3(-2i8..=1), size in prop::array::uniform3(1u8..=3), n in prop::array::uniform3(1usize..=3),
-        asked in small_grid(40), is_turned in any::<bool>(),
+        queries in small_grid(40), is_turned in any::<bool>(),
     ) {
         let low = low.map(f64::from);
         let high = [0, 1, 2].map(|k| low[k] + f64::from(size[k]));
@@ -147,8 +147,8 @@ proptest! {
         }
         prop_assert!(is_closed(&b));
         let expected: Vec<bool> =
-            asked.iter().map(|p| (0..3).all(|k| low[k] < p[k] && p[k] < high[k])).collect();
-        prop_assert_eq!(lone(&mut points, &asked, &b), expected);
+            queries.iter().map(|p| (0..3).all(|k| low[k] < p[k] && p[k] < high[k])).collect();
+        prop_assert_eq!(lone(&mut points, &queries, &b), expected);
     }
 
     /// Closed soups of tets, which overlap, degenerate and coincide: winding numbers at grid points equal the
@@ -157,7 +157,7 @@ proptest! {
     fn soups_of_tets_wind_as_their_tets_do(
         points in small_grid(8),
         tets in prop::collection::vec(prop::array::uniform4((0u32..8).prop_map(VertexId)), 1..8),
-        asked in prop::collection::vec(prop::array::uniform3((-8i8..=8).prop_map(|x| f64::from(x) / 4.0)), 20),
+        queries in prop::collection::vec(prop::array::uniform3((-8i8..=8).prop_map(|x| f64::from(x) / 4.0)), 20),
     ) {
         let b: Triangles = tets.iter().flat_map(|&[a, b, c, d]| [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]).collect();
         prop_assert!(is_closed(&b));
@@ -171,9 +171,9 @@ proptest! {
             };
             tets.iter().map(holds).sum()
         };
-        let expected: Vec<bool> = asked.iter().map(|&q| !on(q) && sides(q) != 0).collect();
+        let expected: Vec<bool> = queries.iter().map(|&q| !on(q) && sides(q) != 0).collect();
         let mut points = points.clone();
-        prop_assert_eq!(lone(&mut points, &asked, &b), expected);
+        prop_assert_eq!(lone(&mut points, &queries, &b), expected);
     }
 }
 
@@ -189,13 +189,13 @@ fn random_points_are_inside_where_solid_angles_say_so() {
     all.extend(torus(0.3, 40, 20, &mut points));
     all.extend(append(&tube(&TubeOptions::default()), &mut points, |p| add(scale(p, 0.3), [0.2, 0.1, -2.0])));
     assert!(is_closed(&all) && !is_closed(&all[1..]));
-    let asked: Vec<Point> = (0..3000)
+    let queries: Vec<Point> = (0..3000)
         .map(|_| [(); 3].map(|()| 3.0 * numbers.unit() - 1.5))
         .chain([[f64::NAN; 3], [1e300; 3]])
         .collect();
-    let found = lone(&mut points, &asked, &all);
+    let found = lone(&mut points, &queries, &all);
     let mut n = [0; 2];
-    for (q, found) in asked.iter().zip(found) {
+    for (q, found) in queries.iter().zip(found) {
         let expected = encloses(&points, &all, *q);
         assert_eq!(found, expected, "{q:?}");
         n[usize::from(found)] += 1;

@@ -154,8 +154,8 @@ fn closed_surfaces_are_rooms_of_what_they_enclose_and_nested_ones_of_all_within(
         assert!(contact.rooms().iter().all(|within| within.share == Some(1.0)));
         assert!(gaps.bodies.iter().flat_map(|body| &body.gap).all(|&gap| gap >= 0.5) && !gaps.is_warned());
         // Given rooms are rooms of everything except the rooms around them.
-        let told = [Room::No, Room::Yes, Room::Yes, Room::No];
-        let (contact, _) = measured(&all, &told, Options::default());
+        let reported = [Room::No, Room::Yes, Room::Yes, Room::No];
+        let (contact, _) = measured(&all, &reported, Options::default());
         assert_eq!(pairs(&contact), [[1, 0], [1, 3], [2, 0], [2, 1], [2, 3]]);
         // Without rooms, whatever is enclosed is where it must not be.
         let none = vec![Room::No; 4];
@@ -213,8 +213,8 @@ fn what_is_a_room_is_decided_at_first() {
     assert_eq!(pairs(&contact), [[1, 0]]);
     assert!(gaps.bodies[0].gap.iter().all(|&gap| gap < 0.0), "all of it is outside its room");
     // The same bodies with other triangles keep their rooms.
-    let told = [0, 1].map(|id| contact.room(id));
-    assert_eq!(told, [Room::Of(vec![]), Room::Of(vec![0])]);
+    let reported = [0, 1].map(|id| contact.room(id));
+    assert_eq!(reported, [Room::Of(vec![]), Room::Of(vec![0])]);
     let body = |id: u32| Body {
         name: contact.name(id).into(),
         triangles: contact.triangles(id).to_vec(),

@@ -163,7 +163,7 @@ fn segments_become_chains_between_ends_and_loops() {
 }
 
 #[test]
-fn a_wire_is_as_thick_as_asked_and_closed() {
+fn a_wire_is_as_thick_as_requested_and_closed() {
     // A helix: length and section give the volume.
     let helix: Vec<Point> =
         (0..200).map(|i| 0.1 * f64::from(i)).map(|a| [2.0 * a.cos(), 2.0 * a.sin(), 0.2 * a]).collect();

@@ -48,18 +48,18 @@ fn nothing_crosses_and_no_triangle_is_flat() {
 
 #[test]
 fn volumes_are_as_told() {
-    let mut n_told = 0;
+    let mut n_reported = 0;
     for case in cases().filter(|case| !case.has_membranes) {
         let origin = case.points[0];
         let cones = case.triangles.iter().map(|t| cone_volume(t.iter().copied(), &case.points, origin));
         let (sum, all) = cones.fold((0.0, 0.0), |(sum, all), v| (sum + v, all + v.abs()));
         assert!(sum > 0.0, "{} is turned inside out", case.name);
         if let Some(volume) = case.volume {
-            n_told += 1;
+            n_reported += 1;
             assert!((sum - volume).abs() <= 1e-12 * all, "{}: {sum}, told {volume}", case.name);
         }
     }
-    assert!(n_told > 100, "{n_told}");
+    assert!(n_reported > 100, "{n_reported}");
 }
 
 #[test]

@@ -94,7 +94,7 @@ fn touched_beyond(host: &Mesh, devices: &[Device], options: &Options, made: &Imp
         let all = surfaces.iter().flat_map(|s| (0..s.triangles.len()).map(move |t| s.corners(t)));
         all.map(|t| distance(p, triangle::at(t, triangle::closest(t, p)))).fold(f64::INFINITY, f64::min)
     };
-    let gone = tets(host).filter(|(_, tet)| !now.contains(&key(*tet)));
+    let removed = tets(host).filter(|(_, tet)| !now.contains(&key(*tet)));
     let is_far = |(_, tet): &(CellId, [Point; 4])| {
         let size = EDGES.iter().map(|&[i, j]| distance(tet[i], tet[j])).sum::<f64>() / 6.0;
         let centre = centroid(*tet);
@@ -103,7 +103,7 @@ fn touched_beyond(host: &Mesh, devices: &[Device], options: &Options, made: &Imp
         let is_within = || surfaces.iter().any(|s| encloses(&s.points, &s.triangles, centre));
         off(centre) > radius + options.reach * size && !is_within()
     };
-    let n = gone.filter(is_far).count();
+    let n = removed.filter(is_far).count();
     (n > 0).then(|| format!("{n} tets far from all devices are not as they were"))
 }
 
@@ -296,14 +296,14 @@ fn threads_change_nothing() {
 fn what_cannot_be_put_in_is_refused_with_the_reason() {
     let host = room(4);
     let refused = |device: Mesh| put(&host, &[Device::new(device, "thing")], &no_adapt()).unwrap_err();
-    let told = |device: Mesh, what: &str| {
+    let reported = |device: Mesh, what: &str| {
         let error = refused(device);
         assert!(error.what().contains(what) && error.remedy_text().is_some(), "{error}");
     };
-    told(small_ball(0.4, [5.0, 0.0, 0.0]), "`thing` lies outside of the host");
-    told(small_ball(9.0, [0.0; 3]), "`thing` contains the whole host");
-    told(small_ball(0.4, [1.4, 0.0, 0.0]), "keeps its tets, but a ");
-    told(box_grid([1; 3], [[0.5, 0.1, 0.0], [1.5, 0.5, 0.5]]), "keeps its tets, but a wall");
+    reported(small_ball(0.4, [5.0, 0.0, 0.0]), "`thing` lies outside of the host");
+    reported(small_ball(9.0, [0.0; 3]), "`thing` contains the whole host");
+    reported(small_ball(0.4, [1.4, 0.0, 0.0]), "keeps its tets, but a ");
+    reported(box_grid([1; 3], [[0.5, 0.1, 0.0], [1.5, 0.5, 0.5]]), "keeps its tets, but a wall");
     let mut both = small_ball(0.3, [0.0; 3]);
     let other = small_ball(0.3, [5.0, 0.0, 0.0]);
     let first = both.points.len();
@@ -312,15 +312,15 @@ fn what_cannot_be_put_in_is_refused_with_the_reason() {
         both.cells.push(kind, vertices.iter().map(|v| VertexId::new(first + v.index())));
     }
     both.cell_data.clear();
-    told(both, "keeps its tets, but a part of it lies outside of the host");
+    reported(both, "keeps its tets, but a part of it lies outside of the host");
     let mut open = Surface::boundary_of(&small_ball(0.3, [0.0; 3]));
     open.triangles.pop();
     let open = Mesh::new(
         open.points.clone(),
         Cells::uniform(CellKind::TRIANGLE, open.triangles.as_flattened().to_vec()).unwrap(),
     );
-    told(open, "the surface ends at the edge");
-    told(Mesh::default(), "`thing`");
+    reported(open, "the surface ends at the edge");
+    reported(Mesh::default(), "`thing`");
     let crossing =
         [Device::new(small_ball(0.4, [0.0; 3]), "one"), Device::new(small_ball(0.4, [0.3, 0.0, 0.0]), "two")];
     assert!(put(&host, &crossing, &no_adapt()).unwrap_err().what().contains("triangles meet"));
@@ -390,8 +390,8 @@ fn what_crosses_itself_gets_a_new_surface_within_the_tolerance() {
         let device = Device::new(mesh, name);
         assert!(put(&host, std::slice::from_ref(&device), &no_adapt()).is_err(), "{name}");
         let made = put(&host, &[device], &conform(None)).unwrap();
-        let told = &made.report.devices[0];
-        let fit = told.fit.unwrap();
+        let reported = &made.report.devices[0];
+        let fit = reported.fit.unwrap();
         assert!(made.report.is_valid() && check(&made.mesh).is_empty(), "{name}");
         assert!(made.report.volume_deviation() < 1e-9, "{name}");
         assert_eq!(made.report.n_unforced(), 0, "{name}");
@@ -399,8 +399,8 @@ fn what_crosses_itself_gets_a_new_surface_within_the_tolerance() {
         // The hole is closed by a surface that has no counterpart in the old one.
         assert!(name == "holed" || fit.is_reached(), "{name} {fit:?}");
         if let Some(volume) = volume {
-            let off = (told.volume - volume).abs() / volume;
-            assert!(off < 0.05, "{name}: {} of {volume}", told.volume);
+            let off = (reported.volume - volume).abs() / volume;
+            assert!(off < 0.05, "{name}: {} of {volume}", reported.volume);
         }
     }
 }

@@ -151,28 +151,31 @@ fn a_box_through_a_wall_is_cut_off_or_kept() {
         ..filled(box_grid([2; 3], [[-0.31, -0.23, 1.2], [0.37, 0.41, 1.83]]), "box")
     };
     let made = sound(&host, &device(Inside::Filled), &strict());
-    let told = &made.report.devices[0];
+    let reported = &made.report.devices[0];
     let (base, inside) = (0.68 * 0.64, 0.68 * 0.64 * 0.3);
-    assert!((told.volume - inside).abs() < 1e-12 && (told.enclosed - inside).abs() < 1e-12);
+    assert!((reported.volume - inside).abs() < 1e-12 && (reported.enclosed - inside).abs() < 1e-12);
     assert!((made.report.volume - 27.0).abs() < 1e-10 && made.report.volume_deviation() < 1e-12);
-    assert_eq!(told.triangles, told.triangles_kept + told.triangles_at_walls + told.triangles_outside);
-    let patches = made.mesh.patches().unwrap();
-    let contact = told.contact_patch.unwrap();
     assert_eq!(
-        (patches.name(contact), patches.name(told.patch)),
+        reported.triangles,
+        reported.triangles_kept + reported.triangles_at_walls + reported.triangles_outside
+    );
+    let patches = made.mesh.patches().unwrap();
+    let contact = reported.contact_patch.unwrap();
+    assert_eq!(
+        (patches.name(contact), patches.name(reported.patch)),
         ("box-contact".to_owned(), "box".to_owned())
     );
     assert!((area(&made.mesh, contact) - base).abs() < 1e-12);
     assert!((area(&made.mesh, patches.find("zmax").unwrap()) - (9.0 - base)).abs() < 1e-12);
-    assert!((area(&made.mesh, told.patch) - base - 2.0 * 0.3 * (0.68 + 0.64)).abs() < 1e-12);
+    assert!((area(&made.mesh, reported.patch) - base - 2.0 * 0.3 * (0.68 + 0.64)).abs() < 1e-12);
     assert!(made.report.is_complete());
 
     let keep = Options { outside: Outside::Keep, ..strict() };
     let made = sound(&host, &device(Inside::Filled), &keep);
-    let told = &made.report.devices[0];
-    assert!((told.volume - base * 0.63).abs() < 1e-12 && told.contact_patch.is_none());
+    let reported = &made.report.devices[0];
+    assert!((reported.volume - base * 0.63).abs() < 1e-12 && reported.contact_patch.is_none());
     let all = 2.0 * base + 2.0 * 0.63 * (0.68 + 0.64);
-    assert!((area(&made.mesh, told.patch) - all).abs() < 1e-12);
+    assert!((area(&made.mesh, reported.patch) - all).abs() < 1e-12);
 
     for outside in [Outside::Cut, Outside::Keep] {
         let made = sound(&host, &device(Inside::Hollow), &Options { outside, ..strict() });
@@ -196,11 +199,11 @@ fn what_lies_on_a_wall_has_its_own_patch() {
     ] {
         let device = filled(box_grid([2; 3], [low, high]), "box");
         let made = sound(&host, &device, &strict());
-        let told = &made.report.devices[0];
+        let reported = &made.report.devices[0];
         let [x, y, z] = [0, 1, 2].map(|i| high[i] - low[i]);
         let on_walls = if low[0] == 0.9 { x * y + y * z + z * x } else { x * y };
-        assert!((area(&made.mesh, told.contact_patch.unwrap()) - on_walls).abs() < 1e-12);
-        assert!((told.volume - x * y * z).abs() < 1e-12 && made.report.is_complete());
+        assert!((area(&made.mesh, reported.contact_patch.unwrap()) - on_walls).abs() < 1e-12);
+        assert!((reported.volume - x * y * z).abs() < 1e-12 && made.report.is_complete());
         let other = Device { inside: Inside::Hollow, ..device };
         assert!(sound(&host, &other, &strict()).report.devices[0].contact_patch.is_none());
     }
@@ -209,8 +212,11 @@ fn what_lies_on_a_wall_has_its_own_patch() {
     let tip = Device::new(moved(ball(2, 1), |p| [0.3 * p[0], 0.3 * p[1], 1.2 + 0.3 * p[2]]), "tip");
     for (device, has_area) in [(cube, true), (tip, false)] {
         let made = sound(&room(4), &device, &strict());
-        let told = &made.report.devices[0];
-        assert_eq!((told.triangles, told.contact_patch.is_some()), (told.triangles_kept, has_area));
+        let reported = &made.report.devices[0];
+        assert_eq!(
+            (reported.triangles, reported.contact_patch.is_some()),
+            (reported.triangles_kept, has_area)
+        );
     }
     // A device outside only touches.
     let beside = filled(box_grid([2; 3], [[-0.3, -0.2, 1.5], [0.4, 0.3, 2.0]]), "box");
@@ -296,12 +302,15 @@ fn a_device_that_crosses_itself_goes_through_a_wall_with_a_new_surface() {
     for outside in [Outside::Cut, Outside::Keep] {
         let made =
             put(&host, std::slice::from_ref(&device), &Options { outside, ..options.clone() }).unwrap();
-        let told = &made.report.devices[0];
+        let reported = &made.report.devices[0];
         assert!(made.report.is_valid() && made.report.volume_deviation() < 1e-3);
-        assert!(told.fit.unwrap().is_reached() && told.triangles_at_walls > 0);
+        assert!(reported.fit.unwrap().is_reached() && reported.triangles_at_walls > 0);
         let all: f64 = tets(&made.mesh).map(|(_, tet)| volume(tet)).sum();
         assert_eq!(outside == Outside::Keep, all > 27.01);
-        assert_eq!(outside == Outside::Cut, told.triangles_outside > 0 && told.contact_patch.is_some());
+        assert_eq!(
+            outside == Outside::Cut,
+            reported.triangles_outside > 0 && reported.contact_patch.is_some()
+        );
     }
 }
 

@@ -300,7 +300,7 @@ fn corners(mesh: &Mesh) -> Vec<[Point; 3]> {
 
 /// Every message names the place; most suggest a remedy.
 #[test]
-fn damaged_files_are_told() {
+fn damaged_files_are_reported() {
     let msh2 = |body: &str| format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{body}");
     let msh4 = |body: &str| format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n{body}");
     let medit = |body: &str| format!("MeshVersionFormatted 2\nDimension 3\n{body}");
@@ -471,13 +471,13 @@ fn damaged_files_are_told() {
 }
 
 #[test]
-fn a_packed_file_cut_off_is_told() {
+fn a_packed_file_cut_off_is_reported() {
     let error = parse(".xml.gz", b"\x1f\x8b\x08\0\0\0\0\0\0\0").unwrap_err().to_string();
     assert!(error.contains("cannot be unpacked"), "{error}");
 }
 
 #[test]
-fn tetgen_files_that_do_not_fit_are_told() {
+fn tetgen_files_that_do_not_fit_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     let message = |name: &str| read(folder.path().join(name)).unwrap_err().to_string();
@@ -586,7 +586,7 @@ fn marks_of_medit_come_back() {
 }
 
 #[test]
-fn what_a_format_cannot_hold_is_told() {
+fn what_a_format_cannot_hold_is_reported() {
     let mut mesh =
         Mesh::new(vec![[0.1, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], Cells::new());
     mesh.cells.push(CellKind::TETRA, [0, 1, 2, 3].map(VertexId));
@@ -752,7 +752,7 @@ fn a_mesh_complete_folder_becomes_one_mesh() {
 }
 
 #[test]
-fn a_face_of_another_volume_is_told() {
+fn a_face_of_another_volume_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     mesh_complete(folder.path(), true, [1, 2]);
     let path = folder.path().join("mesh-surfaces/wall.vtp");

@@ -553,7 +553,7 @@ fn damaged_legacy_files_are_refused() {
 }
 
 #[test]
-fn an_xml_file_with_the_ending_of_a_legacy_one_is_told() {
+fn an_xml_file_with_the_ending_of_a_legacy_one_is_reported() {
     let error = read(".vtk", TET.as_bytes()).unwrap_err().to_string();
     assert!(error.contains(".vtu or .vtp"), "{error}");
 }

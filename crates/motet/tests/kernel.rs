@@ -131,7 +131,7 @@ fn what_must_never_happen_is_refused_by_name() {
 }
 
 #[test]
-fn tets_numbered_the_other_way_are_told_from_inverted_ones() {
+fn tets_numbered_the_other_way_are_reported_from_inverted_ones() {
     let mut mesh = random_mesh(40, 5);
     let sound = Complex::new(&mesh).unwrap();
     mesh.tets.iter_mut().step_by(3).for_each(|tet| tet.swap(0, 1));

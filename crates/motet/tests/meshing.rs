@@ -184,8 +184,8 @@ fn bodies_are_numbered_from_the_outside_in_whatever_the_order_of_files() {
         let seeds = vec![Seed { place: [0.01, 0.0, 0.0], name: "core".into() }];
         let options = Options { seeds, holes: vec![[0.45, 0.0, 0.0]], ..Options::default() };
         let result = filled(&surfaces, &options).unwrap();
-        let told: Vec<_> = result.report.bodies.iter().map(|b| b.name.as_deref().unwrap()).collect();
-        assert_eq!(told, ["large", "core"]);
+        let reported: Vec<_> = result.report.bodies.iter().map(|b| b.name.as_deref().unwrap()).collect();
+        assert_eq!(reported, ["large", "core"]);
         assert!((result.report.bodies[1].volume - shells[2]).abs() < 1e-12);
         // The remaining parts are separate, and there are no other defects.
         let defects = check(&result.mesh);
@@ -201,9 +201,9 @@ fn bodies_that_share_a_wall_are_named_by_their_surfaces() {
     let right = skin(&box_grid([4, 2, 2], [[1.0, 0.0, 0.0], [3.0, 1.0, 1.0]]), 1.0, 0.0);
     let bodies =
         filled(&joined(&[(&left, "left"), (&right, "right")]), &Options::default()).unwrap().report.bodies;
-    let told: Vec<_> =
+    let reported: Vec<_> =
         bodies.iter().map(|b| (b.region, b.name.as_deref().unwrap(), b.volume.round())).collect();
-    assert_eq!(told, [(1, "left", 1.0), (2, "right", 2.0)]);
+    assert_eq!(reported, [(1, "left", 1.0), (2, "right", 2.0)]);
 }
 
 #[test]
@@ -232,47 +232,47 @@ fn places_that_mean_nothing_are_refused() {
     let unit = ball(3, 3);
     let [inner, outer] = [0.5, 1.0].map(|factor| skin(&unit, factor, 0.0));
     let surfaces = joined(&[(&inner, "inner"), (&outer, "outer")]);
-    let told = |seeds: &[(Point, &str)], holes: &[Point]| {
+    let reported = |seeds: &[(Point, &str)], holes: &[Point]| {
         let seeds = seeds.iter().map(|(place, name)| Seed { place: *place, name: (*name).into() }).collect();
         let options = Options { seeds, holes: holes.to_vec(), ..Options::default() };
         filled(&surfaces, &options).map(|_| ()).unwrap_err().to_string()
     };
     let (core, shell) = ([0.01, 0.0, 0.0], [0.0, 0.7, 0.01]);
-    assert!(told(&[([2.0, 0.0, 0.0], "a")], &[]).contains("outside of all"));
-    assert!(told(&[], &[[0.0, f64::NAN, 0.0]]).contains("finite"));
+    assert!(reported(&[([2.0, 0.0, 0.0], "a")], &[]).contains("outside of all"));
+    assert!(reported(&[], &[[0.0, f64::NAN, 0.0]]).contains("finite"));
     let vertex = outer.points[Surface::of(&outer).triangles[0][0].index()];
-    assert!(told(&[(vertex, "a")], &[]).contains("lies on the surface"));
+    assert!(reported(&[(vertex, "a")], &[]).contains("lies on the surface"));
     let vertex = inner.points[Surface::of(&inner).triangles[0][0].index()];
-    assert!(told(&[(vertex, "a")], &[]).contains("lies on the surface"));
-    assert!(told(&[(core, "a"), ([0.0, 0.01, 0.0], "b")], &[]).contains("another seed names `a`"));
-    assert!(told(&[(core, "a"), (shell, "a")], &[]).contains("another body"));
-    assert!(told(&[(core, "a")], &[core]).contains("names `a`"));
-    assert!(told(&[], &[core, shell]).contains("every body is a hole"));
+    assert!(reported(&[(vertex, "a")], &[]).contains("lies on the surface"));
+    assert!(reported(&[(core, "a"), ([0.0, 0.01, 0.0], "b")], &[]).contains("another seed names `a`"));
+    assert!(reported(&[(core, "a"), (shell, "a")], &[]).contains("another body"));
+    assert!(reported(&[(core, "a")], &[core]).contains("names `a`"));
+    assert!(reported(&[], &[core, shell]).contains("every body is a hole"));
 }
 
 #[test]
 fn sizes_that_mean_nothing_are_refused() {
     let (mesh, sizes) = graded_box();
     let surfaces = joined(&[(&mesh, "box")]);
-    let told = |at_points: Option<Vec<f64>>, growth: f64, largest: Option<f64>| {
+    let reported = |at_points: Option<Vec<f64>>, growth: f64, largest: Option<f64>| {
         filled(&surfaces, &graded(at_points, growth, largest)).map(|_| ()).unwrap_err().to_string()
     };
     for growth in [0.0, -0.1, 0.8, f64::NAN] {
-        assert!(told(None, growth, None).contains("at most 0.7"));
+        assert!(reported(None, growth, None).contains("at most 0.7"));
     }
-    assert!(told(None, 0.3, Some(0.0)).contains("above 0"));
-    assert!(told(Some(vec![1.0]), 0.3, None).contains("1 sizes for"));
+    assert!(reported(None, 0.3, Some(0.0)).contains("above 0"));
+    assert!(reported(Some(vec![1.0]), 0.3, None).contains("1 sizes for"));
     let with = |size: f64| {
         let mut sizes = sizes.clone();
         sizes[5] = size;
         Some(sizes)
     };
     for size in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(told(with(size), 0.3, None).contains("point 5"));
+        assert!(reported(with(size), 0.3, None).contains("point 5"));
     }
-    assert!(told(Some(vec![1e-9; sizes.len()]), 0.3, None).contains("larger sizes"));
-    assert!(told(None, 0.3, Some(1e-9)).contains("larger sizes"));
-    assert!(told(with(1e-30), 0.3, None).contains("larger"));
+    assert!(reported(Some(vec![1e-9; sizes.len()]), 0.3, None).contains("larger sizes"));
+    assert!(reported(None, 0.3, Some(1e-9)).contains("larger sizes"));
+    assert!(reported(with(1e-30), 0.3, None).contains("larger"));
 }
 
 #[test]
@@ -289,8 +289,8 @@ fn arrays_give_sizes_by_points_and_by_cells() {
         let of = mesh.cells.iter().filter(|(_, _, t)| t.contains(&VertexId::new(v)));
         assert_eq!(of.map(|(cell, _, _)| 1.0 + cell.index() as f64).fold(f64::INFINITY, f64::min), *size);
     }
-    let told = |array: &str| sizes_by(&mesh, array).unwrap_err().to_string();
-    assert!(told("off").contains("array `off`: cell 0"), "{}", told("off"));
-    assert!(told("v").contains("one number a row"));
-    assert!(told("none").contains("point arrays: h, v; cell arrays: k, off"), "{}", told("none"));
+    let reported = |array: &str| sizes_by(&mesh, array).unwrap_err().to_string();
+    assert!(reported("off").contains("array `off`: cell 0"), "{}", reported("off"));
+    assert!(reported("v").contains("one number a row"));
+    assert!(reported("none").contains("point arrays: h, v; cell arrays: k, off"), "{}", reported("none"));
 }

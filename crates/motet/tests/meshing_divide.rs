@@ -182,9 +182,9 @@ fn the_rule_decides_and_what_means_nothing_is_refused() {
     let kept = with(size.clone(), Dividing::Coarse).unwrap();
     assert_eq!((kept.report.divided, kept.report.triangles_kept), (None, 12));
     let divided = with(size, Dividing::Always).unwrap();
-    let told = divided.report.divided.unwrap();
-    assert_eq!((told.before, told.after), (12, divided.report.triangles));
-    assert!(told.after > 12);
+    let reported = divided.report.divided.unwrap();
+    assert_eq!((reported.before, reported.after), (12, divided.report.triangles));
+    assert!(reported.after > 12);
     let kept = with(Some(Sizes::Uniform(0.1)), Dividing::Never).unwrap();
     assert_eq!((kept.report.divided, kept.report.triangles_kept), (None, 12));
     assert!(with(None, Dividing::Always).is_err());

@@ -98,9 +98,9 @@ fn faults(surface: &Mesh, made: &Filled) -> Vec<String> {
     if (total - enclosed).abs() > 1e-10 * enclosed {
         faults.push(format!("volume {total} of {enclosed}"));
     }
-    for (told, found) in made.report.bodies.iter().map(|body| body.volume).zip(&volumes) {
-        if (told - found).abs() > 1e-10 * enclosed {
-            faults.push(format!("a volume of {told} is told, {found} found"));
+    for (reported, found) in made.report.bodies.iter().map(|body| body.volume).zip(&volumes) {
+        if (reported - found).abs() > 1e-10 * enclosed {
+            faults.push(format!("a volume of {reported} is told, {found} found"));
         }
     }
     faults.extend(lost_walls(surface, made));
@@ -198,12 +198,12 @@ fn with_prisms(layers: Layers) -> Layers {
 }
 
 #[test]
-fn on_a_straight_tube_every_layer_is_as_thick_as_asked() {
+fn on_a_straight_tube_every_layer_is_as_thick_as_requested() {
     let mesh = vessel(|_| 1.0, 24, 24);
     let made = filled(&mesh, everywhere(STACK), Some(0.3));
-    let told = made.layers.unwrap();
-    assert_eq!((told.reduced, told.without, told.vertices), (0, 0, 24 * 25));
-    assert_eq!(told.prisms, 3 * 2 * 24 * 24);
+    let reported = made.layers.unwrap();
+    assert_eq!((reported.reduced, reported.without, reported.vertices), (0, 0, 24 * 25));
+    assert_eq!(reported.prisms, 3 * 2 * 24 * 24);
     let prisms = filled_prisms(&mesh, everywhere(STACK));
     let apothem = (std::f64::consts::PI / 24.0).cos();
     let columns = columns(&prisms);
@@ -252,11 +252,11 @@ fn walls(mesh: &Mesh, patch: &str) -> HashMap<VertexId, Vec<[Point; 3]>> {
 }
 
 #[test]
-fn on_a_bent_tube_every_layer_is_as_thick_as_asked() {
+fn on_a_bent_tube_every_layer_is_as_thick_as_requested() {
     let stack = Stack { count: 4, first: 0.01, growth: 1.3 };
     let mesh = bent();
-    let told = filled(&mesh, everywhere(stack), Some(0.4)).layers.unwrap();
-    assert_eq!(told.reduced, 0, "{told:?}");
+    let reported = filled(&mesh, everywhere(stack), Some(0.4)).layers.unwrap();
+    assert_eq!(reported.reduced, 0, "{reported:?}");
     let prisms = filled_prisms(&mesh, everywhere(stack));
     let walls = walls(&prisms, "wall");
     for column in columns(&prisms) {
@@ -294,11 +294,11 @@ fn layers_give_way_where_a_tube_narrows() {
     let radius = |z: f64| 1.0 - 0.9 * (-(z - 3.0f64).powi(2) / 0.5).exp();
     let thick = Stack { count: 4, first: 0.05, growth: 1.2 };
     let mesh = vessel(radius, 24, 60);
-    let told = filled(&mesh, everywhere(thick), None).layers.unwrap();
-    assert!(told.full > 0 && told.reduced > 0, "{told:?}");
-    let [least, _, largest] = told.thickness.unwrap();
-    assert!(least < 0.1 && (largest - thick.thickness()).abs() < 1e-12, "{told:?}");
-    assert!((told.least_at.unwrap()[2] - 3.0).abs() < 0.5, "{told:?}");
+    let reported = filled(&mesh, everywhere(thick), None).layers.unwrap();
+    assert!(reported.full > 0 && reported.reduced > 0, "{reported:?}");
+    let [least, _, largest] = reported.thickness.unwrap();
+    assert!(least < 0.1 && (largest - thick.thickness()).abs() < 1e-12, "{reported:?}");
+    assert!((reported.least_at.unwrap()[2] - 3.0).abs() < 0.5, "{reported:?}");
     // Along the wall the thickness changes slowly.
     let prisms = filled_prisms(&mesh, everywhere(thick));
     let walls = walls(&prisms, "wall");
@@ -314,11 +314,11 @@ fn layers_give_way_where_a_tube_narrows() {
 
 #[test]
 fn in_a_tube_thinner_than_its_layers_they_take_three_tenths_of_the_way_across() {
-    let told =
+    let reported =
         filled(&vessel(|_| 0.1, 24, 60), everywhere(Stack { first: 1.0, ..STACK }), None).layers.unwrap();
-    let [least, median, largest] = told.thickness.unwrap();
-    assert_eq!((told.full, told.without), (0, 0));
-    assert!(largest <= 0.06 + 1e-12 && median > 0.05 && least > 0.01, "{told:?}");
+    let [least, median, largest] = reported.thickness.unwrap();
+    assert_eq!((reported.full, reported.without), (0, 0));
+    assert!(largest <= 0.06 + 1e-12 && median > 0.05 && least > 0.01, "{reported:?}");
 }
 
 #[test]
@@ -326,9 +326,9 @@ fn at_a_crotch_and_at_the_neck_of_a_sac_layers_fit() {
     let thick = Stack { count: 3, first: 0.08, growth: 1.3 };
     for stack in [STACK, thick] {
         for mesh in [Bifurcation::default().mesh().unwrap(), Aneurysm::default().mesh().unwrap()] {
-            let told = filled(&mesh, everywhere(stack), Some(0.3)).layers.unwrap();
-            assert!(told.full * 2 > told.vertices, "{told:?}");
-            assert!(told.without * 50 < told.vertices, "{told:?}");
+            let reported = filled(&mesh, everywhere(stack), Some(0.3)).layers.unwrap();
+            assert!(reported.full * 2 > reported.vertices, "{reported:?}");
+            assert!(reported.without * 50 < reported.vertices, "{reported:?}");
         }
     }
     let narrow = Bifurcation { branch_angles_deg: [15.0; 2], blend: 0.1, ..Bifurcation::default() };
@@ -338,8 +338,9 @@ fn at_a_crotch_and_at_the_neck_of_a_sac_layers_fit() {
 #[test]
 fn corners_of_a_box_carry_layers() {
     let mesh = Mesh { ..surface_of(&box_grid([4, 4, 4], [[0.0; 3], [1.0; 3]])) };
-    let told = filled(&mesh, everywhere(Stack { count: 2, first: 0.04, growth: 1.0 }), None).layers.unwrap();
-    assert_eq!((told.reduced, told.vertices), (0, 98));
+    let reported =
+        filled(&mesh, everywhere(Stack { count: 2, first: 0.04, growth: 1.0 }), None).layers.unwrap();
+    assert_eq!((reported.reduced, reported.vertices), (0, 98));
     // At edges and corners columns lean, and are longer: over every side of the box around their foot they
     // are at least as high as requested.
     let prisms = filled_prisms(&mesh, everywhere(Stack { count: 2, first: 0.04, growth: 1.0 }));
@@ -358,9 +359,9 @@ fn corners_of_a_box_carry_layers() {
     let stack = Stack { count: 2, first: 0.1, growth: 1.0 };
     let patch = mesh.patches().unwrap().find("zmin").unwrap();
     let one = Layers { by_patch: [(patch, stack)].into(), ..Layers::default() };
-    let told = filled(&mesh, one, None).layers.unwrap();
-    assert_eq!(told.reduced, 0, "{told:?}");
-    assert!((told.volume - 0.2).abs() < 1e-12, "{told:?}");
+    let reported = filled(&mesh, one, None).layers.unwrap();
+    assert_eq!(reported.reduced, 0, "{reported:?}");
+    assert!((reported.volume - 0.2).abs() < 1e-12, "{reported:?}");
 }
 
 /// The surface cells of a volume mesh, with their patches.
@@ -381,8 +382,8 @@ fn surface_of(mesh: &Mesh) -> Mesh {
 #[test]
 fn a_ball_has_layers_all_over() {
     let mesh = surface_of(&ball(5, 5));
-    let told = filled(&mesh, everywhere(STACK), Some(0.3)).layers.unwrap();
-    assert_eq!(told.reduced, 0, "{told:?}");
+    let reported = filled(&mesh, everywhere(STACK), Some(0.3)).layers.unwrap();
+    assert_eq!(reported.reduced, 0, "{reported:?}");
 }
 
 #[test]
@@ -403,10 +404,10 @@ fn patches_with_different_layers_meet() {
         // No layers on the other half: they run out there.
         Layers { by_patch: [(9, more)].into(), ..Layers::default() },
     ] {
-        let told = filled(&mesh, layers.clone(), None).layers.unwrap();
-        assert!(told.full > 0, "{told:?}");
+        let reported = filled(&mesh, layers.clone(), None).layers.unwrap();
+        assert!(reported.full > 0, "{reported:?}");
         let half = layers.everywhere.is_none() && layers.by_patch.len() == 1;
-        assert_eq!(told.without > 0, half, "{told:?}");
+        assert_eq!(reported.without > 0, half, "{reported:?}");
         filled_prisms(&mesh, layers);
     }
 }
@@ -426,8 +427,8 @@ fn in_a_thick_tube_layers_grow_in_the_lumen() {
     // Layers in both bodies: in the wall from outside.
     let thin = Stack { count: 2, first: 0.02, growth: 1.0 };
     let both = Layers { by_patch: [(interface, STACK), (outer, thin)].into(), ..Layers::default() };
-    let told = filled(&mesh, both.clone(), None).layers.unwrap();
-    assert_eq!((told.reduced, told.vertices), (0, 2 * 24 * 25));
+    let reported = filled(&mesh, both.clone(), None).layers.unwrap();
+    assert_eq!((reported.reduced, reported.vertices), (0, 2 * 24 * 25));
     filled_prisms(&mesh, both);
 }
 
@@ -447,8 +448,8 @@ fn beside_a_flap_layers_end_and_on_it_they_are_refused() {
         let made = try_fill_all(&surfaces, layers, Some(0.4)).unwrap();
         let faults = faults(&part(&whole, &[wall, inlet, outlet, flap]), &made);
         assert!(faults.is_empty(), "{} faults, {}", faults.len(), faults[0]);
-        let told = made.layers.unwrap();
-        assert!(told.without > 0 && told.full > told.vertices / 3, "{told:?}");
+        let reported = made.layers.unwrap();
+        assert!(reported.without > 0 && reported.full > reported.vertices / 3, "{reported:?}");
     }
     let on_flap = Layers { by_patch: [(4, STACK)].into(), ..Layers::default() };
     let error = try_fill_all(&surfaces, on_flap, None).unwrap_err().to_string();
@@ -519,10 +520,10 @@ fn real_vessels_get_layers() {
     ] {
         let mesh = motet::io::read(data.join("vessels").join(name)).unwrap();
         let made = try_fill(&mesh, everywhere(stack), None).unwrap();
-        let told = made.layers.as_ref().unwrap();
-        println!("{name}: {told:?}");
-        assert!(told.full as f64 > least_full * told.vertices as f64, "{told:?}");
-        assert!(told.without * 100 < told.vertices, "{told:?}");
+        let reported = made.layers.as_ref().unwrap();
+        println!("{name}: {reported:?}");
+        assert!(reported.full as f64 > least_full * reported.vertices as f64, "{reported:?}");
+        assert!(reported.without * 100 < reported.vertices, "{reported:?}");
         // Caps are flat only in single precision.
         let faults: Vec<_> = faults(&mesh, &made).into_iter().filter(|f| !f.starts_with("volume")).collect();
         assert!(faults.is_empty(), "{} faults, {}", faults.len(), faults[0]);

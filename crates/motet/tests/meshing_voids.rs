@@ -37,7 +37,7 @@ fn joined(meshes: &[Mesh]) -> Surfaces {
 }
 
 /// The volume of each region, and whether it is a void.
-fn told(filled: &Filled) -> Vec<(f64, bool)> {
+fn volumes_and_voids(filled: &Filled) -> Vec<(f64, bool)> {
     filled.report.bodies.iter().map(|body| ((body.volume * 1e9).round() / 1e9, body.is_void)).collect()
 }
 
@@ -57,9 +57,9 @@ fn what_surfaces_turned_inward_enclose_is_left_out_on_request() {
     let hollow = [cube(2, 2.0, false), cube(1, 1.0, true)];
     for surfaces in [joined(&hollow), joined(&[one_of(&hollow)])] {
         let whole = filled(&surfaces, &Options::default());
-        assert_eq!(told(&whole), [(7.0, false), (1.0, true)]);
+        assert_eq!(volumes_and_voids(&whole), [(7.0, false), (1.0, true)]);
         let without = filled(&surfaces, &VOIDS);
-        assert_eq!((told(&without), without.report.voids), (vec![(7.0, false)], 1));
+        assert_eq!((volumes_and_voids(&without), without.report.voids), (vec![(7.0, false)], 1));
     }
 }
 
@@ -67,7 +67,7 @@ fn what_surfaces_turned_inward_enclose_is_left_out_on_request() {
 fn surfaces_that_face_outward_or_all_inward_enclose_no_void() {
     for is_inward in [false, true] {
         let surfaces = joined(&[cube(2, 2.0, is_inward), cube(1, 1.0, is_inward)]);
-        assert_eq!(told(&filled(&surfaces, &VOIDS)), [(7.0, false), (1.0, false)]);
+        assert_eq!(volumes_and_voids(&filled(&surfaces, &VOIDS)), [(7.0, false), (1.0, false)]);
     }
 }
 
@@ -77,10 +77,13 @@ fn shells_alternate_and_a_seed_keeps_a_void() {
     let shells = [cube(2, 4.0, false), cube(2, 3.0, true), cube(1, 1.0, false)];
     let surfaces = joined(&shells);
     let without = filled(&surfaces, &VOIDS);
-    assert_eq!((told(&without), without.report.voids), (vec![(37.0, false), (1.0, false)], 1));
+    assert_eq!((volumes_and_voids(&without), without.report.voids), (vec![(37.0, false), (1.0, false)], 1));
     let seeds = vec![Seed { place: [1.2, 0.1, 0.2], name: "air".to_owned() }];
     let kept = filled(&surfaces, &Options { seeds, ..VOIDS });
-    assert_eq!((told(&kept), kept.report.voids), (vec![(37.0, false), (26.0, true), (1.0, false)], 0));
+    assert_eq!(
+        (volumes_and_voids(&kept), kept.report.voids),
+        (vec![(37.0, false), (26.0, true), (1.0, false)], 0)
+    );
 }
 
 #[test]
@@ -89,7 +92,7 @@ fn a_repair_can_leave_surfaces_turned_inward() {
         let mut surfaces = joined(&[one_of(&[cube(2, 2.0, false), cube(1, 1.0, true)])]);
         let repairs = Repairs { keep_inward, ..Repairs::all(0.0, 8) };
         surfaces.repair(&repairs, &Threads::single()).unwrap();
-        assert_eq!(told(&filled(&surfaces, &VOIDS)), expected);
+        assert_eq!(volumes_and_voids(&filled(&surfaces, &VOIDS)), expected);
     }
 }
 

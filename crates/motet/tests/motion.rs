@@ -208,7 +208,7 @@ fn wave(phase: f64) -> impl Fn(Point) -> Point {
 }
 
 #[test]
-fn boundary_vertices_go_exactly_where_they_are_told() {
+fn boundary_vertices_go_exactly_where_they_are_reported() {
     let mesh = hollow(6, 2, CellKind::TETRA);
     let mover = mover(&mesh, &Options::default());
     let moved = step(&mover, wave(1.0));
@@ -318,8 +318,9 @@ fn a_sphere_in_a_box_goes_two_radii_in_one_step_and_three_in_several() {
     let mesh = motet::mesh::shapes::sphere_in_box(15, 7);
     for travel in [0.5, 1.0, 2.0, 3.0] {
         let mut mover = mover(&mesh, &Options::default());
-        let told = |v: &VertexId| [if is_sphere(&mesh.points[v.index()]) { travel } else { 0.0 }, 0.0, 0.0];
-        let driven: Vec<Point> = mover.boundary().iter().map(told).collect();
+        let reported =
+            |v: &VertexId| [if is_sphere(&mesh.points[v.index()]) { travel } else { 0.0 }, 0.0, 0.0];
+        let driven: Vec<Point> = mover.boundary().iter().map(reported).collect();
         let mut out = mesh.points.clone();
         let certificate = mover.advance(&driven, &mut out, &Threads::single()).unwrap();
         assert_eq!(certificate.inverted, 0, "{travel}");
@@ -398,7 +399,7 @@ fn prisms_at_a_pulsating_wall_keep_their_thickness() {
 // ---------------------------------------------------------------- what is no plain boundary
 
 #[test]
-fn vertices_of_an_interface_inside_are_moved_when_asked() {
+fn vertices_of_an_interface_inside_are_moved_on_request() {
     let mesh = solid(6, CellKind::TETRA);
     let is_middle = |p: &Point| (p[2] - 3.0).abs() < 0.2;
     let middle: Vec<VertexId> =
@@ -577,8 +578,9 @@ fn what_is_not_flat_does_not_slide() {
 // ---------------------------------------------------------------- sub-steps
 
 fn push_hole(mover: &mut Mover, hole: &FacetSet, by: f64, out: &mut [Point]) -> motet::motion::Certificate {
-    let told = |v: &VertexId| if hole.vertices.binary_search(v).is_ok() { [by, 0.0, 0.0] } else { [0.0; 3] };
-    let driven: Vec<Point> = mover.boundary().iter().map(told).collect();
+    let reported =
+        |v: &VertexId| if hole.vertices.binary_search(v).is_ok() { [by, 0.0, 0.0] } else { [0.0; 3] };
+    let driven: Vec<Point> = mover.boundary().iter().map(reported).collect();
     mover.advance(&driven, out, &Threads::single()).unwrap()
 }
 
@@ -599,8 +601,8 @@ fn a_motion_that_fits_is_done_in_one_step_and_certified() {
     // The worst tet, by brute force.
     let quality = |t: [VertexId; 4]| motet::geometry::quality::eas(t.map(|v| out[v.index()]));
     let worst = mesh.cells.tets().map(|(id, t)| (quality(t), id)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
-    let told = certificate.quality.worst_eas.unwrap();
-    assert_eq!((told.value, told.cell), worst);
+    let reported = certificate.quality.worst_eas.unwrap();
+    assert_eq!((reported.value, reported.cell), worst);
     let bad = mesh.cells.tets().filter(|(_, t)| quality(*t) < BAD_EAS).count();
     assert_eq!(certificate.quality.bad, bad);
 }
@@ -620,8 +622,8 @@ fn pushed_through_a_wall_it_stops_before_it_and_says_how_far_it_got() {
     assert!(!certificate.blocked_by.is_empty());
     // The mesh is where the certificate says.
     for v in &hole.vertices {
-        let gone = sub(out[v.index()], mesh.points[v.index()]);
-        assert!(distance(gone, [4.0 * certificate.fraction, 0.0, 0.0]) < 1e-12);
+        let removed = sub(out[v.index()], mesh.points[v.index()]);
+        assert!(distance(removed, [4.0 * certificate.fraction, 0.0, 0.0]) < 1e-12);
     }
     // And the way back is free: all of it, in one step, to the initial bits.
     let back = push_hole(&mut mover, &hole, 0.0, &mut out);
@@ -630,7 +632,7 @@ fn pushed_through_a_wall_it_stops_before_it_and_says_how_far_it_got() {
 }
 
 #[test]
-fn cells_inverted_from_the_start_are_told_but_stop_nothing() {
+fn cells_inverted_from_the_start_are_reported_but_stop_nothing() {
     let mut mesh = hollow(8, 2, CellKind::TETRA);
     // One inner vertex far off: the tets around it are partly inverted.
     let inner = (0..mesh.points.len()).find(|&v| distance(mesh.points[v], [1.0, 1.0, 1.0]) < 0.2).unwrap();
@@ -776,7 +778,7 @@ fn points_follow_nodes_as_vertices_follow_the_boundary() {
 }
 
 #[test]
-fn points_and_nodes_that_do_not_fit_are_told() {
+fn points_and_nodes_that_do_not_fit_are_reported() {
     let threads = Threads::single();
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mover = PointMover::new(&corners, &[[0.1; 3]], &threads).unwrap();

@@ -71,7 +71,7 @@ fn sides(mesh: &Mesh, slides: usize) -> Vec<FacetSet> {
 }
 
 /// The input for each driven vertex: the motion on sides that do not slide, zero on others.
-fn told(mesh: &Mesh, mover: &Mover, sliding: &[FacetSet], motion: &Affine) -> Vec<Point> {
+fn places_to_go(mesh: &Mesh, mover: &Mover, sliding: &[FacetSet], motion: &Affine) -> Vec<Point> {
     let boundary = Boundary::of(&mesh.cells);
     let keys: Vec<Vec<VertexId>> = sliding.iter().flat_map(|s| s.rings.iter().map(sorted)).collect();
     let rings = FacetSet::of_boundary(&boundary, "", |_| true).rings;
@@ -94,7 +94,7 @@ fn sorted(ring: &[VertexId]) -> Vec<VertexId> {
 fn is_affine(mesh: &Mesh, options: &Options, motion: &Affine, tolerance: f64) {
     let threads = Threads::single();
     let mut mover = Mover::new(mesh, options, &threads).unwrap();
-    let driven = told(mesh, &mover, &options.sliding, motion);
+    let driven = places_to_go(mesh, &mover, &options.sliding, motion);
     let mut out = mesh.points.clone();
     let certificate = mover.advance(&driven, &mut out, &threads).unwrap();
     assert!(certificate.complete, "{} of the way", certificate.fraction);
@@ -298,9 +298,9 @@ fn a_patch_that_is_nearly_flat_slides_and_is_reported_and_stays_as_far_off() {
 fn how_far_off_is_allowed_can_be_said_and_the_error_tells_how_far_it_is() {
     let (mesh, top) = dish(0.2);
     let options = sliding(vec![top.clone()]);
-    let told = Mover::new(&mesh, &options, &Threads::single()).unwrap_err().to_string();
+    let places_to_go = Mover::new(&mesh, &options, &Threads::single()).unwrap_err().to_string();
     for part in ["sliding patch zmax", "is not flat", "--slide-tolerance", "--flatten"] {
-        assert!(told.contains(part), "{told}");
+        assert!(places_to_go.contains(part), "{places_to_go}");
     }
     let wide = Options { slide_tolerance: SlideTolerance(0.2), ..options.clone() };
     assert!(Mover::new(&mesh, &wide, &Threads::single()).is_ok());
@@ -362,11 +362,11 @@ fn a_rim_that_leaves_its_plane_is_reported_with_its_farthest_vertex() {
     assert_eq!(leaving(&|p| [0.0, 0.1 * p[1], 0.2 * p[2]]), None, "within the plane");
     // The upper side along z is sheared: its edge with the sliding side leaves the plane most at its upper
     // end.
-    let told = leaving(&|p| [0.1 * p[2] * (1.0 + p[1]), 0.0, 0.0]).unwrap();
-    assert_eq!((told.patch.as_str(), told.place), ("xmin", [0.0, 1.5, 1.0]));
-    assert!((told.distance - 0.25).abs() < 1e-15 && told.is_significant, "{told:?}");
-    let told = leaving(&|p| [1e-9 * p[2], 0.0, 0.0]).unwrap();
-    assert!(!told.is_significant, "{told:?}");
+    let places_to_go = leaving(&|p| [0.1 * p[2] * (1.0 + p[1]), 0.0, 0.0]).unwrap();
+    assert_eq!((places_to_go.patch.as_str(), places_to_go.place), ("xmin", [0.0, 1.5, 1.0]));
+    assert!((places_to_go.distance - 0.25).abs() < 1e-15 && places_to_go.is_significant, "{places_to_go:?}");
+    let places_to_go = leaving(&|p| [1e-9 * p[2], 0.0, 0.0]).unwrap();
+    assert!(!places_to_go.is_significant, "{places_to_go:?}");
 }
 
 #[test]

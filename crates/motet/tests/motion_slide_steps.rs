@@ -84,15 +84,18 @@ fn rims_that_become_straight_leave_no_flat_cells() {
         let worst = certificate.quality.worst_eas.unwrap().value;
         assert!(worst > 0.05, "{worst}");
         for v in mover.boundary() {
-            let [told, reached] = [&flat, &out].map(|points| frame.coordinates(points[v.index()]));
+            let [reported, reached] = [&flat, &out].map(|points| frame.coordinates(points[v.index()]));
             // Sides keep their planes, and vertices that are neither on top nor at the bottom only move up or
             // down.
             assert!(
-                (0..2).all(|k| (told[k] - reached[k]).abs() <= 10.0 * rounding),
-                "{v}: {told:?} {reached:?}"
+                (0..2).all(|k| (reported[k] - reached[k]).abs() <= 10.0 * rounding),
+                "{v}: {reported:?} {reached:?}"
             );
-            let is_driven = told[2] < rounding || told[2] > 1.0 - rounding;
-            assert!(!is_driven || distance(told, reached) <= 10.0 * rounding, "{v}: {told:?} {reached:?}");
+            let is_driven = reported[2] < rounding || reported[2] > 1.0 - rounding;
+            assert!(
+                !is_driven || distance(reported, reached) <= 10.0 * rounding,
+                "{v}: {reported:?} {reached:?}"
+            );
         }
     }
 }

@@ -17,8 +17,8 @@ fn movers(mesh: &Mesh) -> [Mover; 2] {
 
 /// The sphere shifted along x.
 fn shifted(mover: &Mover, by: f64) -> Vec<Point> {
-    let told = |p: Point| [if norm(p) < 1.01 { by } else { 0.0 }, 0.0, 0.0];
-    mover.boundary().iter().map(|v| told(mover.reference()[v.index()])).collect()
+    let reported = |p: Point| [if norm(p) < 1.01 { by } else { 0.0 }, 0.0, 0.0];
+    mover.boundary().iter().map(|v| reported(mover.reference()[v.index()])).collect()
 }
 
 fn stepped(mover: &Mover, by: f64, threads: &Threads) -> Vec<Point> {

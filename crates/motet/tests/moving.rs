@@ -159,11 +159,11 @@ fn histories_lead_from_any_step_to_the_present_one() {
         short.advance(k as f64, &displacement, &threads()).unwrap();
     }
     assert!(!short.remembers(0) && short.remembers(12));
-    let told = short.history_since(0).unwrap_err();
-    assert_eq!(told.kind(), ErrorKind::Options);
-    assert!(told.to_string().contains("since step 0 are not known"), "{told}");
-    let told = short.history_since(13).unwrap_err().to_string();
-    assert!(told.contains("step 13") && told.contains("the last one is 12"), "{told}");
+    let reported = short.history_since(0).unwrap_err();
+    assert_eq!(reported.kind(), ErrorKind::Options);
+    assert!(reported.to_string().contains("since step 0 are not known"), "{reported}");
+    let reported = short.history_since(13).unwrap_err().to_string();
+    assert!(reported.contains("step 13") && reported.contains("the last one is 12"), "{reported}");
 }
 
 /// The number of steps of [`cycle`] that end with tets without positive volume at the vertex positions at the
@@ -262,28 +262,28 @@ fn a_state_keeps_the_arrays_in_their_order_and_knows_its_options() {
         moving.set_cell_field(Field::scalars("later", vec![1.0; n])).unwrap();
     }
     assert_eq!(loaded.mesh(), whole.mesh());
-    let told = loaded.history_since(0).unwrap_err().to_string();
-    assert!(told.contains("since step 0 are not known, only those since step 1"), "{told}");
+    let reported = loaded.history_since(0).unwrap_err().to_string();
+    assert!(reported.contains("since step 0 are not known, only those since step 1"), "{reported}");
     assert!(loaded.history_since(1).unwrap().is_none());
     // Other options cannot resume.
     let mut other = options();
     other.motion.smoothing = 0;
-    let told = MovingMesh::load(&file, other, &threads()).unwrap_err();
-    assert_eq!(told.kind(), ErrorKind::Options);
-    assert!(told.to_string().contains("motion.smoothing was 2 and is 0"), "{told}");
+    let reported = MovingMesh::load(&file, other, &threads()).unwrap_err();
+    assert_eq!(reported.kind(), ErrorKind::Options);
+    assert!(reported.to_string().contains("motion.smoothing was 2 and is 0"), "{reported}");
 }
 
 #[test]
-fn what_is_no_state_is_told() {
+fn what_is_no_state_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("state.vtu");
     let mesh = sphere_in_box(2, 2);
     motet::io::write(&file, &mesh, &motet::io::WriteOptions::default()).unwrap();
-    let told = MovingMesh::load(&file, Options::default(), &threads()).unwrap_err();
-    assert_eq!(told.kind(), ErrorKind::Input);
+    let reported = MovingMesh::load(&file, Options::default(), &threads()).unwrap_err();
+    assert_eq!(reported.kind(), ErrorKind::Input);
     assert!(
-        told.to_string().contains("state.vtu") && told.to_string().contains("not a saved state"),
-        "{told}"
+        reported.to_string().contains("state.vtu") && reported.to_string().contains("not a saved state"),
+        "{reported}"
     );
     MovingMesh::new(&mesh, Options::default(), &threads()).unwrap().save(&file).unwrap();
     let saved = motet::io::read(&file).unwrap();
@@ -314,7 +314,7 @@ fn what_cannot_be_done_leaves_all_as_it_was() -> Result<()> {
     let watch = Watch::new();
     watch.stop();
     let stopped = Threads::single().watched(&watch);
-    let told = [
+    let reported = [
         moving.advance(2.0, &far[1..], &threads()).unwrap_err(),
         moving.advance(2.0, &broken, &threads()).unwrap_err(),
         moving.advance(1.0, &far, &threads()).unwrap_err(),
@@ -322,7 +322,7 @@ fn what_cannot_be_done_leaves_all_as_it_was() -> Result<()> {
         moving.advance(2.0, &far, &stopped).unwrap_err(),
     ];
     for (error, part) in
-        told.iter().zip(["driven", "vertex 7", "not after the current time 1", "not after", "stopped"])
+        reported.iter().zip(["driven", "vertex 7", "not after the current time 1", "not after", "stopped"])
     {
         assert!(error.to_string().contains(part), "{error}");
     }
@@ -477,7 +477,7 @@ fn kept_apart(hold: f64) -> Options {
 }
 
 #[test]
-fn what_is_told_to_go_through_a_wall_stops_in_front_of_it() {
+fn what_is_reported_to_go_through_a_wall_stops_in_front_of_it() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("state.vtu");
     let mesh = box_mesh();
@@ -494,9 +494,9 @@ fn what_is_told_to_go_through_a_wall_stops_in_front_of_it() {
         moving.save(&file).unwrap();
         moving = MovingMesh::load(&file, kept_apart(0.5), &threads()).unwrap();
     }
-    let came: Vec<Point> = mesh.points.iter().copied().filter(|p| is_sphere(*p)).collect();
+    let at_first: Vec<Point> = mesh.points.iter().copied().filter(|p| is_sphere(*p)).collect();
     let is_there = |p: &Point| moving.mesh().points.iter().any(|q| norm(sub(*p, *q)) < 1e-12);
-    assert!(came.iter().all(is_there), "the sphere is back where it was");
+    assert!(at_first.iter().all(is_there), "the sphere is back where it was");
 }
 
 #[test]
@@ -524,18 +524,18 @@ fn what_is_requested_to_be_beyond_a_wall_stops_in_front_of_it() {
 }
 
 #[test]
-fn walls_that_cannot_be_kept_apart_are_told() {
+fn walls_that_cannot_be_kept_apart_are_reported() {
     let mesh = box_mesh();
     for hold in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let told = MovingMesh::new(&mesh, kept_apart(hold), &threads()).unwrap_err();
-        assert_eq!(told.kind(), ErrorKind::Options);
+        let reported = MovingMesh::new(&mesh, kept_apart(hold), &threads()).unwrap_err();
+        assert_eq!(reported.kind(), ErrorKind::Options);
     }
     // Saved without `hold`: there is nothing to keep apart.
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("state.vtu");
     MovingMesh::new(&mesh, options(), &threads()).unwrap().save(&file).unwrap();
-    let told = MovingMesh::load(&file, kept_apart(0.5), &threads()).unwrap_err();
-    assert!(told.to_string().contains("watch"), "{told}");
+    let reported = MovingMesh::load(&file, kept_apart(0.5), &threads()).unwrap_err();
+    assert!(reported.to_string().contains("watch"), "{reported}");
 }
 
 #[test]

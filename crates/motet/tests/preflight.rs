@@ -17,7 +17,7 @@ use proptest::prelude::*;
 
 type Triangles = Vec<[VertexId; 3]>;
 
-fn told(report: &Preflight) -> Vec<FaultKey> {
+fn fault_keys(report: &Preflight) -> Vec<FaultKey> {
     let of = |f: &Fault| (f.kind, f.is_fatal, f.surface, f.triangles.clone(), f.vertices.clone());
     report.faults.iter().map(of).collect()
 }
@@ -51,7 +51,7 @@ fn roles() -> impl Strategy<Value = Vec<Role>> {
 fn holds_against_everything(points: &[Point], triangles: &Triangles, of: &[u32], roles: &[Role]) {
     let surface_of: Vec<u32> = (0..triangles.len()).map(|t| of[t % of.len()]).collect();
     let report = preflight(points, triangles, &surface_of, roles, &Threads::single());
-    assert_eq!(told(&report), faults(points, triangles, &surface_of, roles));
+    assert_eq!(fault_keys(&report), faults(points, triangles, &surface_of, roles));
     assert_eq!(report.is_fit(), !report.faults.iter().any(|f| f.is_fatal));
     assert_eq!(report.first_error().is_none(), report.is_fit());
     let n: usize = report.counts.iter().map(|count| count.fatal + count.notes).sum();
@@ -75,14 +75,14 @@ fn any_coordinate() -> impl Strategy<Value = f64> {
 fn any_repairs() -> impl Strategy<Value = Repairs> {
     let distances = [None, Some(0.0), Some(1e-9), Some(1.0), Some(1e50)];
     let merge = prop::sample::select(distances.to_vec());
-    (merge, any::<[bool; 6]>(), prop::option::of(0usize..8)).prop_map(|(merge, asked, close_holes)| Repairs {
+    (merge, any::<[bool; 6]>(), prop::option::of(0usize..8)).prop_map(|(merge, flags, close_holes)| Repairs {
         merge,
-        drop_degenerate: asked[0],
-        drop_duplicates: asked[1],
-        orient: asked[2],
-        imprint: asked[3],
-        cut: asked[4],
-        keep_inward: asked[5],
+        drop_degenerate: flags[0],
+        drop_duplicates: flags[1],
+        orient: flags[2],
+        imprint: flags[3],
+        cut: flags[4],
+        keep_inward: flags[5],
         close_holes,
     })
 }
@@ -155,7 +155,7 @@ fn roles_say_what_is_fatal() {
         "{error}"
     );
     let none = preflight(&points, &triangles, &[0, 2], &[Role::Membrane; 3], &Threads::single());
-    assert_eq!(told(&none)[0], (FaultKind::EmptySurface, true, 1, vec![], vec![]));
+    assert_eq!(fault_keys(&none)[0], (FaultKind::EmptySurface, true, 1, vec![], vec![]));
 }
 
 #[test]

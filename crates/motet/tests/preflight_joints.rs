@@ -260,7 +260,7 @@ fn values_at_points_are_linear_in_the_triangles_where_points_are_new() {
     let (surfaces, done) = repaired(&[(&both, Role::Boundary)], &CUT);
     let values = done.at_points(&given);
     assert!(surfaces.points.len() > before.points.len());
-    for (p, told) in surfaces.points.iter().zip(values) {
-        assert!((value(p) - told).abs() < 1e-12, "{p:?}");
+    for (p, reported) in surfaces.points.iter().zip(values) {
+        assert!((value(p) - reported).abs() < 1e-12, "{p:?}");
     }
 }

@@ -124,8 +124,8 @@ fn a_plane_hole_is_filled_within_its_plane() {
         t.iter().all(|v| surface.points[v.index()][2] == 1.0) && (has(middle) || has(corner))
     };
     let mut left: Triangles = surface.triangles.iter().copied().filter(|t| !is_hole(t)).collect();
-    let n_gone = surface.triangles.len() - left.len();
-    assert!(n_gone > 8);
+    let n_removed = surface.triangles.len() - left.len();
+    assert!(n_removed > 8);
     let mended = mend(&surface.points, &left, &ALL);
     let report = look(&surface.points, &mended.triangles);
     assert!(report.is_fit() && report.faults.is_empty(), "{report}");
@@ -222,8 +222,8 @@ fn closed_parts_face_outward_and_one_sided_ones_stay() {
 #[test]
 fn a_distance_that_is_none_is_refused() {
     for merge in [-1.0, f64::NAN, f64::INFINITY] {
-        let asked = Repairs { merge: Some(merge), ..Repairs::default() };
-        assert!(repair(&[], &[], &[], &[], &asked, &Threads::single()).is_err());
+        let requested = Repairs { merge: Some(merge), ..Repairs::default() };
+        assert!(repair(&[], &[], &[], &[], &requested, &Threads::single()).is_err());
     }
 }
 

@@ -318,10 +318,10 @@ fn few_shapes_come_of_one() {
 }
 
 #[test]
-fn tets_that_no_division_keeps_are_told() {
+fn tets_that_no_division_keeps_are_reported() {
     let threads = Threads::single();
     let mesh = random_mesh(100, 12);
-    let mut n_told = 0;
+    let mut n_reported = 0;
     for t in &mesh.tets {
         let first = TetMesh::new(corners(&mesh, *t).to_vec(), vec![[0, 1, 2, 3].map(VertexId)]);
         let mut refinement = Refinement::new(&first, Options::default(), &threads).unwrap();
@@ -336,8 +336,8 @@ fn tets_that_no_division_keeps_are_told() {
         let left = refinement.left(&threads);
         assert_eq!(left.iter().map(|left| left.tet).collect::<Vec<_>>(), expected);
         assert!(left.iter().all(|left| left.root == TetId(0) && left.eas < floor));
-        n_told += usize::from(!left.is_empty());
+        n_reported += usize::from(!left.is_empty());
     }
-    println!("{n_told} of {} tets have parts that are worse", mesh.tets.len());
-    assert!(n_told > 0 && n_told < mesh.tets.len());
+    println!("{n_reported} of {} tets have parts that are worse", mesh.tets.len());
+    assert!(n_reported > 0 && n_reported < mesh.tets.len());
 }

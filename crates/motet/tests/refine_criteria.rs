@@ -167,7 +167,7 @@ fn criteria_of_fields_mark_by_their_estimates() {
 }
 
 #[test]
-fn what_is_not_there_is_told_with_what_is() {
+fn what_is_not_there_is_reported_with_what_is() {
     let threads = Threads::single();
     let (mesh, part) = case();
     let refused = |criterion: Criterion| criterion.wishes(&mesh, &part, &threads).unwrap_err();
@@ -206,15 +206,15 @@ fn what_is_not_there_is_told_with_what_is() {
         let is_word = is_place || criterion.check().is_err();
         let kind = if is_word { ErrorKind::Options } else { ErrorKind::Input };
         let error = refused(criterion);
-        let told = error.to_string();
-        assert!(parts.iter().all(|part| told.contains(part)), "{told}");
-        assert_eq!(error.kind(), kind, "{told}");
+        let reported = error.to_string();
+        assert!(parts.iter().all(|part| reported.contains(part)), "{reported}");
+        assert_eq!(error.kind(), kind, "{reported}");
     }
     let bare = Mesh::new(mesh.points.clone(), mesh.cells.clone());
-    let told = Criterion::Region("1".into()).wishes(&bare, &part, &threads).unwrap_err().to_string();
-    assert!(told.contains("it has no regions"), "{told}");
-    let told = Target::new(vec![[0.0; 3]], Vec::new(), &threads).unwrap_err().to_string();
-    assert!(told.contains("no surface"), "{told}");
+    let reported = Criterion::Region("1".into()).wishes(&bare, &part, &threads).unwrap_err().to_string();
+    assert!(reported.contains("it has no regions"), "{reported}");
+    let reported = Target::new(vec![[0.0; 3]], Vec::new(), &threads).unwrap_err().to_string();
+    assert!(reported.contains("no surface"), "{reported}");
     assert!(Target::new(vec![[f64::NAN; 3]; 3], vec![[0, 1, 2].map(VertexId)], &threads).is_err());
     let around = Target::of_mesh(&ball(2, 1), &threads).unwrap();
     assert!(around.is_within(0.1, [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 1.0]]));

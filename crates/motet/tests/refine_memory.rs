@@ -118,14 +118,14 @@ fn motion_in_between_changes_nothing_of_what_is_remembered() {
 
 /// Removes the tets around some places from the memory, as if others had inserted theirs there.
 fn forgets(memory: &Memory, mesh: &TetMesh, places: &[Point], radius: f64) -> (Memory, HashSet<usize>) {
-    let is_gone = |t: &usize| {
+    let is_forgotten = |t: &usize| {
         let centre = centroid(corners(mesh, mesh.tets[*t]));
         places.iter().any(|place| distance(centre, *place) < radius)
     };
-    let gone: HashSet<usize> = (0..mesh.tets.len()).filter(is_gone).collect();
+    let forgotten: HashSet<usize> = (0..mesh.tets.len()).filter(is_forgotten).collect();
     let mut memory = memory.clone();
-    gone.iter().for_each(|&t| memory.roots[t] = motet::refine::UNKNOWN);
-    (memory, gone)
+    forgotten.iter().for_each(|&t| memory.roots[t] = motet::refine::UNKNOWN);
+    (memory, forgotten)
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn what_others_put_in_between_fits_whatever_is_divided_and_taken_back() {
             let places: Vec<Point> = (0..1 + round % 3)
                 .map(|_| given.points[numbers.next() as usize % given.points.len()])
                 .collect();
-            let (memory, gone) = forgets(&fine.memory_to_keep(&single()), &given, &places, 0.15);
+            let (memory, forgotten) = forgets(&fine.memory_to_keep(&single()), &given, &places, 0.15);
             let mut other = Refinement::recall(&given, &memory, Options::default(), &single()).unwrap();
             assert!(other.mesh() == &given);
 
@@ -153,8 +153,8 @@ fn what_others_put_in_between_fits_whatever_is_divided_and_taken_back() {
             let at = |v: VertexId| other.mesh().points[v.index()].map(f64::to_bits);
             let there: HashSet<[[u64; 3]; 4]> = coarse.iter().map(|t| t.map(at)).collect();
             // The tets of others are still there, whole or divided.
-            let n_there = gone.iter().filter(|t| there.contains(&given.tets[**t].map(place))).count();
-            assert_eq!(n_there, gone.len(), "round {round}");
+            let n_there = forgotten.iter().filter(|t| there.contains(&given.tets[**t].map(place))).count();
+            assert_eq!(n_there, forgotten.len(), "round {round}");
             assert!(
                 other.mesh().tets.len() < given.tets.len() || fine.mesh().tets.len() == first.tets.len(),
                 "something comes back"
@@ -229,8 +229,8 @@ fn triangles_inside_are_there_once_whichever_side_was_changed() {
         fine.refine(&all(&first), &single()).unwrap();
         let (given, memory) = shuffled(fine.mesh(), &fine.memory_to_keep(&single()), &mut numbers);
         let place = first.points[on_sheet[numbers.next() as usize % on_sheet.len()].index()];
-        let (memory, gone) = forgets(&memory, &given, &[place], 0.2);
-        assert!(!gone.is_empty());
+        let (memory, forgotten) = forgets(&memory, &given, &[place], 0.2);
+        assert!(!forgotten.is_empty());
         let mut other = Refinement::recall(&given, &memory, loose(), &single()).unwrap();
         coarsest(&mut other);
         fits(&given, other.mesh());
@@ -261,9 +261,9 @@ fn a_moved_and_remeshed_mesh_is_coarsened_where_it_was_not_touched() {
     }
     fine.set_points(&bent).unwrap();
     let outcome = remesh::remesh(fine.mesh(), &options, &Threads::single()).unwrap();
-    let n_came = outcome.extract.new_tets.len();
-    println!("{} tets, {n_came} came, {:?}", fine.mesh().tets.len(), fine.summary());
-    assert!(n_came > 0);
+    let n_new = outcome.extract.new_tets.len();
+    println!("{} tets, {n_new} came, {:?}", fine.mesh().tets.len(), fine.summary());
+    assert!(n_new > 0);
     let memory = fine.memory_to_keep(&single()).after(&outcome.extract);
     let mesh = &outcome.extract.mesh;
     let mut other = Refinement::recall(mesh, &memory, loose(), &single()).unwrap();

@@ -111,8 +111,8 @@ fn as_many_tets_come_as_were_expected() {
     let part = TetPart::of(&mesh).unwrap();
     let wishes = |h: f64| Criterion::Size(Size::Uniform(h)).wishes(&mesh, &part, &threads).unwrap();
     assert!(check_expected(&wishes(1e-2)).is_ok());
-    let told = check_expected(&wishes(1e-6)).unwrap_err().to_string();
-    assert!(told.contains("e20 tets") && told.contains("times as large"), "{told}");
+    let reported = check_expected(&wishes(1e-6)).unwrap_err().to_string();
+    assert!(reported.contains("e20 tets") && reported.contains("times as large"), "{reported}");
 }
 
 #[test]

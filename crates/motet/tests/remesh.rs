@@ -143,11 +143,11 @@ fn where_only_some_are_asked_for_others_stay_bad() {
     assert!(left.len() > 10 && right.len() > 10, "{} and {}", left.len(), right.len());
     let only = Some(left.iter().map(|&t| CellId::new(t)).collect());
     let outcome = remesh(&mesh, &Options { only, ..Options::default() }, &Threads::single()).unwrap();
-    let is_gone = |t: &usize| outcome.extract.removed_tets.binary_search(&TetId::new(*t)).is_ok();
+    let is_removed = |t: &usize| outcome.extract.removed_tets.binary_search(&TetId::new(*t)).is_ok();
     let is_far = |t: &usize| corners(&mesh, *t).iter().all(|p| p[0] > 0.7);
-    assert!(left.iter().all(is_gone), "what was asked for is repaired");
+    assert!(left.iter().all(is_removed), "what was asked for is repaired");
     assert!(
-        right.iter().any(is_far) && !right.iter().filter(|t| is_far(t)).any(is_gone),
+        right.iter().any(is_far) && !right.iter().filter(|t| is_far(t)).any(is_removed),
         "what was not is not"
     );
 }
@@ -178,15 +178,15 @@ fn the_four_types_are_what_the_paper_draws() {
 }
 
 #[test]
-fn thin_layers_stay_unless_asked() {
+fn thin_layers_stay_unless_requested() {
     for (name, mesh) in data_meshes().into_iter().filter(|(name, _)| name.contains("boundary_layer")) {
         let part = TetPart::of(&mesh).unwrap().mesh;
-        let spared = remesh(&part, &Options::default(), &Threads::single()).unwrap().report;
+        let with_layers = remesh(&part, &Options::default(), &Threads::single()).unwrap().report;
         println!(
             "{name}: {} thin tets stay; {} bad found, {} left",
-            spared.layers, spared.before.bad, spared.after.bad
+            with_layers.layers, with_layers.before.bad, with_layers.after.bad
         );
-        assert!(spared.layers > 40_000 && spared.after.bad == 0);
+        assert!(with_layers.layers > 40_000 && with_layers.after.bad == 0);
     }
 }
 
@@ -264,7 +264,7 @@ fn bad_surfaces_give_way_within_the_distance() {
 /// Between two plates whose distance is smaller than the width of their triangles, there is no space for a
 /// good tet on any of these.
 #[test]
-fn a_narrow_gap_is_told_as_the_cause() {
+fn a_narrow_gap_is_reported_as_the_cause() {
     for (height, is_narrow) in [(0.01, true), (0.02, true), (0.5, false)] {
         let mesh = box_grid([4, 4, 1], [[0.0; 3], [2.0, 2.0, height]]);
         let part = TetPart::of(&mesh).unwrap();

@@ -72,19 +72,19 @@ fn meshes_are_what_they_are_meant_to_be() {
 fn harmonic_motion_reproduces_a_shift_and_a_linear_field() {
     let mesh = Stack { low: [0.0; 3], high: [1.0; 3], levels: vec![0.0, 1.0] }.even_mesh(0.3, 2);
     let linear = |p: [f64; 3]| [0.3 + p[0], 0.1 * p[1] - p[2], 0.2];
-    let mut told = vec![None; mesh.points.len()];
-    mesh.triangles.iter().flatten().for_each(|v| told[v.index()] = Some([0.5, -0.25, 1.0]));
-    assert!(told.iter().any(Option::is_none));
-    let displacement = moving_cases::harmonic::harmonic(&mesh, &told);
+    let mut reported = vec![None; mesh.points.len()];
+    mesh.triangles.iter().flatten().for_each(|v| reported[v.index()] = Some([0.5, -0.25, 1.0]));
+    assert!(reported.iter().any(Option::is_none));
+    let displacement = moving_cases::harmonic::harmonic(&mesh, &reported);
     for d in displacement {
         (0..3).for_each(|i| assert_close(d[i], [0.5, -0.25, 1.0][i], 1e-7));
     }
     // With weights 1 / volume a linear field is not the solution, but no value exceeds the range of the
     // boundary's by much.
-    for (told, p) in told.iter_mut().zip(&mesh.points).filter(|(told, _)| told.is_some()) {
-        *told = Some(linear(*p));
+    for (reported, p) in reported.iter_mut().zip(&mesh.points).filter(|(reported, _)| reported.is_some()) {
+        *reported = Some(linear(*p));
     }
-    let displacement = moving_cases::harmonic::harmonic(&mesh, &told);
+    let displacement = moving_cases::harmonic::harmonic(&mesh, &reported);
     assert!(displacement.iter().all(|d| d[0] > 0.2 && d[0] < 1.4));
 }
 

@@ -190,9 +190,9 @@ fn the_ledger_of_fields_tells_integrals_by_region() {
         assert!(field.range_after.unwrap()[1] <= field.range_before.unwrap()[1]);
     }
     let [before, after] = [&old, &outcome.mesh].map(|mesh| integrals(mesh, "pressure"));
-    for told in &fields[2].regions {
-        assert!(close(before[&told.region][1], told.before[0]), "{told:?}");
-        assert!(close(after[&told.region][1], told.after[0]), "{told:?}");
+    for reported in &fields[2].regions {
+        assert!(close(before[&reported.region][1], reported.before[0]), "{reported:?}");
+        assert!(close(after[&reported.region][1], reported.after[0]), "{reported:?}");
     }
     // Values that do not come from the old mesh.
     let mut other = outcome.mesh.clone();
@@ -235,10 +235,10 @@ fn a_surface_that_adapts_keeps_its_patches() {
     let outcome = remeshed(&old, &adapt());
     let MeshOutcome { mesh: new, history, .. } = &outcome;
     assert_kept(&old, &outcome);
-    let came = |(cell, kind): (usize, &CellKind)| {
+    let is_new = |(cell, kind): (usize, &CellKind)| {
         *kind == CellKind::TRIANGLE && matches!(history.cells.of(CellId::new(cell)), Origin::Changed(_))
     };
-    assert!(new.cells.kinds().iter().enumerate().any(came), "some triangle is new");
+    assert!(new.cells.kinds().iter().enumerate().any(is_new), "some triangle is new");
     let by_patch = |mesh: &Mesh| {
         let patches = mesh.patches().unwrap();
         let mut areas: BTreeMap<i32, f64> = BTreeMap::new();
@@ -372,7 +372,7 @@ fn a_rule_of_the_callers_is_obeyed_and_one_for_no_array_is_refused() {
 }
 
 #[test]
-fn what_makes_no_mesh_is_told_with_its_cell() {
+fn what_makes_no_mesh_is_reported_with_its_cell() {
     // Three tets at one facet, after two line cells.
     let points =
         vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3], [0.0, 0.0, -1.0]];

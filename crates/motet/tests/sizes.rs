@@ -20,7 +20,7 @@ use moving_cases::measure::{assert_valid, boundary, features, labelled, length, 
 use moving_cases::membrane::membrane_mesh;
 use proptest::prelude::*;
 
-fn asked(sizes: Sizes, surface: SurfaceRule) -> Options {
+fn options_for(sizes: Sizes, surface: SurfaceRule) -> Options {
     Options { sizes: Some(sizes), surface, ..Options::default() }
 }
 
@@ -61,15 +61,15 @@ fn assert_kept(old: &TetMesh, outcome: &Outcome, size: impl Fn(Point) -> f64) {
     assert!(close(before, after), "features {before} {after}");
 
     let sizes = report.sizes.unwrap();
-    for (told, mesh) in [(sizes.before, old), (sizes.after, new)] {
+    for (reported, mesh) in [(sizes.before, old), (sizes.after, new)] {
         let ratios = ratios(mesh, &size);
         let n = |is: &dyn Fn(f64) -> bool| ratios.iter().filter(|r| is(**r)).count();
-        assert_eq!(told.edges, ratios.len());
-        assert_eq!((told.too_long, told.too_short), (n(&|r| r > LONG), n(&|r| r < SHORT)));
+        assert_eq!(reported.edges, ratios.len());
+        assert_eq!((reported.too_long, reported.too_short), (n(&|r| r > LONG), n(&|r| r < SHORT)));
         let sum: f64 = ratios.iter().sum();
-        assert!((told.mean - sum / ratios.len() as f64).abs() < 1e-9);
-        assert!(close(told.max, ratios.iter().copied().fold(0.0, f64::max)));
-        assert!(close(told.min, ratios.iter().copied().fold(f64::INFINITY, f64::min)));
+        assert!((reported.mean - sum / ratios.len() as f64).abs() < 1e-9);
+        assert!(close(reported.max, ratios.iter().copied().fold(0.0, f64::max)));
+        assert!(close(reported.min, ratios.iter().copied().fold(f64::INFINITY, f64::min)));
     }
 }
 
@@ -93,7 +93,7 @@ fn tell(what: &str, outcome: &Outcome) -> Lengths {
 fn a_box_is_made_finer_and_coarser() {
     for (n, size) in [(3, 0.09), (4, 0.2), (16, 0.2), (12, 0.5)] {
         let mesh = cube(n);
-        let outcome = remesh(&mesh, &asked(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap();
+        let outcome = remesh(&mesh, &options_for(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap();
         let after = tell(&format!("cube of {n} to {size}"), &outcome);
         assert_kept(&mesh, &outcome, |_| size);
         assert_eq!((outcome.report.after.bad, after.too_long), (0, 0));
@@ -105,7 +105,7 @@ fn a_box_is_made_finer_and_coarser() {
 #[test]
 fn what_has_its_sizes_stays() {
     for (n, size) in [(6, 0.12), (6, 0.3), (14, 0.25)] {
-        let options = asked(Sizes::Uniform(size), ADAPT);
+        let options = options_for(Sizes::Uniform(size), ADAPT);
         let first = remesh(&cube(n), &options, &Threads::single()).unwrap();
         let second = remesh(&first.extract.mesh, &options, &Threads::single()).unwrap();
         let after = tell("second time", &second);
@@ -121,7 +121,7 @@ fn what_has_its_sizes_stays() {
 fn an_interface_between_regions_stays_where_it_is() {
     let mesh = membrane_mesh(0.2, 1);
     for size in [0.1, 0.45] {
-        let outcome = remesh(&mesh, &asked(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap();
+        let outcome = remesh(&mesh, &options_for(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap();
         let after = tell(&format!("membrane to {size}"), &outcome);
         assert_kept(&mesh, &outcome, |_| size);
         assert_eq!((outcome.report.after.bad, after.too_long), (0, 0));
@@ -140,7 +140,7 @@ fn sizes_may_differ_from_vertex_to_vertex() {
     // A linear size field, exactly interpolated between vertices.
     let size = |p: Point| 0.06 + 0.3 * p[0];
     let sizes = mesh.points.iter().map(|p| size(*p)).collect();
-    let outcome = remesh(&mesh, &asked(Sizes::Vertices(sizes), ADAPT), &Threads::single()).unwrap();
+    let outcome = remesh(&mesh, &options_for(Sizes::Vertices(sizes), ADAPT), &Threads::single()).unwrap();
     let after = tell("graded", &outcome);
     assert_kept(&mesh, &outcome, size);
     assert_eq!((outcome.report.after.bad, after.too_long), (0, 0));
@@ -152,7 +152,7 @@ fn a_surface_that_is_kept_is_kept_to_the_bit() {
     for (n, size) in [(4, 0.12), (10, 0.4)] {
         let mesh = cube(n);
         let outcome =
-            remesh(&mesh, &asked(Sizes::Uniform(size), SurfaceRule::Keep), &Threads::single()).unwrap();
+            remesh(&mesh, &options_for(Sizes::Uniform(size), SurfaceRule::Keep), &Threads::single()).unwrap();
         let after = tell("kept", &outcome);
         assert_kept(&mesh, &outcome, |_| size);
         assert_eq!(boundary(&outcome.extract.mesh), boundary(&mesh));
@@ -169,27 +169,29 @@ proptest! {
     fn any_mesh_keeps_every_invariant(seed in any::<u64>(), n in 10usize..40, size in 0.2f64..1.0, adapt in any::<bool>()) {
         let mesh = random_mesh(n, seed);
         let surface = if adapt { ADAPT } else { SurfaceRule::Keep };
-        let outcome = remesh(&mesh, &asked(Sizes::Uniform(size), surface), &Threads::single()).unwrap();
+        let outcome = remesh(&mesh, &options_for(Sizes::Uniform(size), surface), &Threads::single()).unwrap();
         Complex::new(&outcome.extract.mesh).unwrap().verify().map_err(TestCaseError::fail)?;
         prop_assert!(quality(&outcome.extract.mesh).inverted == 0);
-        let again = remesh(&mesh, &asked(Sizes::Uniform(size), surface), &Threads::single()).unwrap();
+        let again = remesh(&mesh, &options_for(Sizes::Uniform(size), surface), &Threads::single()).unwrap();
         prop_assert_eq!(again.extract.mesh, outcome.extract.mesh);
     }
 }
 
 #[test]
-fn what_is_no_size_is_told_with_its_place() {
+fn what_is_no_size_is_reported_with_its_place() {
     let mesh = cube(2);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let error = remesh(&mesh, &asked(Sizes::Uniform(bad), ADAPT), &Threads::single()).unwrap_err();
+        let error = remesh(&mesh, &options_for(Sizes::Uniform(bad), ADAPT), &Threads::single()).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Options);
         assert!(error.remedy_text().is_some());
         let mut sizes = vec![0.5; mesh.points.len()];
         sizes[17] = bad;
-        let error = remesh(&mesh, &asked(Sizes::Vertices(sizes), ADAPT), &Threads::single()).unwrap_err();
+        let error =
+            remesh(&mesh, &options_for(Sizes::Vertices(sizes), ADAPT), &Threads::single()).unwrap_err();
         assert_eq!((error.kind(), error.place()), (ErrorKind::Input, Some("point 17")));
     }
-    let error = remesh(&mesh, &asked(Sizes::Vertices(vec![0.5; 3]), ADAPT), &Threads::single()).unwrap_err();
+    let error =
+        remesh(&mesh, &options_for(Sizes::Vertices(vec![0.5; 3]), ADAPT), &Threads::single()).unwrap_err();
     assert!(error.to_string().starts_with("3 sizes for 27 points"), "{error}");
 }
 
@@ -197,7 +199,7 @@ fn what_is_no_size_is_told_with_its_place() {
 fn sizes_that_no_memory_can_hold_are_refused_at_once() {
     let mesh = cube(2);
     for size in [1e-3, 1e-9, 1e-200, f64::MIN_POSITIVE] {
-        let error = remesh(&mesh, &asked(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap_err();
+        let error = remesh(&mesh, &options_for(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap_err();
         println!("{error}");
         assert_eq!(error.kind(), ErrorKind::Input);
         assert!(error.what().contains("at most 1.0e7"));
@@ -214,7 +216,7 @@ fn real_meshes_come_to_their_sizes() {
         let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
         for part in [0.75, 2.0] {
             let outcome =
-                remesh(&mesh, &asked(Sizes::Uniform(part * mean), ADAPT), &Threads::single()).unwrap();
+                remesh(&mesh, &options_for(Sizes::Uniform(part * mean), ADAPT), &Threads::single()).unwrap();
             let after = tell(&format!("{name} to {part}"), &outcome);
             assert_valid(&outcome.extract.mesh);
             assert_eq!(after.too_long, after.too_long_held);
@@ -234,7 +236,7 @@ fn prisms_of_long_flat_tets_come_to_their_sizes() {
         let coarse = fill(&surfaces, &preflight, &meshing::Options::default(), &threads).unwrap().mesh;
         let part = TetPart::of(&coarse).unwrap();
         let rule = SurfaceRule::Adapt { distance: Some(0.01) };
-        let outcome = remesh(&part.mesh, &asked(Sizes::Uniform(0.3), rule), &threads).unwrap();
+        let outcome = remesh(&part.mesh, &options_for(Sizes::Uniform(0.3), rule), &threads).unwrap();
         let what = format!("prism of {sides} sides, turned: {lies}");
         let after = tell(&what, &outcome);
         assert_valid(&outcome.extract.mesh);
@@ -256,7 +258,8 @@ fn mean_eas(mesh: &TetMesh) -> f64 {
 fn tets_of_new_sizes_are_good_on_the_whole_and_edges_about_as_long_as_requested() {
     // Finer sizes; coarsened meshes have a mean EAS of about 0.6 with so few tets.
     for (n, size) in [(4, 0.1), (4, 0.07)] {
-        let outcome = remesh(&cube(n), &asked(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap();
+        let outcome =
+            remesh(&cube(n), &options_for(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap();
         let after = tell(&format!("cube of {n} to {size}"), &outcome);
         let mean = mean_eas(&outcome.extract.mesh);
         println!("    mean EAS {mean:.3}");
@@ -272,7 +275,7 @@ fn tets_of_new_sizes_are_good_on_the_whole_and_edges_about_as_long_as_requested(
 
 #[test]
 fn sizes_requested_again_and_again_change_nothing_more() {
-    let options = asked(Sizes::Uniform(0.17), ADAPT);
+    let options = options_for(Sizes::Uniform(0.17), ADAPT);
     let mut mesh = cube(9);
     let mut counts = Vec::new();
     for _ in 0..20 {

@@ -83,7 +83,7 @@ fn try_methods(threads: &Threads) -> Result<()> {
 }
 
 #[test]
-fn what_is_told_to_stop_stops_and_says_where() {
+fn what_is_reported_to_stop_stops_and_says_where() {
     for &(stage, verb) in VERBS {
         let watch = Watch::new();
         watch.stop();

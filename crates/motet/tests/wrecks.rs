@@ -36,7 +36,7 @@ fn a_positive_tet_with_a_wrong_vertex_leaves_no_facet_with_three_tets() {
 
 /// Most tets are inverted, and hardly any can be repaired: the repair ends, and counts them.
 #[test]
-fn a_box_shaken_beyond_repair_is_told() {
+fn a_box_shaken_beyond_repair_is_reported() {
     for part in [1.5, 3.0] {
         let end = Wreck::shaken_box(2, 6, part).end(SurfaceRule::Keep);
         assert_eq!(end, Ok(Ending::Reported));

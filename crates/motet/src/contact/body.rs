@@ -14,9 +14,9 @@ use crate::spatial::NearestTriangle;
 /// many.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Body {
-    /// Its name in reports.
+    /// The name of the body in reports.
     pub name: String,
-    /// Its triangles; those of a closed surface are all counter-clockwise seen from outside, or all
+    /// The triangles of the body; those of a closed surface are all counter-clockwise seen from outside, or all
     /// clockwise.
     pub triangles: Vec<[VertexId; 3]>,
     /// Whether it is the wall of a room, such as a vessel, that contains others. Detected by default.
@@ -86,7 +86,7 @@ pub(super) struct PreparedBody {
     /// The triangles of the body with joined ids: vertices that are one at a seam share theirs.
     pub(super) joined: Vec<[VertexId; 3]>,
     pub(super) is_closed: bool,
-    /// Its vertices, in ascending order.
+    /// The vertices of the body, in ascending order.
     pub(super) vertices: Vec<VertexId>,
     /// The joined id of each vertex.
     pub(super) ids: Vec<VertexId>,

@@ -29,7 +29,7 @@ pub(super) struct Devices {
 pub(super) struct OwnTet {
     pub(super) vertices: [VertexId; 4],
     pub(super) device: u32,
-    /// Its region, as an index into the names of its device in [`Devices::region_names`].
+    /// The region of the tet, as an index into the names of its device in [`Devices::region_names`].
     pub(super) region: u32,
 }
 

@@ -11,8 +11,8 @@ use crate::remesh;
 /// A device: a closed surface, or a mesh of tets.
 #[derive(Clone, Debug)]
 pub struct Device {
-    /// Its mesh: the surface cells, or the boundary of the volume cells if there are none or the tets are
-    /// kept.
+    /// The mesh of the device: the surface cells, or the boundary of the volume cells if there are none or
+    /// the tets are kept.
     pub mesh: Mesh,
     /// The name of its region and its patch.
     pub name: String,

@@ -48,7 +48,7 @@ impl Fit {
 /// What became of a device.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct DeviceReport {
-    /// Its name.
+    /// The name of the device.
     pub name: String,
     /// The regions of the tets in it: one, or those of the tets that it keeps; none if it is hollow.
     pub regions: Vec<i32>,

@@ -78,11 +78,13 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
 
 /// Converts an error of the library, without its list of expected tokens.
 fn parse_error(error: ParseError) -> Error {
-    let told = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-    let told = told.split(" Error: ParseError {").next().unwrap_or_default();
-    let told =
-        told.strip_prefix("Line ").and_then(|rest| rest.split_once(": ")).map_or(told, |(_, what)| what);
-    let what: String = told.chars().take(MAX_MESSAGE_LENGTH).collect();
+    let reported = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    let reported = reported.split(" Error: ParseError {").next().unwrap_or_default();
+    let reported = reported
+        .strip_prefix("Line ")
+        .and_then(|rest| rest.split_once(": "))
+        .map_or(reported, |(_, what)| what);
+    let what: String = reported.chars().take(MAX_MESSAGE_LENGTH).collect();
     let found = Error::input(what).remedy("the file is cut off, damaged or no PLY: get it again");
     match error.line() {
         Some(line) => found.at(format!("line {line}")),
@@ -242,9 +244,11 @@ fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let is_written =
         |field: &&Field| type_of(&field.values).is_some() && !(is_text && has_non_finite(&field.values));
     for (what, fields) in [("point", &mesh.point_data), ("cell", &mesh.cell_data)] {
-        let told = lost_arrays("PLY", what, fields.iter().filter(|field| !is_written(field)));
+        let reported = lost_arrays("PLY", what, fields.iter().filter(|field| !is_written(field)));
         lost.extend(
-            told.map(|told| format!("{told} (texts, 64-bit whole numbers, in text what is not finite)")),
+            reported.map(|reported| {
+                format!("{reported} (texts, 64-bit whole numbers, in text what is not finite)")
+            }),
         );
         let renamed = fields.iter().filter(is_written).filter(|field| name_of(field) != field.name);
         lost.extend(
@@ -402,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn what_text_cannot_hold_is_told_and_bytes_hold_it() {
+    fn what_text_cannot_hold_is_reported_and_bytes_hold_it() {
         let mut mesh = full();
         let n = mesh.cells.len();
         mesh.set_cell_field(Field::scalars("odd name", vec![f64::INFINITY; n]));
@@ -447,7 +451,7 @@ mod tests {
         let head = |rest: &str| format!("ply\nformat ascii 1.0\n{rest}");
         let xyz = "property float x\nproperty float y\nproperty float z\n";
         let face = "property list uchar int vertex_indices\n";
-        for (text, told) in [
+        for (text, reported) in [
             ("plx\n".to_owned(), "line 1: Expected magic number 'ply'"),
             ("ply\nelement vertex 1\nend_header\n".into(), "No format line"),
             ("ply\nformat utf8 1.0\n".into(), "line 2: Couldn't parse line. String: 'format utf8 1.0"),
@@ -485,7 +489,7 @@ mod tests {
             (head("element vertex"), "line 3"),
         ] {
             let error = parse(text.as_bytes()).0.unwrap_err().to_string();
-            assert!(error.contains(told), "{text}: {error}");
+            assert!(error.contains(reported), "{text}: {error}");
         }
         // A file truncated at any point is rejected.
         let written = write(&full(), &WriteOptions::default()).unwrap().files.remove(0).1;

@@ -22,7 +22,7 @@ pub(super) fn read_file(format: &Format, path: &Path, notes: &Notes) -> Result<M
 /// Reads `input` in the given format.
 ///
 /// # Errors
-/// The same as for [`read`](super::read).
+/// The errors of [`read`](super::read).
 pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
     let Some(read) = format.read else {
         return Err(Error::new(ErrorKind::Input, format!("{} files can only be written", format.name))

@@ -142,7 +142,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh> {
 /// Reads like [`read`], and also returns notes on what the reader skipped, each a message for the user.
 ///
 /// # Errors
-/// The same as for [`read`].
+/// The errors of [`read`].
 pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     let path = path.as_ref();
     let notes = Notes::default();

@@ -28,7 +28,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<Vec<String>> {
 /// Writes all files beside their targets, then renames them all: if one cannot be written, none is changed.
 ///
 /// # Errors
-/// The same as for [`replace`].
+/// The errors of [`replace`].
 pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<Vec<String>> {
     let written: Vec<(&Path, Draft)> = files
         .iter()

@@ -57,7 +57,7 @@ pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
 /// Parses the content of a series file like [`read_series`]; names are returned as stored.
 ///
 /// # Errors
-/// The same as for [`read_series`], except for those of reading the file.
+/// The errors of [`read_series`], but for those of reading the file.
 pub fn parse_series(bytes: &[u8]) -> Result<Vec<(f64, String)>> {
     let mut reader = Reader::from_reader(bytes);
     let mut is_series = false;
@@ -120,7 +120,7 @@ fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
 /// Returns what the format could not hold.
 ///
 /// # Errors
-/// Those of the frames; those of [`write()`]; if the extension is not that of a series.
+/// The errors of reading the frames and of [`write()`]; if the extension is not that of a series.
 pub fn write_series(
     path: impl AsRef<Path>,
     frames: impl IntoIterator<Item = Result<(f64, Mesh)>>,
@@ -211,7 +211,7 @@ impl SeriesWriter {
     /// Returns the file of the frame, and what the format could not hold.
     ///
     /// # Errors
-    /// Those of [`write()`]; if another writer is writing this series.
+    /// The errors of [`write()`]; if another writer is writing this series.
     pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<(PathBuf, Vec<String>)> {
         self.lock()?;
         let k = self.frames.len();

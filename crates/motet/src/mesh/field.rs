@@ -143,7 +143,7 @@ impl Values {
 /// A named array of `n` rows of `components` values each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// Its name, as shown to users.
+    /// The name of the field, as shown to users.
     pub name: String,
     /// Number of values in a row: 1 for a scalar, 3 for a vector, 9 for a tensor.
     pub components: usize,

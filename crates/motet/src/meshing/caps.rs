@@ -102,7 +102,7 @@ impl Caps {
     /// off.
     ///
     /// # Errors
-    /// As for [`Self::planes`]; also when a triangle at a rim would turn over or lose its area.
+    /// The errors of [`Self::planes`]; also when a triangle at a rim would turn over or lose its area.
     pub fn flatten(&self, frame: &Mesh) -> Result<(Mesh, Vec<RimPlane>)> {
         self.check(frame)?;
         let mut flat = frame.clone();

@@ -43,7 +43,7 @@ impl fmt::Display for Coarse {
 /// Edge lengths inside, in units of the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sizes {
-    /// The same everywhere.
+    /// One size everywhere.
     Uniform(f64),
     /// Given at the surface, growing from there.
     Graded(Grading),

@@ -31,7 +31,7 @@ impl Mover {
     /// move at all from a start that has such cells.
     ///
     /// # Errors
-    /// Those of [`Self::step`]; the next call then begins where this one began. A motion that cannot be
+    /// The errors of [`Self::step`]; the next call then begins where this one began. A motion that cannot be
     /// completed is no error: see [`Certificate::complete`].
     pub fn advance(
         &mut self,
@@ -261,7 +261,7 @@ impl<'a> SubstepPath<'a> {
 /// some part and not beyond; 0 where it never does.
 ///
 /// # Errors
-/// Those of `holds`.
+/// The errors of `holds`.
 fn largest_fraction(mut holds: impl FnMut(f64) -> Result<bool>) -> Result<f64> {
     if holds(1.0)? {
         return Ok(1.0);

@@ -97,7 +97,7 @@ impl BoundaryMotion {
     /// Makes `vertices` follow `motion`, unless they have an earlier order.
     ///
     /// # Errors
-    /// Those of [`Prescribed::check`].
+    /// The errors of [`Prescribed::check`].
     pub fn follow(&mut self, vertices: &[VertexId], motion: Prescribed) -> Result<Taken> {
         motion.check()?;
         self.motions.push(motion);

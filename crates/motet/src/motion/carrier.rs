@@ -97,12 +97,12 @@ mod tests {
     }
 
     #[test]
-    fn a_place_that_is_none_is_told() {
+    fn a_place_that_is_none_is_reported() {
         let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let places = [[0.0; 3], [f64::NAN, 0.0, 0.0]];
         let triangles = [[0, 1, 2].map(VertexId)];
-        let told = SurfaceCarrier::new(&points, &triangles, &places, &Threads::single()).unwrap_err();
-        assert!(told.to_string().starts_with("point 1"));
+        let reported = SurfaceCarrier::new(&points, &triangles, &places, &Threads::single()).unwrap_err();
+        assert!(reported.to_string().starts_with("point 1"));
         assert!(SurfaceCarrier::new(&points, &[], &places, &Threads::single()).is_err());
     }
 }

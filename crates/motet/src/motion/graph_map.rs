@@ -8,7 +8,7 @@ use crate::motion::walls::AddedPoints;
 /// How vertices depend on the nodes of the graph.
 #[derive(Debug, Default)]
 pub(crate) struct GraphMap {
-    /// Its nodes are followed by the points that the graph added.
+    /// The weights of each vertex; the nodes are followed by the points that the graph added.
     pub(crate) table: WeightTable,
     pub(crate) added: Option<Box<AddedPoints>>,
 }

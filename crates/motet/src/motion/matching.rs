@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn points_that_lie_nowhere_are_counted_and_the_first_is_told() {
+    fn points_that_lie_nowhere_are_counted_and_the_first_is_reported() {
         let (mut s, _) = surface([0.0; 3]);
         s.points[3][1] += 0.25;
         s.points[7][2] -= 0.5;

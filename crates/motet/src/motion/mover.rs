@@ -290,7 +290,7 @@ impl Mover {
     /// without the check for inverted cells.
     ///
     /// # Errors
-    /// Those of [`Self::step`].
+    /// The errors of [`Self::step`].
     pub fn rebuild_and_step(
         &self,
         displacement: &[Point],

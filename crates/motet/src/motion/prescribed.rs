@@ -29,7 +29,7 @@ pub enum Prescribed {
         /// The direction in which it bends; only the part at right angles to `along` counts, and must not be
         /// zero.
         towards: Point,
-        /// Its length, in the unit of the points.
+        /// The length of the sheet, in the unit of the points.
         length: f64,
         /// The angle by which its end turns, in radians.
         angle: f64,

@@ -64,7 +64,7 @@ impl MovingMesh {
     /// Takes over a mesh with its walls undisplaced, at time 0.
     ///
     /// # Errors
-    /// As for [`Mover::new`], and if a watched patch does not exist.
+    /// The errors of [`Mover::new`], and if a watched patch does not exist.
     pub fn new(mesh: &Mesh, options: Options, threads: &Threads) -> Result<Self> {
         options.check()?;
         let mover = Mover::new(mesh, &options.motion.of(mesh), threads)?;
@@ -352,7 +352,7 @@ impl MovingMesh {
     /// divisions are also undone [by lengths](Self::coarsen).
     ///
     /// # Errors
-    /// As for [`MeshRefinement::reach`]. Then everything is as before the call.
+    /// The errors of [`MeshRefinement::reach`]. Then everything is as before the call.
     pub fn refine(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Vec<Change>> {
         let mut changes: Vec<Change> = self.divide(wanted, threads)?.into_iter().collect();
         let is_gap =

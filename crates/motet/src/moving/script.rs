@@ -125,7 +125,7 @@ impl Script {
     /// Lets these vertices follow a motion of space; returns how many of them were not named before.
     ///
     /// # Errors
-    /// As for [`Prescribed::check`] and [`InTime::check`].
+    /// The errors of [`Prescribed::check`] and [`InTime::check`].
     pub fn follow(&mut self, vertices: &[VertexId], motion: Prescribed, in_time: InTime) -> Result<usize> {
         motion.check()?;
         in_time.check()?;
@@ -136,7 +136,7 @@ impl Script {
     /// many of them were not named before.
     ///
     /// # Errors
-    /// As for [`InTime::check`], and if `by` does not have one displacement per vertex.
+    /// The errors of [`InTime::check`], and if `by` does not have one displacement per vertex.
     pub fn go(&mut self, vertices: &[VertexId], by: Vec<Point>, in_time: InTime) -> Result<usize> {
         in_time.check()?;
         check_rows(&by, vertices)?;

@@ -42,7 +42,7 @@ impl MovingMesh {
     /// [`Self::remembers`] none of them.
     ///
     /// # Errors
-    /// As for [`io::write`].
+    /// The errors of [`io::write`].
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let Current { mesh, mover, records, left, .. } = &self.now;
         let clock = self.clock;

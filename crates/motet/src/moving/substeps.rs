@@ -294,7 +294,7 @@ impl StepRun<'_> {
         self.points.iter().zip(ways).map(|(&to, way)| add(to, scale(way, part))).collect()
     }
 
-    /// The same mesh, with the positions in [`Self::points`] as its new reference.
+    /// The mesh of the step, with the positions in [`Self::points`] as its new reference.
     fn rebased(&mut self, now: &Current, before: &[Point], left: Vec<LeftBad>) -> Result<Current> {
         let begin = Instant::now();
         let mesh = now.moved(&self.points, &self.options.contents);

@@ -8,7 +8,7 @@ use crate::base::VertexId;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Side {
     pub(super) surface: u32,
-    /// Its ends, in rising order.
+    /// The ends of the edge, in rising order.
     pub(super) edge: [VertexId; 2],
     pub(super) triangle: u32,
     /// Which corner of the triangle it starts at.

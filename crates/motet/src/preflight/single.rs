@@ -15,7 +15,7 @@ pub(super) enum Shape {
     NotFinite,
     /// It names a vertex twice.
     Repeated,
-    /// Its corners lie on a line.
+    /// The corners of the triangle lie on a line.
     Flat,
 }
 

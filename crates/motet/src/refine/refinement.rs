@@ -64,7 +64,7 @@ pub struct Summary {
 pub struct Left {
     /// The tet, as numbered in the mesh.
     pub tet: TetId,
-    /// Its EAS in the reference.
+    /// The EAS of the tet in the reference.
     pub eas: f64,
     /// The tet of the first mesh that it lies in.
     pub root: TetId,

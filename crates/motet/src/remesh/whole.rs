@@ -46,7 +46,7 @@ pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Thre
 /// and edges can be fixed than those at other cells.
 ///
 /// # Errors
-/// As for [`remesh_mesh`].
+/// The errors of [`remesh_mesh`].
 pub fn remesh_part(
     mesh: &Mesh,
     part: &TetPart,

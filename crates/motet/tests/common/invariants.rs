@@ -145,13 +145,13 @@ impl First {
             roots: BTreeSet::new(),
             broken: self.broken(mesh),
         };
-        let mut n_told = 0;
+        let mut n_reported = 0;
         for left in refinement.left(threads).iter().filter(|left| left.eas < least) {
             kept.roots.insert(left.root.0);
-            n_told += 1;
+            n_reported += 1;
         }
-        if n_told != kept.quality.n_below {
-            kept.broken.push(format!("{} tets are bad, {n_told} are told", kept.quality.n_below));
+        if n_reported != kept.quality.n_below {
+            kept.broken.push(format!("{} tets are bad, {n_reported} are told", kept.quality.n_below));
         }
         kept
     }

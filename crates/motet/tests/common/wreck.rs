@@ -88,10 +88,10 @@ impl Wreck {
             Err(error) if error.place().is_some() => return Ok(Ending::Refused),
             Err(error) => return Err(format!("refused without a place: {error}")),
         };
-        let (new, told) = (&outcome.extract.mesh, outcome.report.after.inverted);
+        let (new, reported) = (&outcome.extract.mesh, outcome.report.after.inverted);
         let n_wrong = sound_connectivity(new)?;
-        if n_wrong > 0 || told > 0 {
-            return if told > 0 {
+        if n_wrong > 0 || reported > 0 {
+            return if reported > 0 {
                 Ok(Ending::Reported)
             } else {
                 Err(format!(

@@ -119,18 +119,18 @@ pub(crate) fn faults(
     roles: &[Role],
 ) -> Vec<FaultKey> {
     let scene = Scene { points, triangles, surface_of, roles };
-    let mut told = scene.single();
-    told.extend(scene.meeting());
+    let mut reported = scene.single();
+    reported.extend(scene.meeting());
     for surface in 0..roles.len() as u32 {
-        told.extend(scene.edges(surface));
-        told.extend(scene.pinched(surface));
-        told.extend(scene.inward(surface));
+        reported.extend(scene.edges(surface));
+        reported.extend(scene.pinched(surface));
+        reported.extend(scene.inward(surface));
         if !surface_of.contains(&surface) {
-            told.push((FaultKind::EmptySurface, true, surface, vec![], vec![]));
+            reported.push((FaultKind::EmptySurface, true, surface, vec![], vec![]));
         }
     }
-    told.sort_by(|x, y| (x.0, &x.3, &x.4, x.2).cmp(&(y.0, &y.3, &y.4, y.2)));
-    told
+    reported.sort_by(|x, y| (x.0, &x.3, &x.4, x.2).cmp(&(y.0, &y.3, &y.4, y.2)));
+    reported
 }
 
 impl Scene<'_> {
@@ -166,27 +166,27 @@ impl Scene<'_> {
     }
 
     fn single(&self) -> Vec<FaultKey> {
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for t in self.ids() {
-            let mut tell = |kind, is_fatal, triangles: &[usize]| {
+            let mut add_fault = |kind, is_fatal, triangles: &[usize]| {
                 let triangles = triangles.iter().map(|&t| t as u32).collect();
-                told.push((kind, is_fatal, self.surface_of[t], triangles, self.triangles[t].to_vec()));
+                reported.push((kind, is_fatal, self.surface_of[t], triangles, self.triangles[t].to_vec()));
             };
             if !self.has_three(t) {
-                tell(FaultKind::RepeatedVertex, true, &[t]);
+                add_fault(FaultKind::RepeatedVertex, true, &[t]);
                 continue;
             }
             if is_flat(self.points, &self.triangles[t]) {
-                tell(FaultKind::ZeroArea, true, &[t]);
+                add_fault(FaultKind::ZeroArea, true, &[t]);
             }
             let (own, first) = (self.first(t, true), self.first(t, false));
             if own != t {
-                tell(FaultKind::Duplicate, true, &[own, t]);
+                add_fault(FaultKind::Duplicate, true, &[own, t]);
             } else if first != t {
-                tell(FaultKind::SharedFacet, false, &[first, t]);
+                add_fault(FaultKind::SharedFacet, false, &[first, t]);
             }
         }
-        told
+        reported
     }
 
     fn meeting(&self) -> Vec<FaultKey> {
@@ -194,18 +194,18 @@ impl Scene<'_> {
             self.has_three(*t) && !is_flat(self.points, &self.triangles[*t]) && self.first(*t, false) == *t
         };
         let sound: Vec<usize> = self.ids().filter(counts).collect();
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for (k, &i) in sound.iter().enumerate() {
             for &j in &sound[k + 1..] {
                 let (a, b) = (&self.triangles[i], &self.triangles[j]);
                 if crosses(self.points, a, b) {
                     let shared = a.iter().copied().filter(|v| b.contains(v)).collect();
                     let triangles = vec![i as u32, j as u32];
-                    told.push((FaultKind::Crossing, true, self.surface_of[i], triangles, shared));
+                    reported.push((FaultKind::Crossing, true, self.surface_of[i], triangles, shared));
                 }
             }
         }
-        told
+        reported
     }
 
     /// The triangles at each edge of a surface, with the direction in which each runs along it.
@@ -223,7 +223,7 @@ impl Scene<'_> {
 
     fn edges(&self, surface: u32) -> Vec<FaultKey> {
         let is_boundary = self.roles[surface as usize] == Role::Boundary;
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for (edge, same) in self.around(surface) {
             let (kind, is_fatal) = match same.len() {
                 1 => (FaultKind::OpenEdge, is_boundary),
@@ -231,9 +231,9 @@ impl Scene<'_> {
                 2 => continue,
                 _ => (FaultKind::NonManifoldEdge, false),
             };
-            told.push((kind, is_fatal, surface, same.iter().map(|x| x.0).collect(), edge.to_vec()));
+            reported.push((kind, is_fatal, surface, same.iter().map(|x| x.0).collect(), edge.to_vec()));
         }
-        told
+        reported
     }
 
     /// Connected sets, each sorted; by merging until nothing changes.
@@ -257,7 +257,7 @@ impl Scene<'_> {
     fn pinched(&self, surface: u32) -> Vec<FaultKey> {
         let around = self.around(surface);
         let vertices: BTreeSet<VertexId> = around.keys().flatten().copied().collect();
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for v in vertices {
             let at_v: Vec<&Vec<(u32, bool)>> =
                 around.iter().filter(|(edge, _)| edge.contains(&v)).map(|x| x.1).collect();
@@ -266,10 +266,10 @@ impl Scene<'_> {
             let fans = Self::joined(things, &pairs);
             if fans.len() > 1 {
                 let firsts = fans.iter().map(|fan| fan[0]).collect();
-                told.push((FaultKind::NonManifoldVertex, false, surface, firsts, vec![v]));
+                reported.push((FaultKind::NonManifoldVertex, false, surface, firsts, vec![v]));
             }
         }
-        told
+        reported
     }
 
     fn inward(&self, surface: u32) -> Vec<FaultKey> {
@@ -277,7 +277,7 @@ impl Scene<'_> {
         let things = around.values().flatten().map(|x| x.0).collect();
         let manifold = around.values().filter(|same| same.len() == 2);
         let pairs: Vec<_> = manifold.map(|same| (same[0].0, same[1].0)).collect();
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for part in Self::joined(things, &pairs) {
             let is_balanced = |same: &Vec<(u32, bool)>| {
                 let own = same.iter().filter(|x| part.contains(&x.0));
@@ -292,9 +292,9 @@ impl Scene<'_> {
                 .sum();
             if around.values().all(is_balanced) && volume.is_negative() {
                 let vertices = self.triangles[part[0] as usize].to_vec();
-                told.push((FaultKind::InwardPart, false, surface, vec![part[0]], vertices));
+                reported.push((FaultKind::InwardPart, false, surface, vec![part[0]], vertices));
             }
         }
-        told
+        reported
     }
 }

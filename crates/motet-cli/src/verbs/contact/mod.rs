@@ -134,8 +134,8 @@ fn by_delaunay(
             ));
         }
     }
-    let is_asked = args.method == Method::Delaunay;
-    Ok(is_asked.then(|| delaunay::replace(gaps, &between, seconds, args.warn)))
+    let is_requested = args.method == Method::Delaunay;
+    Ok(is_requested.then(|| delaunay::replace(gaps, &between, seconds, args.warn)))
 }
 
 /// Looks ahead by velocities where given, otherwise to the next frame where it fits.

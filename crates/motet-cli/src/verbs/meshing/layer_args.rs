@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_off_is_told() {
+    fn what_is_off_is_reported() {
         for (text, part) in [
             ("5,0.02", "3 numbers"),
             ("=5,0.02,1", "expected"),

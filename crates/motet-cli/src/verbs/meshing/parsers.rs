@@ -49,7 +49,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_off_is_told() {
+    fn what_is_off_is_reported() {
         for text in ["0", "-1", "nan", "inf", "", "Auto"] {
             assert!(size(text).unwrap_err().contains("or auto"), "{text}");
         }

@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_off_is_told() {
+    fn what_is_off_is_reported() {
         for (text, part) in
             [("wall", "PATCH="), ("wall=1,2", "3 numbers"), ("wall=1,2,x", "`x`"), ("w=1,2,nan", "finite")]
         {

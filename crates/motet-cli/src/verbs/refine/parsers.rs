@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_off_is_told() {
+    fn what_is_off_is_reported() {
         let refusal = |criterion: Result<Criterion, String>| criterion.unwrap_err();
         assert!(near("stent.stl").unwrap_err().contains("SURFACE=DISTANCE"));
         assert!(near("stent.stl=-1").unwrap_err().contains("0 or more"));

@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_off_is_told() {
+    fn what_is_off_is_reported() {
         for text in ["0", "1", "-0.2", "nan", "x"] {
             assert!(eas(text).is_err(), "{text}");
         }

@@ -66,7 +66,7 @@ impl Part {
         self.has().count() == 1
     }
 
-    /// Those of the tet's edges or facets that belong to this body and are features of its surface.
+    /// The edges or facets of the tet that belong to this body and are features of its surface.
     fn real<'a, const N: usize>(
         &'a self,
         all: &'a [[usize; N]],

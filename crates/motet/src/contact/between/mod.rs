@@ -66,7 +66,7 @@ pub struct GapTet {
     /// the lone vertex of a three-one; not oriented. In a [`GapKind::Flat`] one the last is [`Id::NONE`], or
     /// the last two are.
     pub vertices: [VertexId; 4],
-    /// Its kind.
+    /// Which vertices of the tet belong to which bodies.
     pub kind: GapKind,
     /// The two bodies that come nearest in it, the smaller first.
     pub bodies: [u32; 2],

@@ -105,18 +105,18 @@ impl<'a> Edges<'a> {
         while let Some(piece) = queue.pop_front() {
             order.watch.report_and_check("recovering edges of the surface", n_made, n_made + queue.len())?;
             n_made += 1;
-            let mut spare = None;
+            let mut n_neutral = None;
             while self.way.find(self.tets, self.sites, piece) {
                 let n = self.way.facets.len();
-                let spare = spare.get_or_insert(if n > MAX_FACETS_FOR_NEUTRAL { 0 } else { 2 * n });
+                let n_neutral = n_neutral.get_or_insert(if n > MAX_FACETS_FOR_NEUTRAL { 0 } else { 2 * n });
                 if self.swap(piece, 0, 0) {
                     continue;
                 }
-                if *spare == 0 || !self.swap(piece, 1, *spare) {
+                if *n_neutral == 0 || !self.swap(piece, 1, *n_neutral) {
                     queue.extend(self.divide(piece)?);
                     break;
                 }
-                *spare -= 1;
+                *n_neutral -= 1;
             }
         }
         Ok(())
@@ -125,7 +125,7 @@ impl<'a> Edges<'a> {
     /// Makes swaps after which the piece meets fewer facets; or, where `spare` is 1, the first possible swap
     /// from the facet `from` on after which it meets no more than before. Returns whether anything was
     /// swapped.
-    fn swap(&mut self, piece: [VertexId; 2], spare: u32, from: usize) -> bool {
+    fn swap(&mut self, piece: [VertexId; 2], n_neutral: u32, from: usize) -> bool {
         let missing = Missing { sites: self.sites, segments: self.segments, piece };
         self.tried.clear();
         let faces: Vec<_> = self.way.facets.iter().map(|&half| (half, self.tets.inward(half))).collect();
@@ -145,8 +145,8 @@ impl<'a> Edges<'a> {
                     continue;
                 }
                 self.tried.push(edge);
-                if self.swap.remove(self.tets, self.sites, edge, half.tet(), &missing, spare) {
-                    if spare > 0 {
+                if self.swap.remove(self.tets, self.sites, edge, half.tet(), &missing, n_neutral) {
+                    if n_neutral > 0 {
                         return true;
                     }
                     has_swapped = true;

@@ -9,9 +9,9 @@ use crate::base::{Csr, VertexId};
 pub(super) enum Merge {
     /// None.
     None,
-    /// Those exactly in its plane.
+    /// Neighbours exactly in the plane of the triangle.
     Exact,
-    /// Those that may have been in its plane before coordinates were rounded.
+    /// Neighbours that may have been in the plane of the triangle before coordinates were rounded.
     Rounded,
 }
 

@@ -32,7 +32,7 @@ impl SurfaceRepair<'_> {
                 net.edges().into_iter().filter(|&e| self.plane(flat as u32).cross(edge, e)).collect()
             };
             let mut left = 4 * crossing.len() * crossing.len() + 16;
-            let mut n_in_vain = 0;
+            let mut n_failed = 0;
             while let Some([a, b]) = crossing.pop_front() {
                 let Some([(s, p), (t, q)]) = net.sides([a, b]) else { continue };
                 left -= 1;
@@ -44,14 +44,14 @@ impl SurfaceRepair<'_> {
                     continue;
                 }
                 if self.flip(flat as u32, [a, b], [p, q]).is_none() {
-                    n_in_vain += 1;
-                    if n_in_vain > crossing.len() {
+                    n_failed += 1;
+                    if n_failed > crossing.len() {
                         return None;
                     }
                     crossing.push_back([a, b]);
                     continue;
                 }
-                n_in_vain = 0;
+                n_failed = 0;
                 net.flip(list, [a, b], [(s, p), (t, q)]);
                 if self.plane(flat as u32).cross(edge, [p, q]) {
                     crossing.push_back([p, q]);

@@ -58,7 +58,7 @@ impl Swap {
         edge: [VertexId; 2],
         first: TetId,
         wanted: &impl Target,
-        spare: u32,
+        n_neutral: u32,
     ) -> bool {
         let [u, v] = edge;
         if wanted.has_edge(edge)
@@ -70,7 +70,7 @@ impl Swap {
         let facets = self.around.iter().map(|&w| wanted.meets_facet([u, v, w]));
         let now = wanted.meets_edge(edge) + facets.sum::<u32>();
         let n = self.around.len();
-        self.plan(sites, edge, now + spare, wanted);
+        self.plan(sites, edge, now + n_neutral, wanted);
         if self.best[n - 1].is_none() {
             return false;
         }

@@ -185,12 +185,12 @@ mod tests {
             }
             for cut in &domain.cuts {
                 let [a, b] = cut.ends;
-                for (half, kept, gone) in
+                for (half, kept, dropped) in
                     cut.halves(&coefficients).into_iter().zip([(a, b), (b, a)]).map(|(h, (k, g))| (h, k, g))
                 {
                     let mut in_whole = at;
-                    in_whole[kept] = at[kept] + 0.5 * at[gone];
-                    in_whole[gone] = 0.5 * at[gone];
+                    in_whole[kept] = at[kept] + 0.5 * at[dropped];
+                    in_whole[dropped] = 0.5 * at[dropped];
                     let (x, y) = (value(&half, &at), value(&coefficients, &in_whole));
                     assert!((x - y).abs() < 1e-12 * y.abs().max(1.0), "{factors:?} {a} {b}");
                 }

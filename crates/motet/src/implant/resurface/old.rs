@@ -82,7 +82,7 @@ impl OriginalSurface {
 
     /// The winding number at each vertex.
     ///
-    /// That of a closed surface changes only across triangles. No triangle is in the ball around a vertex
+    /// The winding number of a closed surface changes only across triangles. No triangle is in the ball around a vertex
     /// that reaches to the nearest one; so where the balls at the two ends of an edge overlap, both have the
     /// same number. It is computed for only one vertex of each part connected in this way: for the lattice of
     /// the public coil, 1 in 20.

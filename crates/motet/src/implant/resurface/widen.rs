@@ -141,7 +141,7 @@ impl Widening<'_> {
     }
 
     /// Whether nothing held changes, no triangle turns away, and all new triangles are near the old surface.
-    /// Those that close a hole are not, and stay as they are.
+    /// Triangles that close a hole are not, and stay as they are.
     fn is_allowed(&self, change: &Change) -> bool {
         let of = |t: &u32| self.sheet.triangles[*t as usize];
         if change.removed.iter().flat_map(of).any(|v| self.is_held[v.index()])

@@ -311,7 +311,7 @@ fn files_within_files_without_end_are_refused() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line() {
+fn what_is_wrong_is_reported_with_its_line() {
     for (text, words) in [
         ("1 2 3\n", "line 1: data before the first keyword"),
         ("*HEADING\n", "there are no nodes"),

@@ -373,7 +373,7 @@ fn zones_without_an_array_have_none_and_vectors_are_joined() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place() {
+fn what_is_wrong_is_reported_with_its_place() {
     let with = |sections: Vec<Tree>| refused(&file(vec![zone("Zone", sections)]));
     for (number, range, ids, said) in [
         (10, [1, 1], &[1, 2, 3, 6][..], "/Base/Zone/Bad: an element names point 6, there are 5"),

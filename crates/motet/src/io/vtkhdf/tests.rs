@@ -164,7 +164,7 @@ fn one_tet(change: impl FnOnce(&mut Vec<(&str, Vec<i64>)>)) -> Vec<u8> {
 }
 
 #[test]
-fn arrays_that_do_not_fit_are_told_with_their_place() {
+fn arrays_that_do_not_fit_are_reported_with_their_place() {
     assert_eq!(parse(&one_tet(|_| ())).unwrap().0.cells.counts(), [(CellKind::TETRA, 1)]);
     let with = |name: &'static str, values: &[i64]| {
         refused(&one_tet(|arrays| {

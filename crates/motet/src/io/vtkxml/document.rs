@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn damaged_xml_is_told_with_its_line() {
+    fn damaged_xml_is_reported_with_its_line() {
         for (text, line) in [("<A>\n<B>\n</A>", 3), ("<A>\n<B x='1", 2), ("", 1), ("no xml", 1)] {
             let error = Document::parse(text.as_bytes()).unwrap_err();
             assert_eq!(error.place(), Some(format!("line {line}").as_str()), "{error}");

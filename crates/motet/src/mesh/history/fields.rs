@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_told_as_such() {
+    fn what_is_no_number_is_reported_as_such() {
         let mut mesh = box_grid([1; 3], [[0.0; 3], [1.0; 3]]);
         let mut values = vec![1.0; mesh.cells.len()];
         values[0] = f64::NAN;

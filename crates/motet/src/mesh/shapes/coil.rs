@@ -38,8 +38,8 @@ impl Coil {
     /// The closed surface, as the patch `wire`, with `steps` segments per turn and `around` sides.
     ///
     /// # Errors
-    /// As for [`wire`]; also if a number is not finite or `turns` is negative, and if the coil would have
-    /// more points than a shape may have.
+    /// The errors of [`wire`]; also if a number is not finite or `turns` is negative, and if the coil would
+    /// have more points than a shape may have.
     pub fn mesh(&self, steps: usize, around: usize) -> Result<Mesh> {
         let n_points = (self.turns * steps as f64 + 1.0) * (around as f64 + 1.0);
         let sizes = [

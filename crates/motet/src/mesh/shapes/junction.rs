@@ -25,7 +25,7 @@ const UP: Point = [0.0, 0.0, 1.0];
 /// An arm from the origin, in the plane of x and y.
 #[derive(Clone, Copy)]
 pub(super) struct Arm {
-    /// Its direction at the origin as an angle in radians; arms are given counter-clockwise.
+    /// The direction of the arm at the origin as an angle in radians; arms are given counter-clockwise.
     pub(super) heading: f64,
     /// The change of its direction per unit of length; 0 is straight.
     pub(super) curvature: f64,

@@ -102,7 +102,7 @@ impl Stent {
     /// The points of the stent at an outer radius; the triangles are the same at every radius.
     ///
     /// # Errors
-    /// As for [`Stent::triangles`], and if the radius is not larger than the thickness.
+    /// The errors of [`Stent::triangles`], and if the radius is not larger than the thickness.
     pub fn points(&self, radius: f64) -> Result<Vec<Point>> {
         self.check()?;
         if !(radius > self.thickness && radius <= LARGEST) {
@@ -131,7 +131,7 @@ impl Stent {
     /// Points and triangles as a mesh with the patch `stent`.
     ///
     /// # Errors
-    /// As for [`Stent::points`].
+    /// The errors of [`Stent::points`].
     pub fn mesh(&self, radius: f64) -> Result<Mesh> {
         Ok(surface_mesh(self.points(radius)?, &self.triangles()?, "stent"))
     }

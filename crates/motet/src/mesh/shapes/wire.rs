@@ -15,7 +15,7 @@ const LARGEST_STRETCH: f64 = 2.0;
 /// A chain of consecutive segments.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chain {
-    /// Its vertices in order; the first of a closed chain is not repeated.
+    /// The vertices of the chain in order; the first of a closed chain is not repeated.
     pub vertices: Vec<VertexId>,
     /// Whether the last vertex is joined to the first.
     pub closed: bool,

@@ -91,7 +91,7 @@ impl RigidBodies {
     /// Moves all vertices from their positions `from`; returns the number of iterations for the graph.
     ///
     /// # Errors
-    /// Those of [`GraphMap::apply`].
+    /// The errors of [`GraphMap::apply`].
     pub(crate) fn apply(
         &self,
         from: &[Point],

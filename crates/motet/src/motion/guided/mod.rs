@@ -83,7 +83,7 @@ struct GraphTet {
     gradients: [Point; 4],
     /// Volume times conductivity.
     stiffness: f64,
-    /// Its weight in the gradient at its nodes: volume over the cube of the longest edge.
+    /// The weight of the tet in the gradient at its nodes: volume over the cube of the longest edge.
     weight: f64,
 }
 

@@ -18,7 +18,7 @@ impl Refinement {
     /// fit tets to their neighbours may change as soon as anything is divided or taken back.
     ///
     /// # Errors
-    /// As for [`new`](Self::new), and when the memory belongs to another mesh.
+    /// The errors of [`new`](Self::new), and when the memory belongs to another mesh.
     pub fn recall(mesh: &TetMesh, memory: &Memory, options: Options, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
         memory.check(mesh)?;

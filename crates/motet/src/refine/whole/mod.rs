@@ -117,7 +117,7 @@ impl MeshRefinement {
     /// Divides the marked tets as [`Refinement::refine`] does, and transfers the arrays by `rules`.
     ///
     /// # Errors
-    /// As for [`Refinement::refine`], and when a rule fits no array; then nothing has changed.
+    /// The errors of [`Refinement::refine`], and when a rule fits no array; then nothing has changed.
     pub fn refine(
         &mut self,
         marked: &[TetId],
@@ -130,7 +130,7 @@ impl MeshRefinement {
     /// Takes divisions back as [`Refinement::coarsen`] does, and transfers the arrays by `rules`.
     ///
     /// # Errors
-    /// As for [`Refinement::coarsen`], and when a rule fits no array; then nothing has changed.
+    /// The errors of [`Refinement::coarsen`], and when a rule fits no array; then nothing has changed.
     pub fn coarsen(
         &mut self,
         marked: &[TetId],

@@ -27,20 +27,20 @@ use crate::mesh::history::{Ledger, Rows};
 /// A tet with its region, or a triangle with its patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Labelled<const N: usize> {
-    /// Its id among all cells of its mesh.
+    /// The id of the cell among all cells of its mesh.
     pub cell: CellId,
-    /// Its vertices, in either orientation.
+    /// The vertices of the cell, in either orientation.
     pub vertices: [VertexId; N],
-    /// Its region or patch; 0 where it has none.
+    /// The region or patch of the cell; 0 if it has none.
     pub label: i32,
 }
 
 /// A vertex of the new mesh that has no equal in the old one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChangedVertex {
-    /// Its id in the new mesh.
+    /// The id of the vertex in the new mesh.
     pub vertex: VertexId,
-    /// Its id in the old mesh, for a vertex that was moved: whole numbers and texts stay with it.
+    /// The id in the old mesh of a vertex that was moved: whole numbers and texts stay with it.
     pub was: Option<VertexId>,
 }
 

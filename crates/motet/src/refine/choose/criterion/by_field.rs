@@ -152,7 +152,7 @@ impl HessianSizes {
     /// transferred themselves. They are capped at the extent of the mesh.
     ///
     /// # Errors
-    /// As for [`sizes`](Self::sizes).
+    /// The errors of [`sizes`](Self::sizes).
     pub fn put(&self, mesh: &mut Mesh, part: &TetPart, name: &str, threads: &Threads) -> Result<Criterion> {
         let mut sizes = self.sizes(mesh, part, threads)?;
         let [low, high] = bounds(&mesh.points).unwrap_or_default();

@@ -10,7 +10,7 @@ use crate::mesh::{Mesh, TetPart};
 /// Returns the names of the point arrays added.
 ///
 /// # Errors
-/// As for [`HessianSizes::put`](super::HessianSizes::put), and when there is no tet.
+/// The errors of [`HessianSizes::put`](super::HessianSizes::put), and when there is no tet.
 pub fn fix_sizes(criteria: &mut [Criterion], mesh: &mut Mesh, threads: &Threads) -> Result<Vec<String>> {
     let mut names = Vec::new();
     for (i, criterion) in criteria.iter_mut().enumerate() {

@@ -106,7 +106,7 @@ pub enum Criterion {
 /// Prescribed edge lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Size {
-    /// The same length everywhere, above 0.
+    /// One length everywhere, above 0.
     Uniform(f64),
     /// Given by an array. On points: an edge has the mean of the sizes at its ends. On cells: the size
     /// applies to all edges of the tet. Infinite: no limit.
@@ -228,7 +228,7 @@ impl Criterion {
     /// The tets to divide, in ascending order.
     ///
     /// # Errors
-    /// As for [`wishes`](Self::wishes).
+    /// The errors of [`wishes`](Self::wishes).
     pub fn marks(&self, mesh: &Mesh, part: &TetPart, threads: &Threads) -> Result<Vec<TetId>> {
         self.wishes(mesh, part, threads).map(|wishes| marked(&wishes))
     }
@@ -238,7 +238,7 @@ impl Criterion {
 /// taken back.
 ///
 /// # Errors
-/// As for [`Criterion::wishes`], for the first criterion that fails.
+/// The errors of [`Criterion::wishes`], for the first criterion that fails.
 pub fn wishes_of_all(
     criteria: &[Criterion],
     mesh: &Mesh,
@@ -256,7 +256,7 @@ pub fn wishes_of_all(
 /// The tets that at least one of the criteria marks, in ascending order.
 ///
 /// # Errors
-/// As for [`Criterion::wishes`], for the first criterion that fails.
+/// The errors of [`Criterion::wishes`], for the first criterion that fails.
 pub fn marks_of_all(
     criteria: &[Criterion],
     mesh: &Mesh,

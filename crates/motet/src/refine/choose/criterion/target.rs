@@ -42,7 +42,7 @@ impl Target {
     /// Builds a target from the surface cells of a mesh, or from its boundary if it has none.
     ///
     /// # Errors
-    /// As for [`new`](Self::new).
+    /// The errors of [`new`](Self::new).
     pub fn of_mesh(mesh: &Mesh, threads: &Threads) -> Result<Self> {
         let surface = Surface::own_or_boundary_of(mesh);
         Self::new(surface.points, surface.triangles, threads)
