@@ -16,8 +16,8 @@ use crate::spatial::NearestTriangle;
 pub struct Body {
     /// The name of the body in reports.
     pub name: String,
-    /// The triangles of the body; those of a closed surface are all counter-clockwise seen from outside, or all
-    /// clockwise.
+    /// The triangles of the body; those of a closed surface are all counter-clockwise seen from outside, or
+    /// all clockwise.
     pub triangles: Vec<[VertexId; 3]>,
     /// Whether it is the wall of a room, such as a vessel, that contains others. Detected by default.
     pub room: Room,

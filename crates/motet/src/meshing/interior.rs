@@ -1,9 +1,9 @@
 //! Points inside, for a uniform size: a body-centred cubic lattice, slightly away from the surface.
 //!
-//! The Delaunay tets of the lattice are all congruent and good (dihedral angles of 60 and 90 degrees), and no five of its
-//! points lie on one empty sphere. Points outside cost time but do no harm: they are removed with the tets
-//! there. So points are not tested for being inside; the surface only has to lie on both sides of them along
-//! the shortest side of the box.
+//! The Delaunay tets of the lattice are all congruent and good (dihedral angles of 60 and 90 degrees), and no
+//! five of its points lie on one empty sphere. Points outside cost time but do no harm: they are removed with
+//! the tets there. So points are not tested for being inside; the surface only has to lie on both sides of
+//! them along the shortest side of the box.
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::mesh::bounds;

@@ -82,10 +82,10 @@ impl OriginalSurface {
 
     /// The winding number at each vertex.
     ///
-    /// The winding number of a closed surface changes only across triangles. No triangle is in the ball around a vertex
-    /// that reaches to the nearest one; so where the balls at the two ends of an edge overlap, both have the
-    /// same number. It is computed for only one vertex of each part connected in this way: for the lattice of
-    /// the public coil, 1 in 20.
+    /// The winding number of a closed surface changes only across triangles. No triangle is in the ball
+    /// around a vertex that reaches to the nearest one; so where the balls at the two ends of an edge
+    /// overlap, both have the same number. It is computed for only one vertex of each part connected in this
+    /// way: for the lattice of the public coil, 1 in 20.
     pub(super) fn windings(&self, lattice: &Lattice, threads: &Threads) -> Vec<f64> {
         let n = lattice.points.len();
         if !self.is_closed {
