@@ -3,7 +3,7 @@
 use crate::algebra::Vector3;
 
 /// An entry of a sparse matrix: a linear map of 3-vectors.
-pub trait Block: Copy + Send + Sync + 'static {
+pub trait Block: Copy + std::fmt::Debug + Send + Sync + 'static {
     /// The zero entry.
     const ZERO: Self;
 

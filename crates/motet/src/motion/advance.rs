@@ -13,7 +13,7 @@ use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::vector::{add, scale, sub};
 use crate::motion::certificate::{Certificate, Seconds, measure};
 use crate::motion::check::Check;
-use crate::motion::map::Map;
+use crate::motion::methods::Follower;
 use crate::motion::mover::{Mover, State, Work};
 use crate::motion::nodes::SubstepStart;
 use crate::motion::update::{Displacements, Padded};
@@ -102,7 +102,7 @@ impl Mover {
         certificate.inverted_before = before;
         certificate.quality = timed(&mut seconds.quality, || measure(&self.check, points, threads));
         let place = |v: VertexId| points[v.index()];
-        let tets = self.tets.iter();
+        let tets = self.graph_tets.iter();
         certificate.graph_tets_inverted =
             tets.filter(|t| crate::geometry::tet::volume_6(t.map(place)) <= 0.0).count();
     }
@@ -201,21 +201,21 @@ impl Mover {
     }
 }
 
-/// The way from one state to the target, with the map built at that state.
+/// The way from one state to the target, with the follower set up at that state.
 struct SubstepPath<'a> {
     mover: &'a Mover,
     state: &'a State,
     target: &'a [Point],
-    map: Map,
+    follower: Box<dyn Follower>,
     start: SubstepStart,
     iterations: usize,
 }
 
 impl<'a> SubstepPath<'a> {
     fn new(mover: &'a Mover, state: &'a State, target: &'a [Point], threads: &Threads) -> Result<Self> {
-        let map = mover.rebuild(&state.points, threads)?;
+        let follower = mover.follower_at(&state.points, threads)?;
         let start = mover.nodes.start(&mover.reference, &state.points, &state.driven, threads)?;
-        Ok(Self { mover, state, target, map, start, iterations: 0 })
+        Ok(Self { mover, state, target, follower, start, iterations: 0 })
     }
 
     /// Displacements of the driven vertices after `part` of the way.
@@ -234,7 +234,7 @@ impl<'a> SubstepPath<'a> {
         let from = self.start.displacement.iter();
         let change = to.iter().zip(from).map(|(to, from)| Padded::new(sub(to.point(), from.point())));
         let change = Displacements::All(change.collect());
-        self.iterations += self.map.apply(&self.state.points, &change, out, threads)?;
+        self.iterations += self.follower.follow(&self.state.points, &change, out, threads)?;
         nodes.place(&self.mover.reference, &to, out);
         Ok(self.mover.finish(out, threads))
     }

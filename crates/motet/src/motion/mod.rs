@@ -74,21 +74,18 @@
 //!   they are.
 
 mod advance;
-mod bodies;
 mod boundary_motion;
 mod carrier;
 mod certificate;
 mod check;
 mod choose;
 mod corners;
-mod distance;
+mod elements;
 mod graph;
-mod graph_map;
-mod guided;
 mod interface;
 mod layer;
-mod map;
 mod matching;
+mod methods;
 mod middles;
 mod mover;
 mod nodes;
@@ -96,12 +93,10 @@ mod options;
 mod point_mover;
 mod prescribed;
 mod rotation;
+mod setup;
 mod slide;
 mod smooth;
-mod solve;
 mod update;
-mod walls;
-mod weights;
 
 pub use boundary_motion::{BoundaryMotion, Taken};
 pub use carrier::SurfaceCarrier;
@@ -109,11 +104,12 @@ pub use certificate::{BAD_EAS, Certificate, Quality, Seconds, Worst};
 pub use choose::{Choice, Tried, choose};
 pub use interface::Interface;
 pub use matching::{Matching, SurfaceMotion, match_ids, match_patch, node_ids};
-pub use mover::{Mover, Setup, SetupSeconds, mesh_velocity};
+pub use mover::{Mover, mesh_velocity};
 pub use options::{
     Elastic, Extent, FacetSet, Laplace, Limits, Method, MethodWords, Options, RigidLayer, SlideTolerance,
     Strain,
 };
 pub use point_mover::PointMover;
 pub use prescribed::Prescribed;
+pub use setup::{Setup, SetupSeconds};
 pub use slide::{LeavesPlane, SlidingPlane};

@@ -2,26 +2,17 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
-
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{in_range, sub};
 use crate::mesh::{Boundary, Mesh};
-use crate::motion::bodies::{self, RigidBodies};
 use crate::motion::check::Check;
-use crate::motion::distance::{InverseDistance, Radial};
-use crate::motion::graph::{Embedding, Graph, embed, triangulate};
-use crate::motion::graph_map::GraphMap;
-use crate::motion::guided::{self, Guided, Helpers};
-use crate::motion::map::Map;
+use crate::motion::methods::{self, Follower, Prepare, Prepared, Reference, Scene};
 use crate::motion::middles::Middles;
-use crate::motion::nodes::{Nodes, not_sliding};
-use crate::motion::options::{FacetSet, Limits, Method, Options, Strain};
+use crate::motion::nodes::Nodes;
+use crate::motion::options::{Limits, Options};
+use crate::motion::setup::{Setup, SetupSeconds};
 use crate::motion::slide::{LeavesPlane, SlidingPlane};
 use crate::motion::smooth::Smoother;
-use crate::motion::solve::LinearMethod;
-use crate::motion::update::WeightTable;
-use crate::motion::walls::{AddedPoints, Walls};
 
 /// Moves the vertices of a mesh with its boundary.
 ///
@@ -32,24 +23,15 @@ pub struct Mover {
     pub(crate) reference: Vec<Point>,
     pub(crate) nodes: Nodes,
     /// Vertices that follow the nodes.
-    hanging: Vec<VertexId>,
+    free: Vec<VertexId>,
     /// Middle nodes that stay between their corners.
     middles: Middles,
-    method: Method,
-    strain: Strain,
-    /// The vertices of each rigid body.
-    bodies: Vec<Vec<VertexId>>,
-    /// Where a Laplace equation is stiff, or the facets whose rotation guides.
-    wall: FacetSet,
+    method: Box<dyn Prepare>,
     /// How vertices follow from the reference.
-    pub(crate) map: Map,
+    follower: Box<dyn Follower>,
     pub(crate) smoother: Option<Smoother>,
-    /// Nodes of the graph in addition to those that are given.
-    helpers: Helpers,
-    /// The walls that the graph stays within.
-    walls: Option<Walls>,
     /// Tets of the graph of the reference that contain a vertex.
-    pub(crate) tets: Vec<[VertexId; 4]>,
+    pub(crate) graph_tets: Vec<[VertexId; 4]>,
     pub(crate) check: Check,
     pub(crate) limits: Limits,
     pub(crate) state: Option<State>,
@@ -71,62 +53,6 @@ pub(crate) struct Work {
     pub(crate) smoothed: usize,
 }
 
-/// What setting up found, and how long it took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Setup {
-    /// Vertices that the caller moves: those of the boundary, and those requested.
-    pub driven: usize,
-    /// Of these, vertices that slide in the plane of their patch, or on the line where two such planes meet.
-    pub sliding: usize,
-    /// Vertices of the rigid layer.
-    pub layer: usize,
-    /// Nodes of the graph: driven vertices, the outer ones of the layer, and interior ones that the method
-    /// adds.
-    pub graph_nodes: usize,
-    /// Tets of the graph.
-    pub graph_tets: usize,
-    /// Tets of the graph that contain a vertex.
-    pub holding_tets: usize,
-    /// Vertices that follow the graph.
-    pub hanging: usize,
-    /// Middle nodes of quadratic cells that stay in the middle of their corners; none of them is in the layer
-    /// or slides.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub middles: usize,
-    /// Vertices that a linear system is solved for.
-    pub solved: usize,
-    /// Bytes of the factor that is kept of this system; 0 where steps are iterated.
-    pub factor_bytes: u64,
-    /// Of those that follow the graph, vertices of cells that lie outside it (middle nodes of a curved
-    /// boundary, vertices of inverted cells): they follow the nearest place in it.
-    pub outside: usize,
-    /// Vertices of no volume cell that lie outside the graph, or have no finite position: they stay.
-    pub left: usize,
-    /// Seconds, by stage.
-    pub seconds: SetupSeconds,
-}
-
-/// Seconds that the stages of setting up took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct SetupSeconds {
-    /// Finding the boundary.
-    pub boundary: f64,
-    /// Rigid layer and sliding patches.
-    pub layer: f64,
-    /// Collecting the corners of the cells, and checking which are inverted at the start.
-    pub cells: f64,
-    /// The Delaunay triangulation of the graph's nodes.
-    pub triangulation: f64,
-    /// Finding the tet and the weights of every other vertex.
-    pub hanging: f64,
-    /// Setting up a linear system, or the shares of bodies.
-    pub system: f64,
-    /// Finding the tets of each vertex, for smoothing.
-    pub smoothing: f64,
-    /// The whole set-up.
-    pub total: f64,
-}
-
 impl Mover {
     /// Sets up the motion of `mesh`: finds its boundary, builds the graph and locates every vertex in it.
     ///
@@ -143,7 +69,6 @@ impl Mover {
         setup.seconds.boundary = (clock - begin).as_secs_f64();
         let is_used = used_by_volume(mesh);
         let mut nodes = Nodes::new(mesh, &boundary, options, &is_used, threads)?;
-        let walls = options.within_walls.then(|| Walls::new(mesh, &boundary, &mut nodes));
         setup.seconds.layer = lap_seconds(&mut clock);
         let check = Check::new(mesh, threads);
         setup.seconds.cells = lap_seconds(&mut clock);
@@ -155,40 +80,57 @@ impl Mover {
             setup.middles += usize::from(!is_node[v.index()]);
             is_node[v.index()] = true;
         }
-        let hanging =
-            (0..mesh.points.len()).filter(|&v| !is_node[v] && in_range(mesh.points[v])).map(VertexId::new);
-        let mut mover = Self {
+        let follows = |v: &VertexId| !is_node[v.index()] && in_range(mesh.points[v.index()]);
+        let mut free: Vec<VertexId> = (0..mesh.points.len()).map(VertexId::new).filter(follows).collect();
+        let corners = &check.corners.tets;
+        let method = methods::of(&mut Reference {
+            mesh,
+            boundary: &boundary,
+            options,
+            corners,
+            free: &free,
+            nodes: &mut nodes,
+        })?;
+        threads.watch().report_and_check("setting up a motion", 0, 0)?;
+        let scene = Scene { nodes: &nodes, free: &free, corners, is_used: Some(&is_used) };
+        let Prepared { follower, staying, graph_tets, setup: of_method } =
+            method.prepare(&scene, &mesh.points, threads)?;
+        let mut i = 0u32..;
+        free.retain(|_| i.next().is_none_or(|i| staying.binary_search(&i).is_err()));
+        clock = Instant::now();
+        let smoother = (options.smoothing > 0)
+            .then(|| Smoother::new(&check, &free, mesh.points.len(), options.smoothing));
+        let setup = Setup {
+            driven: nodes.n_driven,
+            sliding: nodes.n_sliding(),
+            layer: nodes.vertices.len() - nodes.n_driven,
+            hanging: free.len() - of_method.solved,
+            middles: setup.middles,
+            left: mesh.points.len() - nodes.vertices.len() - free.len() - setup.middles,
+            seconds: SetupSeconds {
+                boundary: setup.seconds.boundary,
+                layer: setup.seconds.layer,
+                cells: setup.seconds.cells,
+                smoothing: lap_seconds(&mut clock),
+                total: begin.elapsed().as_secs_f64(),
+                ..of_method.seconds
+            },
+            ..of_method
+        };
+        Ok(Self {
             reference: mesh.points.clone(),
             nodes,
-            hanging: hanging.collect(),
+            free,
             middles,
-            wall: wall(&boundary, options),
-            method: options.method.clone(),
-            strain: options.strain,
-            bodies: match &options.method {
-                Method::Bodies(sets) => bodies::body_vertices(sets, mesh, &boundary, &options.also_moved)?,
-                _ => Vec::new(),
-            },
-            map: Map::Graph(GraphMap::default()),
-            smoother: None,
-            helpers: Helpers::default(),
-            walls,
-            tets: Vec::new(),
+            method,
+            follower,
+            smoother,
+            graph_tets,
             check,
             limits: options.limits,
             state: None,
             setup,
-        };
-        threads.watch().report_and_check("setting up a motion", 0, 0)?;
-        match mover.method {
-            Method::Delaunay | Method::Bodies(_) | Method::Guided => {
-                mover.embed_reference(&is_used, threads)?;
-            }
-            _ => mover.assemble_reference(&is_used, threads)?,
-        }
-        mover.setup.seconds.smoothing = mover.set_up_smoothing(options.smoothing);
-        mover.setup.seconds.total = begin.elapsed().as_secs_f64();
-        Ok(mover)
+        })
     }
 
     /// The vertices that the caller moves, in rising order: those of the boundary, and those of
@@ -221,13 +163,8 @@ impl Mover {
     /// The four vertices that `v` follows in the graph, and their weights; `None` where it follows anything
     /// else.
     pub fn weights(&self, v: VertexId) -> Option<([VertexId; 4], [f64; 4])> {
-        self.hanging.binary_search(&v).ok()?;
-        let table = match &self.map {
-            Map::Graph(graph_map) => &graph_map.table,
-            Map::Bodies(bodies) => bodies.graph(),
-            _ => return None,
-        };
-        let (nodes, weights) = table.of(v.index());
+        self.free.binary_search(&v).ok()?;
+        let (nodes, weights) = self.follower.weights()?.of(v.index());
         let vertex = |node: u32| self.nodes.vertices.get(node as usize).copied();
         let [a, b, c, d] = nodes.map(vertex);
         Some(([a?, b?, c?, d?], weights))
@@ -266,7 +203,7 @@ impl Mover {
         threads: &Threads,
     ) -> Result<Work> {
         let nodes = self.nodes.displacements(displacement, threads);
-        let iterations = self.map.apply(&self.reference, &nodes, out, threads)?;
+        let iterations = self.follower.follow(&self.reference, &nodes, out, threads)?;
         Ok(Work { iterations, smoothed: self.finish(out, threads) })
     }
 
@@ -276,14 +213,6 @@ impl Mover {
         let n_smoothed = self.smoother.as_ref().map_or(0, |smoother| smoother.apply(out, threads));
         self.middles.place(&self.reference, out, threads);
         n_smoothed
-    }
-
-    /// Sets up smoothing; returns the seconds that this took.
-    fn set_up_smoothing(&mut self, sweeps: usize) -> f64 {
-        let begin = Instant::now();
-        let new = || Smoother::new(&self.check, &self.hanging, self.reference.len(), sweeps);
-        self.smoother = (sweeps > 0).then(new);
-        begin.elapsed().as_secs_f64()
     }
 
     /// Rebuilds the graph and locates every vertex in it, then does a [`Self::step`]: the cost of a sub-step
@@ -298,9 +227,9 @@ impl Mover {
         threads: &Threads,
     ) -> Result<()> {
         self.check_displacement(displacement)?;
-        let map = self.rebuild(&self.reference, threads)?;
+        let follower = self.follower_at(&self.reference, threads)?;
         let nodes = self.nodes.displacements(displacement, threads);
-        map.apply(&self.reference, &nodes, out, threads)?;
+        follower.follow(&self.reference, &nodes, out, threads)?;
         self.middles.place(&self.reference, out, threads);
         Ok(())
     }
@@ -322,186 +251,11 @@ impl Mover {
         }
     }
 
-    /// Sets the method up with the vertices at `points`.
-    pub(crate) fn rebuild(&self, points: &[Point], threads: &Threads) -> Result<Map> {
-        match self.method {
-            Method::InverseDistance => {
-                let inverse = InverseDistance::new(&self.wall, &self.nodes.vertices, &self.hanging, points);
-                Ok(Map::Inverse(Box::new(inverse)))
-            }
-            Method::Radial => {
-                Ok(Map::Radial(Box::new(Radial::new(&self.nodes.vertices, &self.hanging, points))))
-            }
-            Method::Elastic(_) | Method::Laplace(_) => {
-                let (tets, nodes) = (&self.check.corners.tets, &self.nodes.vertices);
-                let vertices = (&self.hanging[..], &nodes[..]);
-                LinearMethod::new(&self.method, tets, points, vertices, &self.wall, threads)
-                    .map(|linear| Map::Linear(Box::new(linear)))
-            }
-            _ => {
-                let (graph, found, _) = self.build_graph(points, threads)?;
-                self.map_on_graph(graph, &found, points, threads)
-            }
-        }
-    }
-
-    /// The map of displacements on a graph that was built with the vertices at `points`.
-    fn map_on_graph(
-        &self,
-        graph: Graph,
-        found: &Embedding,
-        points: &[Point],
-        threads: &Threads,
-    ) -> Result<Map> {
-        if matches!(self.method, Method::Guided) {
-            let mut table = WeightTable::fixed(graph.places.len() as u32, self.reference.len());
-            for (vertex, (&tet, w)) in self.hanging.iter().zip(found.tet.iter().zip(&found.weights)) {
-                table.set(*vertex, found.tets[tet as usize], *w);
-            }
-            let guided = Guided::new(graph, table, (&self.nodes, &self.helpers), &self.wall, points)?;
-            return Ok(Map::Guided(Box::new(guided)));
-        }
-        let added = AddedPoints::new(&graph, &self.nodes.of_graph)?;
-        let n_added = added.as_ref().map_or(0, AddedPoints::len);
-        let graph_map = GraphMap { table: self.weight_table(found, n_added), added: added.map(Box::new) };
-        if self.bodies.is_empty() {
-            return Ok(Map::Graph(graph_map));
-        }
-        let (tets, vertices) = (&self.check.corners.tets, (&self.hanging[..], &self.nodes));
-        RigidBodies::new((&self.bodies, self.strain), tets, points, vertices, graph_map, threads)
-            .map(|b| Map::Bodies(Box::new(b)))
-    }
-
-    /// The vertex of a node of the graph; `None` for a point that the graph added.
-    fn vertex_of_graph(&self, i: u32) -> Option<VertexId> {
-        let n_given = self.nodes.of_graph.len();
-        match self.nodes.of_graph.get(i as usize) {
-            Some(&node) => Some(self.nodes.vertices[node as usize]),
-            None => self.helpers.vertices.get(i as usize - n_given).copied(),
-        }
-    }
-
-    /// Sets up the system of the reference. Vertices that no cell uses do not take part.
-    fn assemble_reference(&mut self, is_used: &[bool], threads: &Threads) -> Result<()> {
-        let begin = Instant::now();
-        self.hanging.retain(|v| is_used[v.index()]);
-        self.map = self.rebuild(&self.reference, threads)?;
-        let nodes = &self.nodes;
-        let (solved, factor_bytes) = match &self.map {
-            Map::Linear(linear) => (self.hanging.len(), linear.factor_bytes()),
-            _ => (0, 0),
-        };
-        self.setup.seconds.system = begin.elapsed().as_secs_f64();
-        self.setup = Setup {
-            driven: nodes.n_driven,
-            sliding: nodes.n_sliding(),
-            layer: nodes.vertices.len() - nodes.n_driven,
-            solved,
-            hanging: self.hanging.len() - solved,
-            factor_bytes,
-            left: self.reference.len() - nodes.vertices.len() - self.hanging.len() - self.setup.middles,
-            ..self.setup
-        };
-        Ok(())
-    }
-
-    /// Builds the graph and locates the vertices in it; also returns the seconds for each of the two.
-    fn build_graph(&self, points: &[Point], threads: &Threads) -> Result<(Graph, Embedding, [f64; 2])> {
-        let mut clock = Instant::now();
-        let at = |v: &VertexId| points[v.index()];
-        let given = self.nodes.of_graph.iter().map(|&n| &self.nodes.vertices[n as usize]);
-        let graph: Vec<Point> = given.chain(&self.helpers.vertices).map(at).collect();
-        if let Some(walls) = &self.walls {
-            let places: Vec<Point> = self.hanging.iter().map(at).collect();
-            let (graph, found) = walls.graph(graph, &places, threads)?;
-            return Ok((graph, found, [lap_seconds(&mut clock), 0.0]));
-        }
-        let triangulation = triangulate(&graph, threads)?;
-        let built = lap_seconds(&mut clock);
-        let places: Vec<Point> = self.hanging.iter().map(at).collect();
-        let found = embed(&triangulation, &places, threads);
-        let tets = triangulation.tets().iter().map(|t| t.map(|v| v.0)).collect();
-        Ok((Graph { places: graph, tets }, found, [built, lap_seconds(&mut clock)]))
-    }
-
-    /// Builds the graph of the reference. Vertices outside it that no cell uses do not take part.
-    fn embed_reference(&mut self, is_used: &[bool], threads: &Threads) -> Result<()> {
-        if matches!(self.method, Method::Guided) {
-            self.helpers = guided::choose_helpers(
-                &self.check.corners.tets,
-                &self.reference,
-                &self.hanging,
-                HELPER_RINGS,
-            );
-        }
-        let (graph, mut found, [triangulation, hanging]) = self.build_graph(&self.reference, threads)?;
-        let stays = |i: u32| !is_used[self.hanging[i as usize].index()];
-        let staying: Vec<u32> = found.outside.iter().copied().filter(|&i| stays(i)).collect();
-        found.remove(&staying);
-        let mut i = 0u32..;
-        self.hanging.retain(|_| i.next().is_none_or(|i| staying.binary_search(&i).is_err()));
-        let begin = Instant::now();
-        self.map = self.map_on_graph(graph, &found, &self.reference, threads)?;
-        self.setup.seconds.system = begin.elapsed().as_secs_f64();
-        let vertices = |t: &[u32; 4]| {
-            let [a, b, c, d] = t.map(|i| self.vertex_of_graph(i));
-            Some([a?, b?, c?, d?])
-        };
-        self.tets = found.tets.iter().filter_map(vertices).collect();
-        let nodes = &self.nodes;
-        self.setup.seconds.triangulation = triangulation;
-        self.setup.seconds.hanging = hanging;
-        self.setup = Setup {
-            driven: nodes.n_driven,
-            sliding: nodes.n_sliding(),
-            layer: nodes.vertices.len() - nodes.n_driven,
-            graph_nodes: self.nodes.of_graph.len() + self.helpers.vertices.len(),
-            graph_tets: found.n_tets,
-            holding_tets: found.tets.len(),
-            hanging: self.hanging.len(),
-            outside: found.outside.len(),
-            left: self.reference.len() - nodes.vertices.len() - self.hanging.len() - self.setup.middles,
-            ..self.setup
-        };
-        Ok(())
-    }
-
-    /// The table for all vertices: nodes follow themselves, and vertices that stay follow the node that never
-    /// moves.
-    fn weight_table(&self, found: &Embedding, n_added: usize) -> WeightTable {
-        let n_nodes = self.nodes.vertices.len();
-        let mut table = WeightTable::fixed((n_nodes + n_added) as u32, self.reference.len());
-        let (of_graph, n_given) = (&self.nodes.of_graph, self.nodes.of_graph.len());
-        let node = |i: u32| {
-            of_graph.get(i as usize).copied().unwrap_or_else(|| (i as usize - n_given + n_nodes) as u32)
-        };
-        for (node, vertex) in (0..).zip(&self.nodes.vertices) {
-            table.nodes[vertex.index()] = [node; 4];
-        }
-        for (vertex, (&tet, w)) in self.hanging.iter().zip(found.tet.iter().zip(&found.weights)) {
-            let nodes = found.tets[tet as usize].map(node);
-            table.set(*vertex, nodes, *w);
-        }
-        table
-    }
-}
-
-/// Helpers are more than this many edges apart. With 2 a step takes a third of the time on a mesh of 32,000
-/// vertices, but a flap that bends by 90 degrees keeps an inverted tet through 16 sweeps of smoothing, and at
-/// 60 degrees half as many bad ones again.
-const HELPER_RINGS: usize = 1;
-
-fn is_zero(n: &usize) -> bool {
-    *n == 0
-}
-
-/// The facets that guide, which are the boundary; or those where a Laplace equation is stiff: what the
-/// options name, else all of the boundary that does not slide.
-fn wall(boundary: &Boundary, options: &Options) -> FacetSet {
-    match &options.method {
-        Method::Guided | Method::InverseDistance => FacetSet::of_boundary(boundary, "boundary", |_| true),
-        Method::Laplace(law) => law.wall.clone().unwrap_or_else(|| not_sliding(boundary, &options.sliding)),
-        _ => FacetSet::default(),
+    /// A follower by the method, set up with the vertices at `points`.
+    pub(crate) fn follower_at(&self, points: &[Point], threads: &Threads) -> Result<Box<dyn Follower>> {
+        let corners = &self.check.corners.tets;
+        let scene = Scene { nodes: &self.nodes, free: &self.free, corners, is_used: None };
+        Ok(self.method.prepare(&scene, points, threads)?.follower)
     }
 }
 

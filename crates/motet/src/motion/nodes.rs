@@ -84,6 +84,11 @@ impl Nodes {
         Ok(nodes)
     }
 
+    /// The vertices of the graph's nodes.
+    pub(crate) fn graph_vertices(&self) -> Vec<VertexId> {
+        self.of_graph.iter().map(|&n| self.vertices[n as usize]).collect()
+    }
+
     /// What the sliding vertices follow, with all vertices at `points`; those of the layer follow their feet
     /// instead.
     fn slides_at(

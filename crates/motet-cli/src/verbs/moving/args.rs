@@ -162,6 +162,21 @@ pub(crate) enum Method {
     Rbf,
 }
 
+impl Method {
+    /// The name of the method in the library. A choice starts with the graph; bodies are tried in their turn.
+    pub(crate) fn library_name(self) -> &'static str {
+        match self {
+            Self::Delaunay => "delaunay",
+            Self::Bodies | Self::Auto => "bodies",
+            Self::Guided => "guided",
+            Self::Elastic => "elastic",
+            Self::Laplace => "laplace",
+            Self::Idw => "idw",
+            Self::Rbf => "rbf",
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Match {
     /// By their GlobalNodeID (from 1) or vtkOriginalPointIds (from 0), by position where they have none

@@ -149,17 +149,7 @@ fn method(
         residual: args.residual,
         factor_gib: args.factor.unwrap_or(0.0),
     };
-    let [delaunay, bodies, guided, elastic, laplace, idw, rbf] = motion::Method::all(words);
-    Ok(match args.method {
-        Method::Delaunay => delaunay,
-        // The choice starts with the graph; bodies are tried in their turn.
-        Method::Bodies | Method::Auto => bodies,
-        Method::Guided => guided,
-        Method::Elastic => elastic,
-        Method::Laplace => laplace,
-        Method::Idw => idw,
-        Method::Rbf => rbf,
-    })
+    motion::Method::of_name(args.method.library_name(), words)
 }
 
 /// The facets that have the rigid layer: those of the named patches, otherwise all that move and do not

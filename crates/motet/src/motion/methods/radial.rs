@@ -5,14 +5,28 @@
 //! C2); `R` is half of the extent of the mesh. Boundary vertices move exactly by their displacements all the
 //! same; those near them are off by as much as the basis is.
 
-use crate::base::{Point, Threads, VertexId};
+use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::vector::{add, distance, norm, scale, sub};
 use crate::mesh::bounds;
+use crate::motion::methods::{Follower, Prepare, Prepared, Scene};
+use crate::motion::setup::Setup;
 use crate::motion::update::Displacements;
+
+/// Radial basis functions: nothing is taken from the mesh as it was given.
+#[derive(Debug)]
+pub(crate) struct Radial;
+
+impl Prepare for Radial {
+    fn prepare(&self, scene: &Scene<'_>, points: &[Point], _: &Threads) -> Result<Prepared> {
+        let (free, staying) = scene.used();
+        let follower = RadialFollower::new(&scene.nodes.vertices, free, points);
+        Ok(Prepared { follower, staying, graph_tets: Vec::new(), setup: Setup::default() }.boxed())
+    }
+}
 
 /// All nodes, from which each step chooses centres.
 #[derive(Debug)]
-pub(crate) struct Radial {
+struct RadialFollower {
     nodes: Vec<VertexId>,
     free: Vec<VertexId>,
     radius: f64,
@@ -35,11 +49,11 @@ struct Centres {
     half_solved: Vec<Point>,
 }
 
-impl Radial {
-    pub(crate) fn new(nodes: &[VertexId], free: &[VertexId], points: &[Point]) -> Self {
+impl RadialFollower {
+    fn new(nodes: &[VertexId], free: Vec<VertexId>, points: &[Point]) -> Self {
         let places: Vec<Point> = nodes.iter().map(|v| points[v.index()]).collect();
         let extent = bounds(&places).map_or(1.0, |[low, high]| norm(sub(high, low)));
-        Self { nodes: nodes.to_vec(), free: free.to_vec(), radius: 0.5 * extent }
+        Self { nodes: nodes.to_vec(), free, radius: 0.5 * extent }
     }
 
     fn phi(&self, a: Point, b: Point) -> f64 {
@@ -48,14 +62,20 @@ impl Radial {
         rest * rest * rest * rest * (4.0 * r + 1.0)
     }
 
-    /// Moves all vertices from their positions `from`; returns the number of centres that this took.
-    pub(crate) fn apply(
+    fn sum(&self, p: Point, centres: &Centres, places: &[Point], weights: &[Point]) -> Point {
+        let parts = centres.nodes.iter().zip(weights);
+        parts.fold([0.0; 3], |sum, (&c, &a)| add(sum, scale(a, self.phi(p, places[c]))))
+    }
+}
+
+impl Follower for RadialFollower {
+    fn follow(
         &self,
         from: &[Point],
         displacements: &Displacements<'_>,
         out: &mut [Point],
         threads: &Threads,
-    ) -> usize {
+    ) -> Result<usize> {
         let table = displacements.table();
         let places: Vec<Point> = self.nodes.iter().map(|v| from[v.index()]).collect();
         let wanted: Vec<Point> = table[..places.len()].iter().map(|d| d.point()).collect();
@@ -88,12 +108,7 @@ impl Radial {
         for (v, d) in self.nodes.iter().zip(&wanted) {
             out[v.index()] = add(from[v.index()], *d);
         }
-        centres.nodes.len()
-    }
-
-    fn sum(&self, p: Point, centres: &Centres, places: &[Point], weights: &[Point]) -> Point {
-        let parts = centres.nodes.iter().zip(weights);
-        parts.fold([0.0; 3], |sum, (&c, &a)| add(sum, scale(a, self.phi(p, places[c]))))
+        Ok(centres.nodes.len())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::algebra::{Block, Cholesky, Solved, Tolerance, TwoLevel, conjugate_gradients};
 use crate::base::{Point, Result, Threads};
-use crate::motion::solve::assemble::System;
+use crate::motion::elements::System;
 
 /// From this many unknown vertices on, two levels are worth setting up: a step takes two thirds of the time
 /// or less on meshes of 32,000 vertices and more, and a third on one of 158,000.

@@ -2,12 +2,10 @@
 //! boundary, so each vertex follows nodes of its own lumen.
 //!
 //! Where triangles of the boundary cannot all be facets without more points (Schoenhardt 1928), the
-//! triangulation has some inside. They move by linear elements on the graph for a Laplace equation: so an
-//! affine motion of the boundary still moves every vertex by the same affine map.
+//! triangulation has some inside.
 
 use std::collections::HashSet;
 
-use crate::algebra::{Tolerance, conjugate_gradients};
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
 use crate::geometry::tet;
@@ -17,8 +15,6 @@ use crate::motion::graph::{Embedding, Graph};
 use crate::motion::nodes::Nodes;
 use crate::motion::options::FacetSet;
 use crate::motion::slide::key;
-use crate::motion::solve::{Numbering, System, gradients, laplacian};
-use crate::motion::update::{Displacements, Padded};
 use crate::spatial::BoxTree;
 
 /// Triangles that no tet of the graph crosses, over the nodes of the graph.
@@ -116,66 +112,4 @@ fn embed(nodes: &[Point], tets: &[[VertexId; 4]], points: &[Point], threads: &Th
         .collect()
     });
     Embedding::new(nodes, tets, &found, points, threads)
-}
-
-/// Points that the graph added: they follow the others.
-#[derive(Debug)]
-pub(crate) struct AddedPoints {
-    /// For each given node of the graph, its index among all nodes.
-    given: Vec<u32>,
-    n: usize,
-    system: System<f64>,
-}
-
-/// A tolerance far below what affects cells.
-const STEP_TOLERANCE: Tolerance = Tolerance { residual: 1e-12, iterations: 10_000 };
-
-impl AddedPoints {
-    /// Sets up the added points of a graph; `None` where all its nodes are given.
-    ///
-    /// # Errors
-    /// When an added point has only flat tets.
-    pub(crate) fn new(graph: &Graph, given: &[u32]) -> Result<Option<Self>> {
-        let n = graph.places.len() - given.len();
-        if n == 0 {
-            return Ok(None);
-        }
-        let ids = |range: std::ops::Range<usize>| range.map(VertexId::new).collect::<Vec<_>>();
-        let numbering =
-            Numbering::new(graph.places.len(), &ids(given.len()..graph.places.len()), &ids(0..given.len()));
-        let tets: Vec<[VertexId; 4]> = graph.tets.iter().map(|t| t.map(VertexId)).collect();
-        let tets = numbering.of_tets(&tets);
-        let mut system = System::<f64>::with_pattern(&numbering, &tets.numbers);
-        system.fill(&tets.numbers, |t| {
-            let found = gradients(tets.vertices[t].map(|v| graph.places[v.index()]));
-            found.map_or([[0.0; 4]; 4], |(g, volume)| laplacian(&g, volume))
-        })?;
-        Ok(Some(Self { given: given.to_vec(), n, system }))
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.n
-    }
-
-    /// Displacements of all nodes, followed by those of the added points; and the number of iterations.
-    ///
-    /// # Errors
-    /// When the system cannot be solved to the tolerance.
-    pub(crate) fn with_added(
-        &self,
-        displacements: &Displacements<'_>,
-        threads: &Threads,
-    ) -> Result<(Displacements<'static>, usize)> {
-        let table = displacements.table();
-        let given: Vec<Point> = self.given.iter().map(|&n| table[n as usize].point()).collect();
-        let mut right = self.system.coupling.times(&given, threads);
-        right.iter_mut().for_each(|f| *f = f.map(|x| -x));
-        let mut added = vec![[0.0; 3]; self.n];
-        let System { inner, sweeps, .. } = &self.system;
-        let solved = conjugate_gradients(inner, sweeps, &right, &mut added, STEP_TOLERANCE, threads)?;
-        let (nodes, never) = table.split_at(table.len() - 1);
-        let all =
-            nodes.iter().copied().chain(added.into_iter().map(Padded::new)).chain(never.iter().copied());
-        Ok((Displacements::All(all.collect()), solved.iterations))
-    }
 }

@@ -6,12 +6,12 @@ use crate::base::{Csr, Error, Result, VertexId};
 /// The numbers of the unknowns: free vertices first, then those that are given.
 #[derive(Debug)]
 pub(crate) struct Numbering {
-    of_vertex: Vec<u32>,
+    number_of: Vec<u32>,
     n_free: usize,
     n_given: usize,
 }
 
-/// Marks a vertex that is neither free nor given.
+/// The number of what is neither free nor given.
 const NONE: u32 = u32::MAX;
 
 /// Tets whose vertices all have numbers.
@@ -21,21 +21,34 @@ pub(crate) struct NumberedTets {
 }
 
 impl Numbering {
-    pub(crate) fn new(n_points: usize, free: &[VertexId], given: &[VertexId]) -> Self {
-        let mut of_vertex = vec![NONE; n_points];
-        for (number, v) in (0..).zip(free.iter().chain(given)) {
-            of_vertex[v.index()] = number;
+    /// Numbers `n` vertices of a mesh, or nodes of a graph: those of `free` first, then those of `given`.
+    pub(crate) fn new(
+        n: usize,
+        free: impl ExactSizeIterator<Item = usize>,
+        given: impl ExactSizeIterator<Item = usize>,
+    ) -> Self {
+        let mut number_of = vec![NONE; n];
+        let (n_free, n_given) = (free.len(), given.len());
+        for (number, i) in (0..).zip(free.chain(given)) {
+            number_of[i] = number;
         }
-        Self { of_vertex, n_free: free.len(), n_given: given.len() }
+        Self { number_of, n_free, n_given }
     }
 
     pub(crate) fn n_free(&self) -> usize {
         self.n_free
     }
 
+    /// The numbers of the corners of a tet; `None` where a corner is neither free nor given.
+    pub(crate) fn of_tet(&self, corners: [usize; 4]) -> Option<[u32; 4]> {
+        let numbers = corners.map(|i| self.number_of[i]);
+        (!numbers.contains(&NONE)).then_some(numbers)
+    }
+
+    /// Those of `tets` whose corners all have numbers.
     pub(crate) fn of_tets(&self, tets: &[[VertexId; 4]]) -> NumberedTets {
-        let numbered = tets.iter().map(|tet| (*tet, tet.map(|v| self.of_vertex[v.index()])));
-        let (vertices, numbers) = numbered.filter(|(_, numbers)| !numbers.contains(&NONE)).unzip();
+        let numbered = |tet: &[VertexId; 4]| Some((*tet, self.of_tet(tet.map(VertexId::index))?));
+        let (vertices, numbers) = tets.iter().filter_map(numbered).unzip();
         NumberedTets { vertices, numbers }
     }
 }
@@ -85,7 +98,7 @@ impl<B: Block> System<B> {
     }
 
     /// Calls [`Self::with_pattern`], then [`Self::fill`].
-    pub(super) fn assemble(
+    pub(crate) fn assemble(
         numbering: &Numbering,
         tets: &[[u32; 4]],
         of_tet: impl Fn(usize) -> [[B; 4]; 4],

@@ -6,17 +6,39 @@
 //! and `L` the extent of the mesh. Every vertex sums over all nodes; programs that rely on this method sum
 //! over trees.
 
-use crate::base::{Point, Threads, VertexId};
+use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot, norm, scale, sub};
 use crate::mesh::bounds;
+use crate::motion::methods::{Follower, Prepare, Prepared, Reference, Scene};
 use crate::motion::options::FacetSet;
 use crate::motion::rotation::{Wall, rotation_change};
+use crate::motion::setup::Setup;
 use crate::motion::update::Displacements;
+
+/// The boundary, whose facets have areas and rotations.
+#[derive(Debug)]
+pub(crate) struct InverseDistance {
+    facets: FacetSet,
+}
+
+impl InverseDistance {
+    pub(crate) fn new(reference: &Reference<'_>) -> Self {
+        Self { facets: FacetSet::of_boundary(reference.boundary, "boundary", |_| true) }
+    }
+}
+
+impl Prepare for InverseDistance {
+    fn prepare(&self, scene: &Scene<'_>, points: &[Point], _: &Threads) -> Result<Prepared> {
+        let (free, staying) = scene.used();
+        let follower = InverseDistanceFollower::new(&self.facets, &scene.nodes.vertices, free, points);
+        Ok(Prepared { follower, staying, graph_tets: Vec::new(), setup: Setup::default() }.boxed())
+    }
+}
 
 /// The corners of the boundary, set up for one position of the mesh.
 #[derive(Debug)]
-pub(crate) struct InverseDistance {
+struct InverseDistanceFollower {
     wall: Wall,
     /// The node and the position of each corner, and a third of the area of its facets.
     corners: Vec<Corner>,
@@ -36,8 +58,8 @@ struct Corner {
 /// The near part of the weight begins at this fraction of the extent.
 const NEAR: f64 = 0.25;
 
-impl InverseDistance {
-    pub(crate) fn new(facets: &FacetSet, nodes: &[VertexId], free: &[VertexId], points: &[Point]) -> Self {
+impl InverseDistanceFollower {
+    fn new(facets: &FacetSet, nodes: &[VertexId], free: Vec<VertexId>, points: &[Point]) -> Self {
         let mut node_of = vec![None; points.len()];
         (0u32..).zip(nodes).for_each(|(i, v)| node_of[v.index()] = Some(i));
         let mut vertices: Vec<VertexId> = facets.rings.items().to_vec();
@@ -61,19 +83,20 @@ impl InverseDistance {
             corners: vertices.iter().zip(places.iter().zip(areas)).filter_map(corner).collect(),
             wall: Wall::new(&places, triangles),
             nodes: nodes.to_vec(),
-            free: free.to_vec(),
+            free,
             extent,
         }
     }
+}
 
-    /// Moves all vertices from their positions `from`.
-    pub(crate) fn apply(
+impl Follower for InverseDistanceFollower {
+    fn follow(
         &self,
         from: &[Point],
         displacements: &Displacements<'_>,
         out: &mut [Point],
         threads: &Threads,
-    ) {
+    ) -> Result<usize> {
         let table = displacements.table();
         let moved: Vec<Point> = self.corners.iter().map(|c| table[c.node as usize].point()).collect();
         let rotations = self.wall.rotations(|v| moved[v as usize], threads);
@@ -95,5 +118,6 @@ impl InverseDistance {
         for (v, d) in self.nodes.iter().zip(&*table) {
             out[v.index()] = add(from[v.index()], d.point());
         }
+        Ok(0)
     }
 }

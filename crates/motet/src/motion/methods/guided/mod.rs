@@ -20,19 +20,21 @@
 mod affine_blend;
 mod helpers;
 
+use std::time::Instant;
+
 use crate::algebra::{Tolerance, conjugate_gradients};
 use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
-use crate::motion::graph::Graph;
-use crate::motion::guided::affine_blend::{Affine, AffineBlend};
+use crate::motion::elements::{Numbering, System, gradients, laplacian};
+use crate::motion::graph::{BuiltGraph, Graph, Walls};
+use crate::motion::methods::guided::affine_blend::{Affine, AffineBlend};
+use crate::motion::methods::guided::helpers::{Helpers, choose_helpers};
+use crate::motion::methods::{Follower, Prepare, Prepared, Reference, Scene};
 use crate::motion::nodes::Nodes;
 use crate::motion::options::FacetSet;
 use crate::motion::rotation::{Quaternion, Wall};
-use crate::motion::solve::{Numbering, System, gradients, laplacian};
 use crate::motion::update::{Displacements, WeightTable};
-
-pub(crate) use helpers::{Helpers, choose_helpers};
 
 /// The tolerance of a step, far below what affects cells.
 const STEP_TOLERANCE: Tolerance = Tolerance { residual: 1e-9, iterations: 10_000 };
@@ -47,11 +49,60 @@ const ROTATION_STIFFNESS_EXPONENT: f64 = -1.0;
 /// flatter ones are meaningless.
 const MIN_RELATIVE_VOLUME: f64 = 1e-9;
 
+/// Helpers are more than this many edges apart. With 2 a step takes a third of the time on a mesh of 32,000
+/// vertices, but a flap that bends by 90 degrees keeps an inverted tet through 16 sweeps of smoothing, and at
+/// 60 degrees half as many bad ones again.
+const HELPER_RINGS: usize = 1;
+
 const NO_ROW: u32 = u32::MAX;
+const NO_NODE: u32 = u32::MAX;
+
+/// The boundary, whose facets guide, and interior vertices that are nodes of the graph.
+#[derive(Debug)]
+pub(crate) struct Guided {
+    facets: FacetSet,
+    helpers: Helpers,
+    walls: Option<Walls>,
+}
+
+impl Guided {
+    /// Chooses the helpers of a mesh.
+    pub(crate) fn new(reference: &mut Reference<'_>) -> Self {
+        let (corners, points) = (reference.corners, &reference.mesh.points);
+        Self {
+            facets: FacetSet::of_boundary(reference.boundary, "boundary", |_| true),
+            helpers: choose_helpers(corners, points, reference.free, HELPER_RINGS),
+            walls: reference.walls(),
+        }
+    }
+}
+
+impl Prepare for Guided {
+    fn prepare(&self, scene: &Scene<'_>, points: &[Point], threads: &Threads) -> Result<Prepared> {
+        let mut nodes = scene.nodes.graph_vertices();
+        nodes.extend(&self.helpers.vertices);
+        let mut built = BuiltGraph::new(self.walls.as_ref(), &nodes, scene.free, points, threads)?;
+        let staying = built.leave_unused(scene.free, scene.is_used);
+        let begin = Instant::now();
+        let graph_tets = built.holding_tets(&nodes);
+        let mut setup = built.setup(nodes.len());
+        let BuiltGraph { graph, embedding: found, .. } = built;
+        let mut table = WeightTable::fixed(graph.places.len() as u32, points.len());
+        for (vertex, (&tet, w)) in scene.following(&staying).iter().zip(found.tet.iter().zip(&found.weights))
+        {
+            table.set(*vertex, found.tets[tet as usize], *w);
+        }
+        let lengths = nodes.iter().map(|v| self.helpers.lengths[v.index()]).collect();
+        let wall = RotatingWall::new(&self.facets, scene.nodes, points);
+        let follower = GuidedFollower::new(graph, table, scene.nodes, lengths, wall)?;
+        setup.seconds.system = begin.elapsed().as_secs_f64();
+        Ok(Prepared { follower, staying, graph_tets, setup }.boxed())
+    }
+}
 
 /// A graph whose nodes rotate.
 #[derive(Debug)]
-pub(crate) struct Guided {
+struct GuidedFollower {
     /// The vertex of each given node.
     vertices: Vec<VertexId>,
     /// For each given node of the graph, its index among all nodes; helpers come after them.
@@ -61,9 +112,7 @@ pub(crate) struct Guided {
     /// Nodes without a row, each with the nodes of its flat tets, whose mean displacement it takes.
     flat: Vec<(u32, Vec<u32>)>,
     places: Vec<Point>,
-    /// The facets whose rotation counts, and the graph node of each of their vertices.
-    wall: Wall,
-    wall_nodes: Vec<u32>,
+    wall: RotatingWall,
     /// Nodes of the graph that are on no facet: their rotation is harmonic.
     off_wall: Vec<u32>,
     on_wall: Vec<u32>,
@@ -76,59 +125,18 @@ pub(crate) struct Guided {
     blend: AffineBlend,
 }
 
-/// A tet of the graph that is not flat.
-#[derive(Clone, Copy, Debug)]
-struct GraphTet {
-    nodes: [u32; 4],
-    gradients: [Point; 4],
-    /// Volume times conductivity.
-    stiffness: f64,
-    /// The weight of the tet in the gradient at its nodes: volume over the cube of the longest edge.
-    weight: f64,
+/// The facets whose rotation counts.
+#[derive(Debug)]
+struct RotatingWall {
+    wall: Wall,
+    /// The graph node of each of the wall's vertices; [`NO_NODE`] where it has none.
+    nodes: Vec<u32>,
 }
 
-impl Guided {
-    /// Sets up a graph whose nodes are the given ones, the helpers, and others that it needed; `table` holds
-    /// the nodes and weights of each vertex.
-    ///
-    /// # Errors
-    /// When a system cannot be set up.
-    pub(crate) fn new(
-        Graph { places, tets }: Graph,
-        table: WeightTable,
-        (nodes, helpers): (&Nodes, &Helpers),
-        facets: &FacetSet,
-        points: &[Point],
-    ) -> Result<Self> {
-        let n_given = nodes.of_graph.len();
-        let given = nodes.of_graph.iter().map(|&n| nodes.vertices[n as usize]);
-        let known = given.chain(helpers.vertices.iter().copied()).map(|v| helpers.lengths[v.index()]);
-        let length = fill_unknown_lengths(known.collect(), &tets, places.len());
-        let mean = |tet: &[u32; 4], power: f64| {
-            0.25 * tet.iter().map(|&n| length[n as usize].powf(power)).sum::<f64>()
-        };
-        let mut kept = Vec::new();
-        let mut rotation_stiffness = Vec::new();
-        for tet in &tets {
-            let corners = tet.map(|n| places[n as usize]);
-            let longest = EDGES.iter().map(|&[i, j]| distance(corners[i], corners[j])).fold(0.0, f64::max);
-            let Some((gradients, volume)) = gradients(corners) else { continue };
-            let weight = volume / (longest * longest * longest);
-            if weight > MIN_RELATIVE_VOLUME {
-                rotation_stiffness.push(volume * mean(tet, ROTATION_STIFFNESS_EXPONENT));
-                kept.push(GraphTet {
-                    nodes: *tet,
-                    gradients,
-                    stiffness: volume * mean(tet, STIFFNESS_EXPONENT),
-                    weight,
-                });
-            }
-        }
-        let all = places.len();
-        let mut node_of = vec![None; points.len()];
-        (0u32..)
-            .zip(&nodes.of_graph)
-            .for_each(|(i, &n)| node_of[nodes.vertices[n as usize].index()] = Some(i));
+impl RotatingWall {
+    fn new(facets: &FacetSet, nodes: &Nodes, points: &[Point]) -> Self {
+        let mut node_of = vec![NO_NODE; points.len()];
+        (0u32..).zip(nodes.graph_vertices()).for_each(|(i, v)| node_of[v.index()] = i);
         // Corners only: middle nodes have no facet of their own.
         let mut corners: Vec<VertexId> = facets.rings.items().to_vec();
         corners.sort_unstable();
@@ -136,49 +144,122 @@ impl Guided {
         let local = |v: VertexId| corners.binary_search(&v).ok().map(|i| i as u32);
         let triangles: Vec<[u32; 3]> =
             (facets.triangles()).filter_map(|t| Some([local(t[0])?, local(t[1])?, local(t[2])?])).collect();
-        let wall_points: Vec<Point> = corners.iter().map(|v| points[v.index()]).collect();
-        let wall_nodes: Vec<u32> = corners.iter().map(|v| node_of[v.index()].unwrap_or(u32::MAX)).collect();
+        let places: Vec<Point> = corners.iter().map(|v| points[v.index()]).collect();
+        Self {
+            wall: Wall::new(&places, triangles),
+            nodes: corners.iter().map(|v| node_of[v.index()]).collect(),
+        }
+    }
+
+    /// The graph nodes of the wall's vertices.
+    fn graph_nodes(&self) -> impl Iterator<Item = u32> + '_ {
+        self.nodes.iter().copied().filter(|n| *n != NO_NODE)
+    }
+}
+
+/// A tet of the graph that is not flat.
+#[derive(Clone, Copy, Debug)]
+struct GraphTet {
+    nodes: [u32; 4],
+    gradients: [Point; 4],
+    volume: f64,
+    /// Volume times conductivity.
+    stiffness: f64,
+    /// The weight of the tet in the gradient at its nodes: volume over the cube of the longest edge.
+    weight: f64,
+}
+
+impl GraphTet {
+    /// The tet with these nodes, `stiffness` times as stiff as its volume is large; `None` where it is flat.
+    fn new(nodes: [u32; 4], places: &[Point], stiffness: f64) -> Option<Self> {
+        let corners = nodes.map(|n| places[n as usize]);
+        let longest = EDGES.iter().map(|&[i, j]| distance(corners[i], corners[j])).fold(0.0, f64::max);
+        let (gradients, volume) = gradients(corners)?;
+        let weight = volume / (longest * longest * longest);
+        let tet = Self { nodes, gradients, volume, stiffness: volume * stiffness, weight };
+        (weight > MIN_RELATIVE_VOLUME).then_some(tet)
+    }
+}
+
+/// What the motion of each node is determined by.
+struct Roles {
+    /// Nodes whose displacement is solved for, in rising order.
+    solved: Vec<u32>,
+    /// Nodes that are not given and in no tet, in rising order.
+    tetless: Vec<u32>,
+    /// Nodes whose rotation is that of the wall, or has no influence.
+    on_wall: Vec<u32>,
+    off_wall: Vec<u32>,
+}
+
+impl Roles {
+    fn new(tets: &[GraphTet], wall: &RotatingWall, n_given: usize, n_nodes: usize) -> Self {
         // Nodes in no tet have no influence: those in the place of another, and those that the graph needed
         // in a flat wall.
-        let mut is_on_wall = vec![true; all];
-        kept.iter().flat_map(|t| t.nodes).for_each(|n| is_on_wall[n as usize] = false);
-        let (without, rows): (Vec<u32>, Vec<u32>) =
-            (n_given as u32..all as u32).partition(|n| is_on_wall[*n as usize]);
+        let mut is_on_wall = vec![true; n_nodes];
+        tets.iter().flat_map(|t| t.nodes).for_each(|n| is_on_wall[n as usize] = false);
+        let (tetless, solved) = (n_given as u32..n_nodes as u32).partition(|n| is_on_wall[*n as usize]);
+        wall.graph_nodes().for_each(|n| is_on_wall[n as usize] = true);
+        let (on_wall, off_wall) = (0..n_nodes as u32).partition(|n| is_on_wall[*n as usize]);
+        Self { solved, tetless, on_wall, off_wall }
+    }
+}
+
+/// The Laplacian of tets of the graph for the nodes `free`, where those of `given` have values; and the
+/// numbers of the tets' nodes in it.
+fn system<'a>(
+    tets: impl Iterator<Item = &'a GraphTet>,
+    n_nodes: usize,
+    free: &[u32],
+    given: &[u32],
+    stiffness: impl Fn(&GraphTet) -> f64,
+) -> Result<(System<f64>, Vec<[u32; 4]>)> {
+    let index = |n: &u32| *n as usize;
+    let numbering = Numbering::new(n_nodes, free.iter().map(index), given.iter().map(index));
+    let numbered = |tet: &'a GraphTet| Some((tet, numbering.of_tet(tet.nodes.map(|n| n as usize))?));
+    let (tets, numbers): (Vec<&GraphTet>, Vec<[u32; 4]>) = tets.filter_map(numbered).unzip();
+    let of_tet = |i: usize| laplacian(&tets[i].gradients, stiffness(tets[i]));
+    Ok((System::assemble(&numbering, &numbers, of_tet)?, numbers))
+}
+
+impl GuidedFollower {
+    /// Sets up a graph whose nodes are the given ones, the helpers, and others that it needed; `table` holds
+    /// the nodes and weights of each vertex, `lengths` the edge length at the given nodes and the helpers.
+    ///
+    /// # Errors
+    /// When a system cannot be set up.
+    fn new(
+        Graph { places, tets }: Graph,
+        table: WeightTable,
+        nodes: &Nodes,
+        lengths: Vec<f64>,
+        wall: RotatingWall,
+    ) -> Result<Self> {
+        let (all, n_given) = (places.len(), nodes.of_graph.len());
+        let lengths = fill_unknown_lengths(lengths, &tets, all);
+        let kept: Vec<GraphTet> = (tets.iter())
+            .filter_map(|tet| GraphTet::new(*tet, &places, mean_power(tet, &lengths, STIFFNESS_EXPONENT)))
+            .collect();
+        let roles = Roles::new(&kept, &wall, n_given, all);
         let mut row_of = vec![NO_ROW; all - n_given];
-        (0..).zip(&rows).for_each(|(row, &n)| row_of[n as usize - n_given] = row);
-        let fixed: Vec<u32> = (0..n_given as u32).chain(without.iter().copied()).collect();
-        wall_nodes.iter().filter(|n| **n != u32::MAX).for_each(|n| is_on_wall[*n as usize] = true);
-        let (on_wall, off_wall): (Vec<u32>, Vec<u32>) =
-            (0..all as u32).partition(|n| is_on_wall[*n as usize]);
-        let ids = |nodes: &[u32]| nodes.iter().map(|&n| VertexId(n)).collect::<Vec<_>>();
-        let system =
-            |tets: &[u32], (free, given): (&[VertexId], &[VertexId]), stiffness: &dyn Fn(usize) -> f64| {
-                let numbering = Numbering::new(all, free, given);
-                let vertices: Vec<[VertexId; 4]> =
-                    tets.iter().map(|&t| kept[t as usize].nodes.map(VertexId)).collect();
-                let numbers = numbering.of_tets(&vertices).numbers;
-                let mut system = System::<f64>::with_pattern(&numbering, &numbers);
-                system.fill(&numbers, |i| {
-                    laplacian(&kept[tets[i] as usize].gradients, stiffness(tets[i] as usize))
-                })?;
-                Result::Ok((system, numbers))
-            };
-        let every: Vec<u32> = (0..kept.len() as u32).collect();
+        (0..).zip(&roles.solved).for_each(|(row, &n)| row_of[n as usize - n_given] = row);
+        let fixed: Vec<u32> = (0..n_given as u32).chain(roles.tetless.iter().copied()).collect();
+        let (rotation_system, _) = system(kept.iter(), all, &roles.off_wall, &roles.on_wall, |tet| {
+            tet.volume * mean_power(&tet.nodes, &lengths, ROTATION_STIFFNESS_EXPONENT)
+        })?;
         let has_helper = |t: &u32| kept[*t as usize].nodes.iter().any(|n| *n as usize >= n_given);
-        let inner: Vec<u32> = every.iter().copied().filter(has_helper).collect();
-        let (rotation_system, _) =
-            system(&every, (&ids(&off_wall), &ids(&on_wall)), &|t| rotation_stiffness[t])?;
+        let inner: Vec<u32> = (0..kept.len() as u32).filter(has_helper).collect();
+        let inner_tets = inner.iter().map(|&t| &kept[t as usize]);
         let (position_system, inner_numbers) =
-            system(&inner, (&ids(&rows), &ids(&fixed)), &|t| kept[t].stiffness)?;
+            system(inner_tets, all, &roles.solved, &fixed, |tet| tet.stiffness)?;
         Ok(Self {
             vertices: nodes.vertices.clone(),
             of_graph: nodes.of_graph.clone(),
             row_of,
-            flat: neighbours_in_tets(&without, &tets),
-            wall: Wall::new(&wall_points, triangles),
-            wall_nodes,
-            off_wall,
-            on_wall,
+            flat: neighbours_in_tets(&roles.tetless, &tets),
+            wall,
+            off_wall: roles.off_wall,
+            on_wall: roles.on_wall,
             blend: AffineBlend::new(table, &kept, all),
             tets: kept,
             inner,
@@ -189,11 +270,91 @@ impl Guided {
         })
     }
 
-    /// Moves all vertices from their positions `from`; returns the number of iterations.
-    ///
-    /// # Errors
-    /// When a system cannot be solved to the tolerance.
-    pub(crate) fn apply(
+    /// Appends the displacements of the other nodes to those of the given ones.
+    fn extend(&self, moved: &mut Vec<Point>, inner: &[Point]) {
+        moved.extend(self.row_of.iter().map(|&row| inner.get(row as usize).copied().unwrap_or([0.0; 3])));
+        for (node, near) in &self.flat {
+            let sum = near.iter().fold([0.0; 3], |sum, &n| add(sum, moved[n as usize]));
+            moved[*node as usize] = scale(sum, 1.0 / near.len().max(1) as f64);
+        }
+    }
+
+    /// Moves helpers so that gradients are nearest to the guides; `inner` holds a guess on entry. Returns the
+    /// number of iterations.
+    fn solve(
+        &self,
+        system: &System<f64>,
+        guides: &[Guide],
+        given: &[Point],
+        inner: &mut [Point],
+        threads: &Threads,
+    ) -> Result<usize> {
+        let mut right = system.coupling.times(given, threads);
+        right.iter_mut().for_each(|f| *f = f.map(|x| -x));
+        for (&t, guide) in self.inner.iter().zip(guides) {
+            let tet = &self.tets[t as usize];
+            for (&node, &gradient) in tet.nodes.iter().zip(&tet.gradients) {
+                if let Some(row) = (node as usize).checked_sub(self.of_graph.len()) {
+                    let row = self.row_of[row] as usize;
+                    let change = sub(times(guide.rotation, gradient), gradient);
+                    right[row] = add(right[row], scale(change, guide.stiffness));
+                }
+            }
+        }
+        let solved =
+            conjugate_gradients(&system.inner, &system.sweeps, &right, inner, STEP_TOLERANCE, threads)?;
+        Ok(solved.iterations)
+    }
+
+    /// The rotation vector of every node, and the number of iterations.
+    fn rotation_vectors(&self, moved: &[Point], threads: &Threads) -> Result<(Vec<Point>, usize)> {
+        let of_wall = |v: u32| {
+            let node = self.wall.nodes[v as usize];
+            moved.get(node as usize).copied().unwrap_or_default()
+        };
+        let rotations = self.wall.wall.rotations(of_wall, threads);
+        let mut rotation_vectors = vec![[0.0; 3]; self.places.len()];
+        for (&node, q) in self.wall.nodes.iter().zip(&rotations).filter(|(node, _)| **node != NO_NODE) {
+            rotation_vectors[node as usize] = rotation_vector(*q);
+        }
+        let given: Vec<Point> = self.on_wall.iter().map(|&n| rotation_vectors[n as usize]).collect();
+        let mut right = self.rotation_system.coupling.times(&given, threads);
+        right.iter_mut().for_each(|f| *f = f.map(|x| -x));
+        let mut inner = vec![[0.0; 3]; self.off_wall.len()];
+        let solved = conjugate_gradients(
+            &self.rotation_system.inner,
+            &self.rotation_system.sweeps,
+            &right,
+            &mut inner,
+            STEP_TOLERANCE,
+            threads,
+        )?;
+        self.off_wall.iter().zip(inner).for_each(|(&n, vector)| rotation_vectors[n as usize] = vector);
+        Ok((rotation_vectors, solved.iterations))
+    }
+
+    /// The affine map of every node: its displacement there, and half the mean gradient of the displacement
+    /// in its tets.
+    fn affine(&self, moved: &[Point]) -> Vec<Affine> {
+        let mut sums = vec![[[0.0; 3]; 3]; moved.len()];
+        for tet in &self.tets {
+            let mut gradient = [[0.0; 3]; 3];
+            for (&n, g) in tet.nodes.iter().zip(tet.gradients) {
+                let u = moved[n as usize];
+                (0..3).for_each(|j| gradient[j] = add(gradient[j], scale(u, g[j])));
+            }
+            let gradient = gradient.map(|column| scale(column, tet.weight));
+            for &n in &tet.nodes {
+                let sum = &mut sums[n as usize];
+                (0..3).for_each(|j| sum[j] = add(sum[j], gradient[j]));
+            }
+        }
+        self.blend.affine(&self.places, moved, &sums)
+    }
+}
+
+impl Follower for GuidedFollower {
+    fn follow(
         &self,
         from: &[Point],
         displacements: &Displacements<'_>,
@@ -240,88 +401,6 @@ impl Guided {
         }
         Ok(iterations + first + second)
     }
-
-    /// Appends the displacements of the other nodes to those of the given ones.
-    fn extend(&self, moved: &mut Vec<Point>, inner: &[Point]) {
-        moved.extend(self.row_of.iter().map(|&row| inner.get(row as usize).copied().unwrap_or([0.0; 3])));
-        for (node, near) in &self.flat {
-            let sum = near.iter().fold([0.0; 3], |sum, &n| add(sum, moved[n as usize]));
-            moved[*node as usize] = scale(sum, 1.0 / near.len().max(1) as f64);
-        }
-    }
-
-    /// Moves helpers so that gradients are nearest to the guides; `inner` holds a guess on entry. Returns the
-    /// number of iterations.
-    fn solve(
-        &self,
-        system: &System<f64>,
-        guides: &[Guide],
-        given: &[Point],
-        inner: &mut [Point],
-        threads: &Threads,
-    ) -> Result<usize> {
-        let mut right = system.coupling.times(given, threads);
-        right.iter_mut().for_each(|f| *f = f.map(|x| -x));
-        for (&t, guide) in self.inner.iter().zip(guides) {
-            let tet = &self.tets[t as usize];
-            for (&node, &gradient) in tet.nodes.iter().zip(&tet.gradients) {
-                if let Some(row) = (node as usize).checked_sub(self.of_graph.len()) {
-                    let row = self.row_of[row] as usize;
-                    let change = sub(times(guide.rotation, gradient), gradient);
-                    right[row] = add(right[row], scale(change, guide.stiffness));
-                }
-            }
-        }
-        let solved =
-            conjugate_gradients(&system.inner, &system.sweeps, &right, inner, STEP_TOLERANCE, threads)?;
-        Ok(solved.iterations)
-    }
-
-    /// The rotation vector of every node, and the number of iterations.
-    fn rotation_vectors(&self, moved: &[Point], threads: &Threads) -> Result<(Vec<Point>, usize)> {
-        let of_wall = |v: u32| {
-            let node = self.wall_nodes[v as usize];
-            moved.get(node as usize).copied().unwrap_or_default()
-        };
-        let rotations = self.wall.rotations(of_wall, threads);
-        let mut rotation_vectors = vec![[0.0; 3]; self.places.len()];
-        for (&node, q) in self.wall_nodes.iter().zip(&rotations).filter(|(node, _)| **node != u32::MAX) {
-            rotation_vectors[node as usize] = rotation_vector(*q);
-        }
-        let given: Vec<Point> = self.on_wall.iter().map(|&n| rotation_vectors[n as usize]).collect();
-        let mut right = self.rotation_system.coupling.times(&given, threads);
-        right.iter_mut().for_each(|f| *f = f.map(|x| -x));
-        let mut inner = vec![[0.0; 3]; self.off_wall.len()];
-        let solved = conjugate_gradients(
-            &self.rotation_system.inner,
-            &self.rotation_system.sweeps,
-            &right,
-            &mut inner,
-            STEP_TOLERANCE,
-            threads,
-        )?;
-        self.off_wall.iter().zip(inner).for_each(|(&n, vector)| rotation_vectors[n as usize] = vector);
-        Ok((rotation_vectors, solved.iterations))
-    }
-
-    /// The affine map of every node: its displacement there, and half the mean gradient of the displacement
-    /// in its tets.
-    fn affine(&self, moved: &[Point]) -> Vec<Affine> {
-        let mut sums = vec![[[0.0; 3]; 3]; moved.len()];
-        for tet in &self.tets {
-            let mut gradient = [[0.0; 3]; 3];
-            for (&n, g) in tet.nodes.iter().zip(tet.gradients) {
-                let u = moved[n as usize];
-                (0..3).for_each(|j| gradient[j] = add(gradient[j], scale(u, g[j])));
-            }
-            let gradient = gradient.map(|column| scale(column, tet.weight));
-            for &n in &tet.nodes {
-                let sum = &mut sums[n as usize];
-                (0..3).for_each(|j| sum[j] = add(sum[j], gradient[j]));
-            }
-        }
-        self.blend.affine(&self.places, moved, &sums)
-    }
 }
 
 /// Each of `nodes` with the other nodes that it shares tets with.
@@ -358,6 +437,11 @@ fn fill_unknown_lengths(mut lengths: Vec<f64>, tets: &[[u32; 4]], n: usize) -> V
         }
     }
     lengths
+}
+
+/// The mean over the nodes of a tet of the length there to a power.
+fn mean_power(tet: &[u32; 4], lengths: &[f64], power: f64) -> f64 {
+    0.25 * tet.iter().map(|&n| lengths[n as usize].powf(power)).sum::<f64>()
 }
 
 /// The rotation vector of a quaternion: its axis times its angle, from 0 to pi.

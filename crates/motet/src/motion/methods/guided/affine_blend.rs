@@ -7,7 +7,7 @@ use crate::base::four::Wide;
 use crate::base::four::{FourLanes, Plain};
 use crate::base::{Point, Threads};
 use crate::geometry::vector::{add, scale, sub};
-use crate::motion::guided::GraphTet;
+use crate::motion::methods::guided::GraphTet;
 use crate::motion::update::WeightTable;
 
 /// The displacement near a node as a function of position: three columns, and the value at the origin. The

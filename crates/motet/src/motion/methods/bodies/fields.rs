@@ -22,9 +22,9 @@ use crate::algebra::{Tolerance, conjugate_gradients};
 use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::tet::centroid;
 use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
-use crate::motion::bodies::band;
+use crate::motion::elements::{Numbering, System, gradients, laplacian};
+use crate::motion::methods::bodies::band;
 use crate::motion::nodes::Nodes;
-use crate::motion::solve::{Numbering, System, gradients, laplacian};
 
 /// Shares of translation and rotation: for each vertex, those of all bodies.
 #[derive(Debug)]
@@ -74,7 +74,8 @@ impl Fields {
         let held: Vec<u32> =
             (0..nodes.vertices.len() as u32).filter(|n| sliding.binary_search(n).is_err()).collect();
         let held_vertices: Vec<VertexId> = held.iter().map(vertex).collect();
-        let numbering = Numbering::new(points.len(), &free, &held_vertices);
+        let index = |v: &VertexId| v.index();
+        let numbering = Numbering::new(points.len(), free.iter().map(index), held_vertices.iter().map(index));
         let numbered = numbering.of_tets(tets);
         let of_nodes = |three: &[Vec<u32>]| {
             let mut on_driven = vec![[0.0; 3]; nodes.n_driven];

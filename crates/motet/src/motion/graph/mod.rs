@@ -1,8 +1,16 @@
 //! The graph: the Delaunay triangulation of the nodes, and where every other vertex lies in it.
 
+mod walls;
+mod weights;
+
+use std::time::Instant;
+
 use crate::base::{Point, Result, Threads, VertexId};
 use crate::delaunay::Triangulation;
-use crate::motion::weights::weights;
+use crate::motion::graph::weights::weights;
+use crate::motion::setup::{Setup, SetupSeconds};
+
+pub(crate) use walls::Walls;
 
 /// Where points lie in the triangulation of some nodes.
 #[derive(Debug, Default)]
@@ -37,6 +45,81 @@ pub(crate) struct Graph {
     /// Positions of the nodes: the given ones, then those that the triangulation needed in addition.
     pub(crate) places: Vec<Point>,
     pub(crate) tets: Vec<[u32; 4]>,
+}
+
+/// A graph on vertices of a mesh, and where other vertices lie in it.
+pub(crate) struct BuiltGraph {
+    pub(crate) graph: Graph,
+    pub(crate) embedding: Embedding,
+    /// Seconds for the triangulation; with walls, for all of it.
+    pub(crate) triangulation_seconds: f64,
+    /// Seconds for locating the vertices.
+    pub(crate) locating_seconds: f64,
+}
+
+impl BuiltGraph {
+    /// Builds the graph of `nodes` with the vertices at `points`, within walls where some are given, and
+    /// locates `free` in it.
+    ///
+    /// # Errors
+    /// When the nodes do not span space, or walls cross each other.
+    pub(crate) fn new(
+        walls: Option<&Walls>,
+        nodes: &[VertexId],
+        free: &[VertexId],
+        points: &[Point],
+        threads: &Threads,
+    ) -> Result<Self> {
+        let begin = Instant::now();
+        let at = |v: &VertexId| points[v.index()];
+        let nodes: Vec<Point> = nodes.iter().map(at).collect();
+        let places = || free.iter().map(at).collect::<Vec<Point>>();
+        if let Some(walls) = walls {
+            let (graph, embedding) = walls.graph(nodes, &places(), threads)?;
+            let triangulation_seconds = begin.elapsed().as_secs_f64();
+            return Ok(Self { graph, embedding, triangulation_seconds, locating_seconds: 0.0 });
+        }
+        let triangulation = triangulate(&nodes, threads)?;
+        let triangulation_seconds = begin.elapsed().as_secs_f64();
+        let embedding = embed(&triangulation, &places(), threads);
+        let tets = triangulation.tets().iter().map(|t| t.map(|v| v.0)).collect();
+        let locating_seconds = begin.elapsed().as_secs_f64() - triangulation_seconds;
+        Ok(Self { graph: Graph { places: nodes, tets }, embedding, triangulation_seconds, locating_seconds })
+    }
+
+    /// Removes vertices that lie outside the graph and that no cell uses from the embedding; returns their
+    /// indices among the located ones, in rising order.
+    pub(crate) fn leave_unused(&mut self, free: &[VertexId], is_used: Option<&[bool]>) -> Vec<u32> {
+        let stays = |i: &u32| is_used.is_some_and(|is_used| !is_used[free[*i as usize].index()]);
+        let staying: Vec<u32> = self.embedding.outside.iter().copied().filter(stays).collect();
+        self.embedding.remove(&staying);
+        staying
+    }
+
+    /// The counts and the seconds so far, of a graph on `n_nodes` vertices.
+    pub(crate) fn setup(&self, n_nodes: usize) -> Setup {
+        Setup {
+            graph_nodes: n_nodes,
+            graph_tets: self.embedding.n_tets,
+            holding_tets: self.embedding.tets.len(),
+            outside: self.embedding.outside.len(),
+            seconds: SetupSeconds {
+                triangulation: self.triangulation_seconds,
+                hanging: self.locating_seconds,
+                ..SetupSeconds::default()
+            },
+            ..Setup::default()
+        }
+    }
+
+    /// The tets that contain a vertex, those whose nodes are all among `nodes`.
+    pub(crate) fn holding_tets(&self, nodes: &[VertexId]) -> Vec<[VertexId; 4]> {
+        let vertices = |t: &[u32; 4]| {
+            let [a, b, c, d] = t.map(|i| nodes.get(i as usize).copied());
+            Some([a?, b?, c?, d?])
+        };
+        self.embedding.tets.iter().filter_map(vertices).collect()
+    }
 }
 
 /// Triangulates `nodes`.

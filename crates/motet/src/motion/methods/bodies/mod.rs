@@ -16,6 +16,8 @@ mod band;
 mod fields;
 mod rigid;
 
+use std::time::Instant;
+
 use pulp::NullaryFnOnce;
 
 #[cfg(target_arch = "x86_64")]
@@ -24,23 +26,23 @@ use crate::base::four::{FourLanes, Plain};
 use crate::base::{DisjointSets, Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{add, distance, norm, sub};
 use crate::mesh::{Boundary, Mesh, bounds};
-use crate::motion::bodies::fields::Fields;
-use crate::motion::bodies::rigid::Rigid;
-use crate::motion::graph_map::GraphMap;
 use crate::motion::interface::for_each_wall_facet;
-use crate::motion::nodes::Nodes;
+use crate::motion::methods::bodies::fields::Fields;
+use crate::motion::methods::bodies::rigid::Rigid;
+use crate::motion::methods::delaunay::{Delaunay, GraphFollower};
+use crate::motion::methods::{Follower, Prepare, Prepared, Reference, Scene};
 use crate::motion::options::{FacetSet, Strain};
 use crate::motion::update::{Displacements, Padded, WeightTable};
 
 /// Shares of all bodies at every vertex, and the graph for the rest of the motion.
 #[derive(Debug)]
-pub(crate) struct RigidBodies {
+struct RigidBodies {
     /// The nodes of each body.
     nodes: Vec<Vec<u32>>,
     /// The vertex of each node.
     vertices: Vec<VertexId>,
     fields: Fields,
-    graph: GraphMap,
+    graph: GraphFollower,
 }
 
 /// A body moves rigidly when its vertices end within this fraction of the largest displacement of where the
@@ -50,32 +52,61 @@ const ROUNDING: f64 = 1e-13;
 /// Vertices per chunk.
 const CHUNK: usize = 1 << 12;
 
+/// Bodies, and the graph for the motion that none of them carries.
+#[derive(Debug)]
+pub(crate) struct Bodies {
+    /// The vertices of each body.
+    bodies: Vec<Vec<VertexId>>,
+    strain: Strain,
+    graph: Delaunay,
+}
+
+impl Bodies {
+    /// The bodies of a mesh: those of `sets`, or where there are none, the connected parts of its walls.
+    ///
+    /// # Errors
+    /// When a set has fewer than three vertices, has one that is not driven, or shares one with another set;
+    /// when the walls are all in one piece.
+    pub(crate) fn new(sets: &[FacetSet], reference: &mut Reference<'_>) -> Result<Self> {
+        let bodies = body_vertices(sets, reference.mesh, reference.boundary, &reference.options.also_moved)?;
+        Ok(Self { bodies, strain: reference.options.strain, graph: Delaunay::new(reference) })
+    }
+}
+
+impl Prepare for Bodies {
+    fn prepare(&self, scene: &Scene<'_>, points: &[Point], threads: &Threads) -> Result<Prepared> {
+        let Prepared { follower, staying, graph_tets, mut setup } =
+            self.graph.on_graph(scene, points, threads)?;
+        let begin = Instant::now();
+        let follower = RigidBodies::new(self, scene, &scene.following(&staying), points, follower, threads)?;
+        setup.seconds.system += begin.elapsed().as_secs_f64();
+        Ok(Prepared { follower, staying, graph_tets, setup }.boxed())
+    }
+}
+
 impl RigidBodies {
-    /// Computes the shares on a mesh whose cells have the corners `tets`, with its vertices at `points`.
-    /// `free` are the vertices that follow.
+    /// Computes the shares of all vertices at `points`; `free` are those that follow.
     ///
     /// # Errors
     /// When a free vertex is a corner of no cell, or when all cells at one are flat.
-    pub(crate) fn new(
-        (sets, strain): (&[Vec<VertexId>], Strain),
-        tets: &[[VertexId; 4]],
+    fn new(
+        method: &Bodies,
+        scene: &Scene<'_>,
+        free: &[VertexId],
         points: &[Point],
-        (free, nodes): (&[VertexId], &Nodes),
-        graph: GraphMap,
+        graph: GraphFollower,
         threads: &Threads,
     ) -> Result<Self> {
-        let node = |v: &VertexId| nodes.vertices[..nodes.n_driven].binary_search(v).ok().map(|i| i as u32);
-        let nodes_of: Vec<Vec<u32>> = sets.iter().map(|set| set.iter().filter_map(node).collect()).collect();
-        let fields = match strain {
+        let (nodes, tets) = (scene.nodes, scene.corners);
+        let driven = &nodes.vertices[..nodes.n_driven];
+        let node = |v: &VertexId| driven.binary_search(v).ok().map(|i| i as u32);
+        let nodes_of_body = |body: &Vec<VertexId>| body.iter().filter_map(node).collect();
+        let nodes_of: Vec<Vec<u32>> = method.bodies.iter().map(nodes_of_body).collect();
+        let fields = match method.strain {
             Strain::Even => Fields::new(&nodes_of, tets, points, (free, nodes), threads)?,
             Strain::Band => Fields::of_band(&nodes_of, tets, points, nodes),
         };
         Ok(Self { nodes: nodes_of, vertices: nodes.vertices.clone(), fields, graph })
-    }
-
-    /// The graph for the motion that no body carries.
-    pub(crate) fn graph(&self) -> &WeightTable {
-        &self.graph.table
     }
 
     /// Moves the vertices of `out`, which begin with vertex `first`, along with the bodies.
@@ -87,12 +118,10 @@ impl RigidBodies {
         }
         MoveAlong::<Plain> { machine: (), motions, fields, from, first, out }.call();
     }
+}
 
-    /// Moves all vertices from their positions `from`; returns the number of iterations for the graph.
-    ///
-    /// # Errors
-    /// The errors of [`GraphMap::apply`].
-    pub(crate) fn apply(
+impl Follower for RigidBodies {
+    fn follow(
         &self,
         from: &[Point],
         displacements: &Displacements<'_>,
@@ -120,12 +149,16 @@ impl RigidBodies {
         if largest(&rest) > ROUNDING * largest(&table) {
             let carried = out.to_vec();
             let rest = Displacements::All(rest.into_iter().chain([Padded::default()]).collect());
-            iterations = self.graph.apply(&carried, &rest, out, threads)?;
+            iterations = self.graph.follow(&carried, &rest, out, threads)?;
         }
         for (v, d) in self.vertices.iter().zip(&*table) {
             out[v.index()] = add(from[v.index()], d.point());
         }
         Ok(iterations)
+    }
+
+    fn weights(&self) -> Option<&WeightTable> {
+        self.graph.weights()
     }
 }
 
@@ -182,7 +215,7 @@ impl<F: FourLanes> NullaryFnOnce for MoveAlong<'_, F> {
 /// # Errors
 /// When a set has fewer than three vertices, has one that is not driven, or shares one with another set; when
 /// the walls are all in one piece.
-pub(crate) fn body_vertices(
+fn body_vertices(
     sets: &[FacetSet],
     mesh: &Mesh,
     boundary: &Boundary,
