@@ -4,8 +4,7 @@ use motet::Mesh;
 use motet::base::{Point, Threads, VertexId, Watch};
 use motet::mesh::Boundary;
 use motet::motion::{
-    self, BoundaryMotion, Extent, FacetSet, Interface, Limits, Method, MethodWords, Options, Prescribed,
-    RigidLayer, SlideTolerance,
+    self, BoundaryMotion, Extent, FacetSet, Interface, MethodName, Options, Prescribed, RigidLayer,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -42,26 +41,31 @@ impl Request<'_> {
             None => Vec::new(),
         };
         let wall = FacetSet::joined(all_facets(mesh, &self.rigid_layer_at)?);
-        let extent = self.rigid_layer.map(Extent::Distance).or(self.rigid_layer_cells.map(Extent::Cells));
-        let rigid_layer = extent.map(|extent| RigidLayer { extent, wall: wall.clone() });
-        Ok(Options {
-            method: self.method(mesh, wall)?,
+        let motion = motion::Motion {
+            method: MethodName::of(&self.method).or_raise()?,
             within_walls: self.within_walls,
-            smoothing: self.smooth,
+            smooth: self.smooth,
+            rigid_layer: extent(self.rigid_layer, self.rigid_layer_cells),
+            slide_tolerance: self.slide_tolerance,
+            residual: self.residual,
+            factor_gib: self.factor_gib,
+            substeps: self.substeps,
+            ..motion::Motion::default()
+        };
+        let options = motion.options(mesh).or_raise()?;
+        Ok(Options {
+            method: motion.method(all_facets(mesh, &self.bodies)?, wall.clone()).or_raise()?,
             also_moved,
-            rigid_layer,
+            rigid_layer: options.rigid_layer.map(|layer| RigidLayer { wall, ..layer }),
             sliding: all_facets(mesh, &self.slide)?,
-            slide_tolerance: SlideTolerance(self.slide_tolerance),
-            limits: Limits { substeps: self.substeps, ..Limits::default() },
-            ..Options::default()
+            ..options
         })
     }
+}
 
-    fn method(&self, mesh: &Mesh, wall: Option<FacetSet>) -> PyResult<Method> {
-        let bodies = all_facets(mesh, &self.bodies)?;
-        let (residual, factor_gib) = (self.residual, self.factor_gib);
-        Method::of_name(&self.method, MethodWords { bodies, wall, residual, factor_gib }).or_raise()
-    }
+/// The extent of a rigid layer that is given by a distance or by a number of cells.
+pub(crate) fn extent(distance: Option<f64>, cells: Option<usize>) -> Option<Extent> {
+    distance.map(Extent::Distance).or(cells.map(Extent::Cells))
 }
 
 /// Moves the vertices of a mesh so that they follow its boundary.

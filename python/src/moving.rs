@@ -5,11 +5,9 @@ use std::path::PathBuf;
 
 use motet::Mesh;
 use motet::base::{Threads, Watch};
-use motet::contact;
-use motet::motion::{Extent, Limits, Method, MethodWords, SlideTolerance, Strain};
-use motet::moving::{self, Motion, Options, Watching};
+use motet::motion::{MethodName, Motion, Strain};
+use motet::moving::{self, ContactWords, Options, RepairWords};
 use motet::refine::Wanted;
-use motet::remesh::{self, SurfaceRule};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -17,6 +15,7 @@ use crate::arrays::{Vectors, rows, to_field, vectors};
 use crate::convert::{MeshArg, parts};
 use crate::error::{OrRaise, call};
 use crate::history::History;
+use crate::motion::extent;
 use crate::refine::Criterion;
 use crate::report::{report, with_not_reached};
 use crate::watch::{run_watched, watched};
@@ -27,7 +26,7 @@ use crate::words::{one_of, rules, threads};
 pub(crate) struct Request {
     method: String,
     bodies: Vec<String>,
-    strain: String,
+    strain: Option<String>,
     within_walls: bool,
     smooth: usize,
     inside: Vec<String>,
@@ -58,42 +57,46 @@ pub(crate) struct Request {
 
 impl Request {
     fn options(&self, mesh: &Mesh) -> PyResult<Options> {
-        let labels = |words: &[String]| mesh.find_patches(words).or_raise();
-        let extent = self.rigid_layer.map(Extent::Distance).or(self.rigid_layer_cells.map(Extent::Cells));
-        let wall = labels(&self.rigid_layer_at)?;
         let motion = Motion {
-            method: Method::of_name(&self.method, MethodWords::default()).or_raise()?,
-            strain: Strain::of_name(&self.strain).or_raise()?,
-            bodies: labels(&self.bodies)?,
+            method: MethodName::of(&self.method).or_raise()?,
+            bodies: self.bodies.clone(),
+            strain: self.strain.as_deref().map(Strain::of_name).transpose().or_raise()?,
+            smooth: self.smooth,
+            rigid_layer: extent(self.rigid_layer, self.rigid_layer_cells),
+            rigid_layer_at: self.rigid_layer_at.clone(),
             within_walls: self.within_walls,
-            smoothing: self.smooth,
-            inside: labels(&self.inside)?,
-            sliding: labels(&self.slide)?,
-            slide_tolerance: SlideTolerance(self.slide_tolerance),
-            rigid_layer: extent.map(|extent| (extent, wall)),
-            limits: Limits::default(),
+            slide: self.slide.clone(),
+            slide_tolerance: self.slide_tolerance,
+            inside: self.inside.clone(),
+            ..Motion::default()
         };
-        let surface = SurfaceRule::of_name(&self.surface, self.distance).or_raise()?;
-        let held = remesh::Held::of_names(mesh, &self.hold_names).or_raise()?;
-        let repair = remesh::Options { min_eas: self.min_eas, surface, held, ..remesh::Options::default() };
-        let watch = (!self.watch.is_empty()).then(|| Watching {
-            patches: self.watch.clone(),
-            options: contact::Options { warn: self.warn, within: self.within, ..contact::Options::default() },
-            horizon: self.horizon,
-            hold: self.hold,
-        });
-        Ok(Options {
-            motion,
-            repair: self.repair.then_some(repair),
+        let repair = RepairWords {
+            off: !self.repair,
+            min_eas: self.min_eas,
+            surface: self.surface.clone(),
+            distance: self.distance,
+            hold: self.hold_names.clone(),
             margin: self.margin,
             floor: self.floor,
             improve_below: self.improve_below,
-            returns: self.returns,
             valid_at_start: self.valid_at_start,
+        };
+        let contact = ContactWords {
+            patches: self.watch.clone(),
+            warn: self.warn,
+            within: Some(self.within),
+            horizon: self.horizon,
+            hold: self.hold,
+            ..ContactWords::default()
+        };
+        Ok(Options {
+            motion,
+            returns: self.returns,
             rules: rules(mesh, &self.carry)?,
             contents: self.contents.clone(),
-            watch,
+            watch: contact.watching(mesh).or_raise()?,
             remembered: self.remembered,
+            ..repair.options(mesh).or_raise()?
         })
     }
 }

@@ -304,7 +304,11 @@ fn what_is_wrong_with_a_job_is_reported_with_its_line() {
             assert!(stderr(&call).contains(part), "{to}: {}", stderr(&call));
         }
     };
-    refused("period = 0.8", "perod = 0.8", &["job.toml", "line 7", "perod", "period"]);
+    refused(
+        "period = 0.8",
+        "perod = 0.8",
+        &["job.toml", "line 7", "unknown key `perod`; did you mean `period`?"],
+    );
     refused("period = 0.8", "period = \"a\"", &["line 7", "string"]);
     refused("period = 0.8", "period = -1", &["time.period"]);
     refused("steps = 6", "steps = 0", &["time.steps"]);
@@ -316,10 +320,13 @@ fn what_is_wrong_with_a_job_is_reported_with_its_line() {
     refused("in_time = \"swing\"", "in_time = [[0, 1], [0, 2]]", &["rising"]);
     refused("fixed = [\"box\"]", "fixed = [\"box\", \"sphere\"]", &["no vertex of patch sphere"]);
     refused("contents = [\"dye\"]", "contents = [\"ink\"]", &["ink", "dye"]);
-    refused("warn = 1.5", "warn = -1.5", &["contact.warn"]);
-    refused("warn = 1.5", "hold = 0", &["contact.hold"]);
+    refused("warn = 1.5", "warn = -1.5", &["[contact]", "warn must be above 0"]);
+    refused("warn = 1.5", "hold = 0", &["[contact]", "hold must be above 0"]);
     refused("smooth = 2", "method = \"magic\"", &["magic", "guided"]);
-    refused("smooth = 2", "rigid_layer = \"thick\"", &["rigid_layer"]);
+    refused("smooth = 2", "smoot = 2", &["line 12", "did you mean `smooth`?"]);
+    refused("smooth = 2", "method = \"guded\"", &["line 12", "did you mean `guided`?"]);
+    refused("smooth = 2", "rigid_layer = \"thick\"", &["line 12", "3layers", "thick"]);
+    refused("mesh = \"box.vtu\"", "", &["`mesh` is missing"]);
     refused("shift = [3, 0, 0]", "swell = 3", &["both swell and another motion"]);
     refused("[contact]", "[[refine]]\nevery = 2\n[contact]", &["no criterion"]);
     refused("[contact]", "[repair]\nmin_eas = 2\n[contact]", &["[repair]"]);
@@ -327,6 +334,13 @@ fn what_is_wrong_with_a_job_is_reported_with_its_line() {
     let call = folder.motet(["run", "none.toml"]).assert().code(3);
     assert!(stderr(&call).contains("none.toml"));
     folder.motet(["run"]).assert().code(2);
+}
+
+#[test]
+fn the_documentation_lists_all_keys_as_they_are_printed() {
+    let call = Folder::new().motet(["run", "--keys"]).assert().code(0);
+    let page = include_str!("../../../docs/run.md");
+    assert!(page.contains(stdout(&call).trim_end()), "print them again: motet run --keys");
 }
 
 /// The wall of an aneurysm without its ends, in phase `k` of its pulse.

@@ -13,8 +13,8 @@ use motet::geometry::quality::eas;
 use motet::implant::{self, Device};
 use motet::mesh::history::Rules;
 use motet::mesh::{CellKind, Field};
-use motet::motion::{self, FacetSet, Mover};
-use motet::moving::{self, Motion, MovingMesh};
+use motet::motion::{self, FacetSet, Motion, Mover};
+use motet::moving::{self, MovingMesh};
 use motet::{Error, Mesh, Result, io, remesh};
 
 fn main() -> Result<()> {
@@ -110,9 +110,9 @@ fn there_and_back(file: &str, patch: &str, by: [&str; 3], steps: &str) -> Result
     let patch = FacetSet::find(&mesh, patch)?;
     let by: Point = [number(by[0])?, number(by[1])?, number(by[2])?];
     let n_steps = number(steps)?;
-    let motion = Motion { smoothing: 2, ..Motion::default() };
+    let motion = Motion { smooth: 2, ..Motion::default() };
     let options = moving::Options { motion, ..moving::Options::default() };
-    let driven = options.motion.driven(&mesh);
+    let driven = options.motion.driven(&mesh)?;
     let shifts: Vec<Point> = (driven.iter())
         .map(|v| if patch.vertices.binary_search(v).is_ok() { by } else { [0.0; 3] })
         .collect();

@@ -33,8 +33,8 @@ use motet::io;
 use motet::mesh::history::Rule;
 use motet::mesh::{Field, Mesh};
 use motet::meshing::{self, Dividing, Sizes, Surfaces, fill};
-use motet::motion::{FacetSet, Method, Prescribed, Strain};
-use motet::moving::{InTime, Motion, MovingMesh, Options, Script, Step};
+use motet::motion::{FacetSet, MethodName, Motion, Prescribed, Strain};
+use motet::moving::{InTime, MovingMesh, Options, Script, Step};
 use motet::preflight::Role;
 use motet::spatial::trace;
 use serde_json::json;
@@ -101,13 +101,9 @@ fn turn(mesh: &Mesh, &Call { turns, steps, rule, .. }: &Call) -> Result<(), Box<
     let threads = Threads::single();
     let mut given = mesh.clone();
     given.set_cell_field(density_field(CONTENTS, mesh));
-    let motion = Motion {
-        method: Method::Bodies(Vec::new()),
-        strain: Strain::Band,
-        smoothing: 2,
-        ..Motion::default()
-    };
-    let mut script = Script::still(&motion.driven(mesh), &mesh.points);
+    let motion =
+        Motion { method: MethodName::Bodies, strain: Some(Strain::Band), smooth: 2, ..Motion::default() };
+    let mut script = Script::still(&motion.driven(mesh)?, &mesh.points);
     let paddle = FacetSet::find(mesh, "paddle")?.vertices;
     let angle = TAU * turns as f64;
     let whole = Prescribed::Turn { axis: [0.0, 0.0, 1.0], angle, centre: [0.0; 3] };

@@ -28,7 +28,11 @@ const FLOORS: &[(&str, u32)] = &[
     ("moving", 9),
 ];
 
+/// Macros that are exported, which the language puts at the crate root, and the modules that define them.
+const MACROS: &[(&str, &str)] = &[("words", "base")];
+
 fn floor(module: &str) -> Option<u32> {
+    let module = MACROS.iter().find(|(name, _)| *name == module).map_or(module, |(_, home)| home);
     FLOORS.iter().find(|(name, _)| *name == module).map(|(_, floor)| *floor)
 }
 

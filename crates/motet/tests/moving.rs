@@ -64,7 +64,7 @@ fn along(motion: Prescribed) -> impl Fn(Point) -> Point {
 
 fn options() -> Options {
     let mut options = Options { contents: vec!["dye".into()], ..Options::default() };
-    options.motion.smoothing = 2;
+    options.motion.smooth = 2;
     options
 }
 
@@ -267,10 +267,10 @@ fn a_state_keeps_the_arrays_in_their_order_and_knows_its_options() {
     assert!(loaded.history_since(1).unwrap().is_none());
     // Other options cannot resume.
     let mut other = options();
-    other.motion.smoothing = 0;
+    other.motion.smooth = 0;
     let reported = MovingMesh::load(&file, other, &threads()).unwrap_err();
     assert_eq!(reported.kind(), ErrorKind::Options);
-    assert!(reported.to_string().contains("motion.smoothing was 2 and is 0"), "{reported}");
+    assert!(reported.to_string().contains("motion.smooth was 2 and is 0"), "{reported}");
 }
 
 #[test]

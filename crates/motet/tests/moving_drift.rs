@@ -11,8 +11,8 @@ use motet::mesh::history::{Rule, Rules};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{Boundary, CellKind, Cells, Field, Mesh, Qualities, Surface, mean_edge_lengths};
 use motet::meshing::{self, Dividing, Sizes, Surfaces, fill};
-use motet::motion::{Method, Strain};
-use motet::moving::{Motion, MovingMesh, Options, Step, Why};
+use motet::motion::{MethodName, Motion, Strain};
+use motet::moving::{MovingMesh, Options, Step, Why};
 use motet::preflight::Role;
 use motet::refine::{Criterion, Wanted};
 use motet::remesh::{Density, Goal, Improve, SurfaceRule, remesh_mesh};
@@ -74,7 +74,7 @@ fn quality(mesh: &Mesh) -> Qualities {
     Qualities::of(&mesh.points, &tets, &threads())
 }
 
-fn options(method: Method, strain: Strain) -> Options {
+fn options(method: MethodName, strain: Option<Strain>) -> Options {
     Options { motion: Motion { method, strain, ..Motion::default() }, ..Options::default() }
 }
 
@@ -123,13 +123,13 @@ fn advance_and_check(
 fn a_paddle_that_turns_in_a_band_leaves_counts_and_quality_as_they_were() {
     // The mean EAS is 0.588 at first, the same for each tet of the lattice.
     let limits = Limits { vertices: 0.02, tets: 0.08, mean: 0.04 };
-    turn_on(72, options(Method::Bodies(Vec::new()), Strain::Band), &limits);
+    turn_on(72, options(MethodName::Bodies, Some(Strain::Band)), &limits);
 }
 
 #[test]
 fn a_paddle_that_turns_by_the_graph_leaves_counts_and_quality_as_they_were() {
     let limits = Limits { vertices: 0.03, tets: 0.12, mean: 0.1 };
-    turn_on(36, options(Method::Delaunay, Strain::Even), &limits);
+    turn_on(36, options(MethodName::Delaunay, None), &limits);
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn a_body_moved_along_a_channel_leaves_counts_and_quality_as_they_were() {
         moving.advance(f64::from(k), &displacement, &threads()).unwrap()
     };
     let limits = Limits { vertices: 0.02, tets: 0.06, mean: 0.04 };
-    advance_and_check(&mesh, 38, options(Method::Bodies(Vec::new()), Strain::Band), &limits, advance);
+    advance_and_check(&mesh, 38, options(MethodName::Bodies, Some(Strain::Band)), &limits, advance);
 }
 
 #[test]
@@ -158,7 +158,7 @@ fn a_body_that_tumbles_about_none_of_its_axes_leaves_counts_and_quality_as_they_
         moving.advance(f64::from(k), &displacement, &threads()).unwrap()
     };
     let limits = Limits { vertices: 0.02, tets: 0.06, mean: 0.04 };
-    advance_and_check(&mesh, 36, options(Method::Bodies(Vec::new()), Strain::Band), &limits, advance);
+    advance_and_check(&mesh, 36, options(MethodName::Bodies, Some(Strain::Band)), &limits, advance);
 }
 
 /// The patch of the interface of [`bar_in_box`].
@@ -183,7 +183,7 @@ fn bar_in_box() -> Mesh {
 
 #[test]
 fn a_bar_that_is_meshed_too_turns_and_leaves_counts_and_quality_as_they_were() {
-    let motion = Motion { inside: vec![INTERFACE], ..Motion::default() };
+    let motion = Motion { inside: vec![INTERFACE.to_string()], ..Motion::default() };
     let limits = Limits { vertices: 0.03, tets: 0.12, mean: 0.1 };
     advance_and_check(&bar_in_box(), 36, Options { motion, ..Options::default() }, &limits, |moving, k| {
         turn(moving, f64::from(k), f64::from(10 * k).to_radians())
@@ -199,8 +199,10 @@ fn a_bar_that_is_meshed_too_and_turns_as_a_body_keeps_its_tets() {
         of_bar.map(|(_, tet)| tet.map(|v| mesh.points[v.index()])).collect()
     };
     let first = tets_of_bar(&mesh);
-    let motion =
-        Motion { inside: vec![INTERFACE], ..options(Method::Bodies(Vec::new()), Strain::Band).motion };
+    let motion = Motion {
+        inside: vec![INTERFACE.to_string()],
+        ..options(MethodName::Bodies, Some(Strain::Band)).motion
+    };
     let limits = Limits { vertices: 0.02, tets: 0.06, mean: 0.06 };
     let moving =
         advance_and_check(&mesh, 36, Options { motion, ..Options::default() }, &limits, |moving, k| {
@@ -217,7 +219,7 @@ fn a_bar_that_is_meshed_too_and_turns_as_a_body_keeps_its_tets() {
 fn what_is_far_from_a_body_stays_to_the_bit_where_a_band_takes_the_strain() {
     let mesh = paddle_in_box();
     let mut moving =
-        MovingMesh::new(&mesh, options(Method::Bodies(Vec::new()), Strain::Band), &threads()).unwrap();
+        MovingMesh::new(&mesh, options(MethodName::Bodies, Some(Strain::Band)), &threads()).unwrap();
     let step = turn(&mut moving, 1.0, 0.05);
     assert!(step.complete && step.changes.is_empty());
     let is_far = |p: &Point| (0..3).any(|k| p[k].abs() > PADDLE[k] + 0.6);
@@ -267,7 +269,7 @@ fn cylinder_in_box() -> Mesh {
 fn a_cylinder_with_fine_rims_that_turns_keeps_counts_and_sizes() {
     let mesh = cylinder_in_box();
     let first = quality(&mesh);
-    let options = options(Method::Bodies(Vec::new()), Strain::Band);
+    let options = options(MethodName::Bodies, Some(Strain::Band));
     let mut moving = MovingMesh::new(&mesh, options, &threads()).unwrap();
     let is_body: Vec<bool> = moving.driven_places().iter().map(|p| norm(*p) < 2.0).collect();
     for k in 1..=18 {
@@ -316,7 +318,7 @@ fn twist_by(moving: &mut MovingMesh, k: i32, most: f64, shift: f64) -> Step {
 }
 
 fn that_returns() -> Options {
-    Options { returns: true, ..options(Method::Delaunay, Strain::Even) }
+    Options { returns: true, ..options(MethodName::Delaunay, None) }
 }
 
 fn cube_that_returns() -> MovingMesh {
@@ -615,7 +617,7 @@ fn tets_that_a_narrow_place_made_bad_are_good_again_when_it_widens() {
 fn without_improving_bad_tets_are_repaired_and_nothing_else() {
     let mesh = paddle_in_box();
     let run = |improve_below: f64| {
-        let options = Options { improve_below, ..options(Method::Bodies(Vec::new()), Strain::Band) };
+        let options = Options { improve_below, ..options(MethodName::Bodies, Some(Strain::Band)) };
         let mut moving = MovingMesh::new(&mesh, options, &threads()).unwrap();
         let steps = (1..=6).map(|k| turn(&mut moving, f64::from(k), f64::from(10 * k).to_radians()));
         let steps: Vec<Step> = steps.collect();

@@ -5,7 +5,8 @@ use motet::contact;
 use motet::geometry::vector::{add, distance, norm};
 use motet::mesh::shapes::{box_grid, sphere_in_box};
 use motet::mesh::{Boundary, CellKind, Field, Mesh};
-use motet::moving::{Motion, MovingMesh, Options, Watching, Why};
+use motet::motion::Motion;
+use motet::moving::{MovingMesh, Options, Watching, Why};
 use motet::refine::{Criterion, Wanted};
 
 const SHEET: i32 = 99;
@@ -40,19 +41,19 @@ fn with_sheet() -> Mesh {
 }
 
 fn inside() -> Options {
-    Options { motion: Motion { inside: vec![SHEET], ..Motion::default() }, ..Options::default() }
+    Options { motion: Motion { inside: vec![SHEET.to_string()], ..Motion::default() }, ..Options::default() }
 }
 
 #[test]
 fn what_is_driven_is_the_boundary_and_the_patches_inside() {
     let mesh = with_sheet();
-    let driven = inside().motion.driven(&mesh);
+    let driven = inside().motion.driven(&mesh).unwrap();
     let boundary = Boundary::of(&mesh.cells).vertices;
     let is_driven = |v: &VertexId| boundary.contains(v) || mesh.points[v.index()][0] == 0.5;
     let expected: Vec<VertexId> = (0..mesh.points.len()).map(VertexId::new).filter(is_driven).collect();
     assert!(expected.len() > boundary.len());
     assert_eq!(driven, expected);
-    assert_eq!(Motion::default().driven(&mesh), boundary);
+    assert_eq!(Motion::default().driven(&mesh).unwrap(), boundary);
     let moving = MovingMesh::new(&mesh, inside(), &threads()).unwrap();
     let places: Vec<Point> = driven.iter().map(|v| mesh.points[v.index()]).collect();
     assert_eq!(moving.driven_places(), places);

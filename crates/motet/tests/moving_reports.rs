@@ -6,7 +6,8 @@ use motet::base::{Point, Threads};
 use motet::geometry::vector::{add, norm, scale, sub};
 use motet::mesh::shapes::{box_grid, sphere_in_box};
 use motet::mesh::{Field, Mesh};
-use motet::moving::{Motion, MovingMesh, Options, Step};
+use motet::motion::Motion;
+use motet::moving::{MovingMesh, Options, Step};
 use motet::refine::{Criterion, Wanted};
 
 fn threads() -> Threads {
@@ -143,7 +144,7 @@ fn shares_of_a_step_are_numbers_between_zero_and_one() {
 #[test]
 fn a_rim_that_leaves_its_plane_is_found_before_the_step() {
     let mesh = box_grid([4, 3, 3], [[0.0; 3], [2.0, 1.5, 1.0]]);
-    let motion = Motion { sliding: vec![mesh.find_patch("xmin").unwrap()], ..Motion::default() };
+    let motion = Motion { slide: vec!["xmin".into()], ..Motion::default() };
     let moving = MovingMesh::new(&mesh, Options { motion, ..Options::default() }, &threads()).unwrap();
     let leaving = |by: &dyn Fn(Point) -> Point| {
         let displacement: Vec<Point> = moving.driven_places().iter().map(|p| by(*p)).collect();

@@ -5,7 +5,7 @@ use motet::base::Threads;
 use motet::contact;
 use motet::mesh::history::Rules;
 use motet::mesh::shapes::{Coil, TubeOptions, sphere_in_box};
-use motet::motion::{self, Extent, Method, MethodWords, Mover, RigidLayer};
+use motet::motion::{self, Extent, Motion, Mover, RigidLayer};
 use motet::moving::{self, MovingMesh, Watching};
 use motet::refine::{Criterion, Limits, MeshRefinement, Wanted};
 
@@ -26,9 +26,8 @@ fn rigid_layers_and_factors() {
         refused(Mover::new(&mesh, &options, &threads), "rigid layer");
     }
     for factor_gib in WRONG {
-        let words = || MethodWords { factor_gib, ..MethodWords::default() };
-        refused(Method::of_name("delaunay", words()), "factor");
-        refused(words().check(), "factor");
+        let words = Motion { factor_gib, ..Motion::default() };
+        refused(words.options(&mesh), "factor");
     }
 }
 

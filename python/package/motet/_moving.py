@@ -24,7 +24,7 @@ class _Asked:
 
     method: str
     bodies: Sequence[str | int]
-    strain: str
+    strain: str | None
     within_walls: bool
     smooth: int
     inside: Sequence[str | int]
@@ -78,8 +78,8 @@ class MovingMesh(NotPickled):
     method, within_walls, smooth, rigid_layer, rigid_layer_cells, slide_tolerance : as of :class:`Mover`
     bodies, inside, slide, rigid_layer_at : sequences of names or labels of patches
         ``inside``: patches inside the volume that are driven, such as a flap. The others as of :class:`Mover`.
-    strain : "even" or "band"
-        Of the method ``bodies``: over all that is between a body and the walls that stay, or in a band beside the body, for bodies that go on.
+    strain : "even", "band" or None
+        Where the method ``bodies`` puts the strain: over all that lies between a body and the walls that stay (None: even), or in a band beside the body, for bodies that keep moving.
     repair : bool
         Whether bad tets are repaired; if not, a step ends where a cell would turn over.
     min_eas, surface, distance : as of :func:`remesh`
@@ -120,7 +120,7 @@ class MovingMesh(NotPickled):
         *,
         method: str = "delaunay",
         bodies: Sequence[str | int] = (),
-        strain: Literal["even", "band"] = "even",
+        strain: Literal["even", "band"] | None = None,
         within_walls: bool = False,
         smooth: int = 0,
         inside: Sequence[str | int] = (),
@@ -160,7 +160,7 @@ class MovingMesh(NotPickled):
         *,
         method: str = "delaunay",
         bodies: Sequence[str | int] = (),
-        strain: Literal["even", "band"] = "even",
+        strain: Literal["even", "band"] | None = None,
         within_walls: bool = False,
         smooth: int = 0,
         inside: Sequence[str | int] = (),

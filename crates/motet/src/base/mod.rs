@@ -4,7 +4,6 @@ mod csr;
 mod error;
 pub(crate) mod four;
 mod ids;
-
 mod lanewise;
 mod percent;
 mod reasons;
@@ -12,6 +11,7 @@ mod sets;
 mod splitmix;
 mod threads;
 mod watch;
+mod words;
 
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result, printable};
@@ -24,6 +24,9 @@ pub(crate) use sets::DisjointSets;
 pub(crate) use splitmix::splitmix64;
 pub use threads::Threads;
 pub use watch::{Progress, Watch};
+#[doc(hidden)]
+pub use words::{NoWords, read_both};
+pub use words::{Word, Words, nearest};
 
 /// Coordinates of a point, or any other vector in space.
 pub type Point = [f64; 3];

@@ -9,6 +9,7 @@ use crate::mesh::Mesh;
 use crate::motion::certificate::{Certificate, Worst};
 use crate::motion::mover::Mover;
 use crate::motion::options::{Elastic, Method, Options};
+use crate::motion::words::MethodName;
 
 /// What was chosen, and why.
 #[derive(Clone, Debug)]
@@ -25,7 +26,7 @@ pub struct Choice {
 #[derive(Clone, Debug, Serialize)]
 pub struct Tried {
     /// The name of the method, from [`Method::name`].
-    pub method: &'static str,
+    pub method: MethodName,
     /// Whether it reached every frame, with no cell worse than the bound.
     pub kept: bool,
     /// Number of frames that it reached.

@@ -97,6 +97,7 @@ mod setup;
 mod slide;
 mod smooth;
 mod update;
+mod words;
 
 pub use boundary_motion::{BoundaryMotion, Taken};
 pub use carrier::SurfaceCarrier;
@@ -106,10 +107,10 @@ pub use interface::Interface;
 pub use matching::{Matching, SurfaceMotion, match_ids, match_patch, node_ids};
 pub use mover::{Mover, mesh_velocity};
 pub use options::{
-    Elastic, Extent, FacetSet, Laplace, Limits, Method, MethodWords, Options, RigidLayer, SlideTolerance,
-    Strain,
+    Elastic, Extent, FacetSet, Laplace, Limits, Method, Options, RigidLayer, SlideTolerance, Strain,
 };
 pub use point_mover::PointMover;
 pub use prescribed::Prescribed;
 pub use setup::{Setup, SetupSeconds};
 pub use slide::{LeavesPlane, SlidingPlane};
+pub use words::{MethodName, Motion};

@@ -38,6 +38,7 @@ pub enum Method {
 
 /// Where the strain goes that bodies put on the volume around them: see [`Method::Bodies`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Strain {
     /// Evenly over all that lies between a body and the walls that stay: no tet gets much of it. For walls
     /// that return.
@@ -103,86 +104,10 @@ impl Default for Laplace {
     }
 }
 
-/// Parameters for all methods, whichever is requested.
-#[derive(Clone, Debug)]
-pub struct MethodWords {
-    /// The patches of [`Method::Bodies`].
-    pub bodies: Vec<FacetSet>,
-    /// [`Laplace::wall`].
-    pub wall: Option<FacetSet>,
-    /// Residual of steps that are iterated. Default: 1e-6.
-    pub residual: f64,
-    /// Gibibytes that a factor may take. Default: 0.
-    pub factor_gib: f64,
-}
-
-impl Default for MethodWords {
-    fn default() -> Self {
-        Self { bodies: Vec::new(), wall: None, residual: DEFAULT_TOLERANCE.residual, factor_gib: 0.0 }
-    }
-}
-
-impl MethodWords {
-    /// Checks the memory for a factor; a residual is checked by the methods that have one.
-    ///
-    /// # Errors
-    /// When the memory for a factor is negative or not a number.
-    pub fn check(&self) -> Result<()> {
-        if self.factor_gib >= 0.0 {
-            return Ok(());
-        }
-        Err(Error::options(format!("the memory for a factor must be 0 or more GiB; got {}", self.factor_gib))
-            .remedy("give 0 or a positive number"))
-    }
-}
-
 impl Method {
-    /// All methods, each with its parameters.
-    pub fn all(words: MethodWords) -> [Self; 7] {
-        let MethodWords { bodies, wall, residual, factor_gib } = words;
-        let factor_bytes = (factor_gib * (1u64 << 30) as f64) as u64;
-        let tolerance = Tolerance { residual, ..DEFAULT_TOLERANCE };
-        [
-            Self::Delaunay,
-            Self::Bodies(bodies),
-            Self::Guided,
-            Self::Elastic(Elastic { tolerance, factor_bytes, ..Elastic::default() }),
-            Self::Laplace(Laplace { wall, tolerance, factor_bytes, ..Laplace::default() }),
-            Self::InverseDistance,
-            Self::Radial,
-        ]
-    }
-
     /// Whether the method places only corners of cells, since it is based on the tets at them.
     pub(crate) fn places_corners_only(&self) -> bool {
         matches!(self, Self::Bodies(_) | Self::Elastic(_) | Self::Laplace(_))
-    }
-
-    /// The method with a [name](Self::name).
-    ///
-    /// # Errors
-    /// When none has that name; reports the names there are. When the [parameters](MethodWords::check) are
-    /// invalid.
-    pub fn of_name(name: &str, words: MethodWords) -> Result<Self> {
-        words.check()?;
-        let all = Self::all(words);
-        let known = all.iter().map(Self::name).collect::<Vec<_>>().join(", ");
-        all.into_iter().find(|method| method.name() == name).ok_or_else(|| {
-            Error::options(format!("there is no method `{name}`")).remedy(format!("give one of {known}"))
-        })
-    }
-
-    /// The name of the method on the command line.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Delaunay => "delaunay",
-            Self::Bodies(_) => "bodies",
-            Self::Guided => "guided",
-            Self::Elastic(_) => "elastic",
-            Self::Laplace(_) => "laplace",
-            Self::InverseDistance => "idw",
-            Self::Radial => "rbf",
-        }
     }
 
     /// Checks the numbers of the method.
@@ -308,7 +233,7 @@ impl Default for SlideTolerance {
 }
 
 /// How far a rigid layer reaches.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extent {
     /// Vertices at most this far from the wall, in the unit of the mesh.
     Distance(f64),

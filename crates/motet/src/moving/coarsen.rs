@@ -4,6 +4,7 @@ use crate::base::{Error, Result, Threads, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::distance;
 use crate::mesh::{TetMesh, TetPart};
+use crate::moving::current::present_rules;
 use crate::moving::moving_mesh::MovingMesh;
 use crate::moving::step::Change;
 use crate::moving::wall::NO_NODE;
@@ -63,8 +64,8 @@ impl MovingMesh {
             only: Some(shape.bad.iter().map(|(cell, _)| *cell).collect()),
             ..repair
         };
-        let mut given = now.mesh.clone();
-        let rules = now.put_records(&mut given, &now.records.before, &options.rules);
+        let given = now.mesh.clone();
+        let rules = present_rules(&options.rules, &given);
         let outcome = remesh_part(&given, &part, &remesh_options, &rules, threads)?;
         if outcome.report.kept == now.tets.len() && outcome.mesh.points == given.points {
             return Ok(None);

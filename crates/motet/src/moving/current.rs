@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::base::{CellId, Error, Id, Point, Result, Threads, VertexId};
+use crate::base::{CellId, Id, Point, Result, Threads, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{add, sub};
 use crate::mesh::history::{History, Rule, Rules};
@@ -110,6 +110,30 @@ impl Records {
             in_first: InFirst::default(),
         }
     }
+
+    /// The records after a change; `before`: where the old vertices were when the step began.
+    ///
+    /// # Errors
+    /// If the history is of another mesh.
+    fn after(&self, before: &[Point], history: &History) -> Result<Self> {
+        let node = |old: &VertexId| match *old == VertexId::NONE {
+            true => NO_NODE,
+            false => self.node[old.index()],
+        };
+        let eas = |old: &CellId| match *old == CellId::NONE {
+            true => f64::NAN,
+            false => self.first_eas[old.index()],
+        };
+        let rest = self.rest.as_ref().map(|rest| positions_after(rest, history));
+        Ok(Self {
+            first: positions_after(&self.first, history)?,
+            rest: rest.transpose()?,
+            before: positions_after(before, history)?,
+            node: history.vertices.kept().iter().map(node).collect(),
+            first_eas: history.cells.kept().iter().map(eas).collect(),
+            in_first: self.in_first.after(history),
+        })
+    }
 }
 
 /// The EAS of each cell that is a tet; NaN for others.
@@ -127,7 +151,7 @@ impl Current {
         options: &Options,
         threads: &Threads,
     ) -> Result<Self> {
-        let mover = Mover::new(&mesh, &options.motion.of(&mesh), threads)?;
+        let mover = Mover::new(&mesh, &options.motion.options(&mesh)?, threads)?;
         Self::of(mesh, mover, records, left, wall, threads)
     }
 
@@ -145,17 +169,19 @@ impl Current {
         Ok(Self { mesh, tets, mover, records, drive, left })
     }
 
-    /// Continues with a mesh derived from `given`: this one, with [its records](Self::put_known) as arrays.
+    /// Continues with a mesh derived from `given`, which is this one or this one moved. `before`: where the
+    /// vertices of this mesh were when the step began.
     pub(super) fn next(
         &self,
         (given, mut mesh): (&Mesh, Mesh),
         history: &History,
+        before: &[Point],
         left: Vec<LeftBad>,
         (wall, options): (&Wall, &Options),
         threads: &Threads,
     ) -> Result<Self> {
         pass_contents(given, &mut mesh, history, &options.contents);
-        let records = self.take_records(&mut mesh, history)?;
+        let records = self.records.after(before, history)?;
         Self::new(mesh, records, left, wall, options, threads)
     }
 
@@ -211,56 +237,21 @@ impl Current {
         move_points(&mut mesh, points, contents);
         mesh
     }
-
-    /// Adds the records of vertices to a mesh that is about to change, as point arrays, and returns the rules
-    /// with those for them. `before` is where the vertices were when the step began.
-    pub(super) fn put_records(&self, mesh: &mut Mesh, before: &[Point], rules: &Rules) -> Rules {
-        let mut rules = rules.clone();
-        let rest = self.records.rest.as_deref().map(|rest| (REST, rest));
-        for (name, values) in
-            [(FIRST, self.records.first.as_slice()), (BEFORE, before)].into_iter().chain(rest)
-        {
-            mesh.set_point_field(Field::vectors(name, values));
-            rules.points.insert(name.to_owned(), Rule::Linear);
-        }
-        // A rule may name an array that the user has removed since.
-        rules.points.retain(|name, _| mesh.point_field(name).is_some());
-        rules.cells.retain(|name, _| mesh.cell_field(name).is_some());
-        rules
-    }
-
-    /// Takes the records of vertices off a mesh derived from one that [has them as arrays](Self::put_known).
-    pub(super) fn take_records(&self, mesh: &mut Mesh, history: &History) -> Result<Records> {
-        let mut take = |name: &str| -> Result<Field> {
-            let place = mesh.point_data.iter().position(|field| field.name == name);
-            let place = place
-                .ok_or_else(|| Error::input(format!("the array {name} was lost while the mesh changed")))?;
-            Ok(mesh.point_data.remove(place))
-        };
-        let (first, before) = (take(FIRST)?.to_vectors()?, take(BEFORE)?.to_vectors()?);
-        let rest = self.records.rest.as_ref().map(|_| take(REST)?.to_vectors()).transpose()?;
-        let node = |old: &VertexId| match *old == VertexId::NONE {
-            true => NO_NODE,
-            false => self.records.node[old.index()],
-        };
-        let eas = |old: &CellId| match *old == CellId::NONE {
-            true => f64::NAN,
-            false => self.records.first_eas[old.index()],
-        };
-        Ok(Records {
-            first_eas: history.cells.kept().iter().map(eas).collect(),
-            in_first: self.records.in_first.after(history),
-            first,
-            rest,
-            before,
-            node: history.vertices.kept().iter().map(node).collect(),
-        })
-    }
 }
 
-/// Point arrays that are carried along while a mesh changes.
-pub(super) const FIRST: &str = "moving:first";
-pub(super) const REST: &str = "moving:rest";
-pub(super) const BEFORE: &str = "moving:before";
-/// A cell array of a saved state.
-pub(super) const FIRST_EAS: &str = "moving:first_eas";
+/// The rules for arrays that a mesh still has: a rule may name one that the user has removed since.
+pub(super) fn present_rules(rules: &Rules, mesh: &Mesh) -> Rules {
+    let mut rules = rules.clone();
+    rules.points.retain(|name, _| mesh.point_field(name).is_some());
+    rules.cells.retain(|name, _| mesh.cell_field(name).is_some());
+    rules
+}
+
+/// Positions of the vertices of a mesh, carried across its change: interpolated for new vertices.
+///
+/// # Errors
+/// If there is not one position for each old vertex.
+pub(super) fn positions_after(places: &[Point], history: &History) -> Result<Vec<Point>> {
+    let carried = history.transfer_points_by(&Field::vectors("positions", places), Rule::Linear)?;
+    carried.map_or_else(|| Ok(Vec::new()), |field| field.to_vectors())
+}

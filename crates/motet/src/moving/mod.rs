@@ -82,9 +82,11 @@ mod substeps;
 mod swept;
 mod wall;
 mod watch;
+mod words;
 
 pub use moving_mesh::{GAP, MovingMesh};
-pub use options::{Contents, Motion, Options, Watching};
+pub use options::{Contents, Options, Watching};
 pub use script::{InTime, Script, normals};
 pub use step::{Change, Closest, Gaps, InvertedAtStart, Seconds, Step, Stopped, Why, WorstTet};
 pub use swept::{SweptVolumes, swept_volumes};
+pub use words::{ContactWords, RepairWords};

@@ -11,7 +11,7 @@ use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
 use crate::motion::{LeavesPlane, Mover, mesh_velocity};
 use crate::moving::contents::move_points;
-use crate::moving::current::{Current, InFirst, Records};
+use crate::moving::current::{Current, InFirst, Records, present_rules};
 use crate::moving::first_mesh::{FirstMesh, Returns};
 use crate::moving::hold::{self, Held, Hold};
 use crate::moving::options::Options;
@@ -67,7 +67,7 @@ impl MovingMesh {
     /// The errors of [`Mover::new`], and if a watched patch does not exist.
     pub fn new(mesh: &Mesh, options: Options, threads: &Threads) -> Result<Self> {
         options.check()?;
-        let mover = Mover::new(mesh, &options.motion.of(mesh), threads)?;
+        let mover = Mover::new(mesh, &options.motion.options(mesh)?, threads)?;
         let wall = Wall::of(mesh, mover.boundary(), &options)?;
         let mut records = Records::at_first(mesh, mover.boundary());
         records.rest = options.returns.then(|| mesh.points.clone());
@@ -368,7 +368,7 @@ impl MovingMesh {
     fn divide(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Option<Change>> {
         let gaps = self.gaps_here(threads)?;
         let mut given = self.now.mesh.clone();
-        let mut rules = self.now.put_records(&mut given, &self.now.records.before, &self.options.rules);
+        let mut rules = present_rules(&self.options.rules, &given);
         if let Some(gaps) = gaps {
             let sizes: Vec<f64> =
                 gaps.into_iter().map(|gap| gap.clamp(f64::MIN_POSITIVE, NO_LIMIT)).collect();
@@ -390,8 +390,8 @@ impl MovingMesh {
         self.take_over((&given, mesh), history, (&shape, Counts::default()), threads).map(Some)
     }
 
-    /// Continues with a mesh that was divided or coarsened in place. It is derived from `given`: the current
-    /// mesh, with its records as arrays.
+    /// Continues with a mesh that was divided or coarsened in place. `changed`: the current mesh, with arrays
+    /// of its own where there are any, and the one derived from it.
     pub(super) fn take_over(
         &mut self,
         changed: (&Mesh, Mesh),
@@ -399,7 +399,8 @@ impl MovingMesh {
         (shape, operations): (&Shape, Counts),
         threads: &Threads,
     ) -> Result<Change> {
-        let now = self.now.next(changed, &history, Vec::new(), (&self.wall, &self.options), threads)?;
+        let (before, context) = (&self.now.records.before, (&self.wall, &self.options));
+        let now = self.now.next(changed, &history, before, Vec::new(), context, threads)?;
         let counts = [&self.now, &now].map(|now| now.tets.len());
         let points_before = self.now.mesh.points.clone();
         let (when, history) = ((self.clock.time, Why::Refinement), Arc::new(history));

@@ -6,8 +6,8 @@ use crate::base::{Error, Result, VertexId};
 use crate::contact::{self, Room};
 use crate::geometry::vector::LARGEST;
 use crate::mesh::history::Rules;
-use crate::mesh::{Boundary, Mesh, Surface, cone_volume, seamless};
-use crate::motion::{self, Extent, FacetSet, Limits, Method, RigidLayer, SlideTolerance};
+use crate::mesh::{Mesh, Surface, cone_volume, seamless};
+use crate::motion::{self, Motion};
 use crate::remesh;
 
 /// How a mesh moves with its walls, and how its quality is kept.
@@ -101,80 +101,6 @@ impl Options {
 
 /// Names of cell arrays that are densities of something that stays in its cell.
 pub type Contents = Vec<String>;
-
-/// How the inside follows the walls: the options of [`motion::Options`], with patches by label.
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct Motion {
-    /// The method. Facets that it names are ignored: see [`Self::bodies`].
-    pub method: Method,
-    /// Where the strain around bodies goes: see [`motion::Options::strain`].
-    pub strain: motion::Strain,
-    /// The patches of [`Method::Bodies`], each a body; if empty, each connected part of the walls is one,
-    /// except the outer one.
-    pub bodies: Vec<i32>,
-    /// Whether vertices only follow walls that they can reach: see [`motion::Options::within_walls`].
-    pub within_walls: bool,
-    /// The number of smoothing sweeps after each step: see [`motion::Options::smoothing`]. Default: none.
-    pub smoothing: usize,
-    /// Patches inside the volume whose vertices are driven, such as a flap.
-    pub inside: Vec<i32>,
-    /// Flat patches whose vertices slide in their plane, except those that are also on patches inside.
-    pub sliding: Vec<i32>,
-    /// How far sliding vertices may be off their plane: see [`motion::Options::slide_tolerance`].
-    pub slide_tolerance: SlideTolerance,
-    /// The extent of the layer of vertices that keep their place relative to the wall, and the patches of
-    /// that wall; with no patches, all that do not slide.
-    pub rigid_layer: Option<(Extent, Vec<i32>)>,
-    /// Limits of a step: see [`motion::Options::limits`].
-    pub limits: Limits,
-}
-
-impl Motion {
-    /// The driven vertices of a mesh: those of its boundary and of patches inside, in rising order. A
-    /// [`Script`](super::Script) moves these.
-    pub fn driven(&self, mesh: &Mesh) -> Vec<VertexId> {
-        let mut driven = Boundary::of(&mesh.cells).vertices;
-        driven.extend(self.driven_inside(mesh));
-        driven.sort_unstable();
-        driven.dedup();
-        driven
-    }
-
-    /// The options for a mesh as it is now, with patches by their facets.
-    pub(super) fn of(&self, mesh: &Mesh) -> motion::Options {
-        let sets = |labels: &[i32]| -> Vec<FacetSet> {
-            labels.iter().map(|&label| FacetSet::of_patch(mesh, label)).collect()
-        };
-        let method = match &self.method {
-            Method::Bodies(_) => Method::Bodies(sets(&self.bodies)),
-            other => other.clone(),
-        };
-        let rigid_layer = self
-            .rigid_layer
-            .as_ref()
-            .map(|(extent, wall)| RigidLayer { extent: *extent, wall: FacetSet::joined(sets(wall)) });
-        motion::Options {
-            method,
-            strain: self.strain,
-            within_walls: self.within_walls,
-            smoothing: self.smoothing,
-            also_moved: self.driven_inside(mesh),
-            rigid_layer,
-            sliding: sets(&self.sliding),
-            slide_tolerance: self.slide_tolerance,
-            limits: self.limits,
-        }
-    }
-
-    /// The vertices of patches inside, in rising order; some may lie on the boundary.
-    fn driven_inside(&self, mesh: &Mesh) -> Vec<VertexId> {
-        let all = self.inside.iter().map(|&label| FacetSet::of_patch(mesh, label).vertices);
-        let mut inside: Vec<VertexId> = all.flatten().collect();
-        inside.sort_unstable();
-        inside.dedup();
-        inside
-    }
-}
 
 impl Watching {
     /// # Errors

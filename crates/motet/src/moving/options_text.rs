@@ -73,9 +73,9 @@ mod tests {
         let same = Options { remembered: 3, ..options.clone() };
         assert!(differences(&to_json(&options), &to_json(&same)).is_empty());
         let mut other = Options { floor: 0.1, contents: vec!["dye".into()], ..options.clone() };
-        other.motion.smoothing = 7;
+        other.motion.smooth = 7;
         let message = differences(&to_json(&options), &to_json(&other)).join("; ");
-        assert!(message.contains("motion.smoothing was 0 and is 7"), "{message}");
+        assert!(message.contains("motion.smooth was 0 and is 7"), "{message}");
         assert!(message.contains("floor was 0.05 and is 0.1"), "{message}");
         assert!(message.contains("contents") && message.contains("dye"), "{message}");
         let none = Options { repair: None, ..options.clone() };

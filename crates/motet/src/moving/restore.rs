@@ -8,7 +8,7 @@ use crate::mesh::history::History;
 use crate::mesh::{Field, Mesh};
 use crate::motion::Mover;
 use crate::moving::contents::pass_contents;
-use crate::moving::current::{Current, InFirst};
+use crate::moving::current::{Current, InFirst, positions_after, present_rules};
 use crate::moving::first_mesh::FirstMesh;
 use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Why};
@@ -23,7 +23,7 @@ impl FirstMesh {
     /// This mesh with its walls displaced, and the shape of its tets; `None` if that makes tets bad.
     fn displaced(&self, run: &StepRun<'_>) -> Result<Option<(Current, Shape)>> {
         let (mesh, threads) = (self.mesh.clone(), run.threads);
-        let mover = Mover::new(&mesh, &run.options.motion.of(&mesh), threads)?;
+        let mover = Mover::new(&mesh, &run.options.motion.options(&mesh)?, threads)?;
         let mut now = Current::of(mesh, mover, self.records.clone(), self.left.clone(), run.wall, threads)?;
         now.mover.step(&now.target(run.displacement), &mut now.mesh.points, threads)?;
         let is_upright = now.mover.check.newly_inverted(&now.mesh.points, threads).is_empty();
@@ -72,12 +72,12 @@ impl StepRun<'_> {
         shape: &Shape,
     ) -> Result<Option<Current>> {
         let points = self.nearest_to(now, &next.mesh.points);
-        let mut given = now.moved(&points, &self.options.contents);
-        let rules = now.put_records(&mut given, before, &self.options.rules);
+        let given = now.moved(&points, &self.options.contents);
+        let rules = present_rules(&self.options.rules, &given);
         let Some(history) = history(&given, now, &next.mesh, self.threads)? else { return Ok(None) };
         history.transfer(&given, &mut next.mesh, &rules)?;
         pass_contents(&given, &mut next.mesh, &history, &self.options.contents);
-        next.records.before = now.take_records(&mut next.mesh, &history)?.before;
+        next.records.before = positions_after(before, &history)?;
         next.records.rest = Some(next.mesh.points.clone());
         arrange(&mut next.mesh.point_data, &now.mesh.point_data);
         arrange(&mut next.mesh.cell_data, &now.mesh.cell_data);

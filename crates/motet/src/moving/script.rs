@@ -101,7 +101,7 @@ enum Part {
 
 impl Script {
     /// A script in which nothing moves. `driven` lists the vertices that
-    /// [`Motion::driven`](super::Motion::driven) returns; `points` are the points of the first mesh.
+    /// [`Motion::driven`](crate::motion::Motion::driven) returns; `points` are the points of the first mesh.
     pub fn still(driven: &[VertexId], points: &[Point]) -> Self {
         Self {
             driven: driven.to_vec(),

@@ -11,7 +11,7 @@ use crate::base::{CellId, Error, Point, Result, Threads, VertexId};
 use crate::io::{self, Compression, WriteOptions};
 use crate::mesh::{Field, Mesh, Values};
 use crate::motion::Mover;
-use crate::moving::current::{BEFORE, Current, FIRST, FIRST_EAS, LeftBad, REST, Records};
+use crate::moving::current::{Current, LeftBad, Records};
 use crate::moving::first_mesh::Returns;
 use crate::moving::moving_mesh::{Clock, MovingMesh};
 use crate::moving::options::Options;
@@ -20,6 +20,10 @@ use crate::moving::sizes::{SizeMap, Sizes};
 use crate::moving::wall::Wall;
 
 const PREFIX: &str = "moving:";
+const FIRST: &str = "moving:first";
+const REST: &str = "moving:rest";
+const BEFORE: &str = "moving:before";
+const FIRST_EAS: &str = "moving:first_eas";
 const REFERENCE: &str = "moving:reference";
 const NODE: &str = "moving:node";
 const PLACES: &str = "moving:wall_places";
@@ -136,7 +140,7 @@ impl MovingMesh {
         check(&wall, &records, [mesh.points.len(), mesh.cells.len()])?;
         let left = arrays.left(LEFT, mesh.cells.len())?;
         let here = std::mem::replace(&mut mesh.points, arrays.vectors(REFERENCE)?);
-        let mover = Mover::new(&mesh, &options.motion.of(&mesh), threads)?;
+        let mover = Mover::new(&mesh, &options.motion.options(&mesh)?, threads)?;
         mesh.points = here;
         let now = Current::of(mesh, mover, records, left, &wall, threads)?;
         let forgotten = Some(clock.step);

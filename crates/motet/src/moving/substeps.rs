@@ -7,7 +7,7 @@ use crate::base::{CellId, Point, Result, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::{add, norm, scale, sub};
 use crate::mesh::history::Origin;
-use crate::moving::current::{BEFORE, Current, LeftBad, Records};
+use crate::moving::current::{Current, LeftBad, Records, positions_after, present_rules};
 use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Why};
 use crate::moving::step_run::{StepResult, StepRun};
@@ -66,13 +66,13 @@ impl StepRun<'_> {
         let (mut changed, mut done, mut effort) = (None::<Current>, 0.0, Effort::Usual);
         loop {
             let watch = self.threads.watch();
-            watch.report_and_check("moving and repairing", self.legs, self.options.motion.limits.substeps)?;
+            watch.report_and_check("moving and repairing", self.legs, self.options.motion.substeps)?;
             let now = changed.as_ref().unwrap_or(start);
             let (part, shape) = self.leg(now)?;
             self.legs += 1;
             done = if part == 1.0 { 1.0 } else { done + (1.0 - done) * part };
             let is_stuck = part == 0.0;
-            if is_stuck && effort == Effort::All || self.legs >= self.options.motion.limits.substeps {
+            if is_stuck && effort == Effort::All || self.legs >= self.options.motion.substeps {
                 return Ok(StepResult { changed, left: None, shape, fraction: done });
             }
             let is_end = part == 1.0;
@@ -198,12 +198,12 @@ impl StepRun<'_> {
             goal: if matches!(effort, Effort::Usual | Effort::Margin) { usual.goal } else { Goal::Best },
             ..usual.clone()
         };
-        let mut given = now.moved(&self.points, &options.contents);
-        let rules = now.put_records(&mut given, before, &options.rules);
+        let given = now.moved(&self.points, &options.contents);
+        let rules = present_rules(&options.rules, &given);
         let mut tries_left = if options.valid_at_start { MAX_REPEATS } else { 0 };
         let outcome = loop {
             let outcome = remesh_mesh(&given, &repair, &rules, self.threads)?;
-            let replaced = if tries_left > 0 { replaced_by_inverted(&outcome)? } else { Vec::new() };
+            let replaced = if tries_left > 0 { replaced_by_inverted(&outcome, before)? } else { Vec::new() };
             if replaced.is_empty() {
                 break outcome;
             }
@@ -218,7 +218,8 @@ impl StepRun<'_> {
             return Ok(Repaired::Left(left));
         }
         let begin = Instant::now();
-        let next = now.next((&given, outcome.mesh), &history, left, (self.wall, options), self.threads)?;
+        let (changed, context) = ((&given, outcome.mesh), (self.wall, options));
+        let next = now.next(changed, &history, before, left, context, self.threads)?;
         let counts = [now.tets.len(), report.after.tets];
         let change = Change::new((time, Why::Repair), counts, shape, history, self.points.clone());
         self.changes.push(Change { operations: report.operations, ..change });
@@ -313,10 +314,9 @@ enum Repaired {
 }
 
 /// The tets of the old mesh that a repair has replaced by tets without volume at the positions that their
-/// vertices had when the step began.
-fn replaced_by_inverted(outcome: &MeshOutcome) -> Result<Vec<CellId>> {
-    let Some(start) = outcome.mesh.point_field(BEFORE) else { return Ok(Vec::new()) };
-    let start = start.to_vectors()?;
+/// vertices had when the step began, which were `before` for those of the old mesh.
+fn replaced_by_inverted(outcome: &MeshOutcome, before: &[Point]) -> Result<Vec<CellId>> {
+    let start = positions_after(before, &outcome.history)?;
     let side = |tet: [VertexId; 4], points: &[Point]| {
         let [a, b, c, d] = tet.map(|v| points[v.index()]);
         orient3d(a, b, c, d)

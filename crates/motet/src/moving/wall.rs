@@ -82,12 +82,11 @@ impl Wall {
     }
 }
 
-/// The triangles of the boundary, and of the patches inside that move.
+/// The triangles of the boundary, and of those patches inside that move and that the mesh has.
 pub(super) fn wall_triangles(mesh: &Mesh, options: &Options) -> Vec<[VertexId; 3]> {
     let mut triangles = Surface::boundary_of(mesh).triangles;
-    for &label in &options.motion.inside {
-        triangles.extend(FacetSet::of_patch(mesh, label).triangles());
-    }
+    let inside = options.motion.inside.iter().filter_map(|patch| FacetSet::find(mesh, patch).ok());
+    inside.for_each(|patch| triangles.extend(patch.triangles()));
     triangles
 }
 

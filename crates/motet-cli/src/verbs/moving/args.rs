@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueEnum};
-use motet::motion::{Extent, SlideTolerance};
+use motet::base::Words;
+use motet::motion::{Extent, MethodName, Motion};
 
 use super::parsers::{self, PatchFile, Rotate, Translate};
 use crate::words::positive;
@@ -92,14 +93,10 @@ pub(crate) struct MoveArgs {
     /// Keep a patch in place, even where it meets one that moves. Repeatable
     #[arg(long, value_name = "PATCH", help_heading = "Boundary")]
     pub(crate) fixed: Vec<String>,
-    /// Let a flat patch slide in its plane, following its rim; where two such patches meet, vertices slide
-    /// along their line; where three meet, they stay. Repeatable
-    #[arg(long, value_name = "PATCH", help_heading = "Boundary")]
+    #[arg(long, help = repeatable("slide"), value_name = "PATCH", help_heading = "Boundary")]
     pub(crate) slide: Vec<String>,
-    /// How far vertices of a sliding patch may be off its plane, as a part of its radius; they keep that
-    /// distance
-    #[arg(long, value_name = "PART", value_parser = crate::words::part, default_value_t = SlideTolerance::default().0,
-        help_heading = "Boundary")]
+    #[arg(long, help = effect("slide_tolerance"), value_name = "PART", value_parser = crate::words::part,
+        default_value_t = Motion::default().slide_tolerance, help_heading = "Boundary")]
     pub(crate) slide_tolerance: f64,
 
     /// How the volume follows
@@ -109,29 +106,20 @@ pub(crate) struct MoveArgs {
     /// worst of the input mesh, at most 0.1]
     #[arg(long, value_name = "EAS", value_parser = positive, help_heading = "Volume")]
     pub(crate) least: Option<f64>,
-    /// Keep the graph within the walls, so that no vertex follows the wall of another branch, or the far side
-    /// of a flap. Setup takes longer; facets of the boundary must not cross or touch each other
-    #[arg(long, help_heading = "Volume")]
+    #[arg(long, help = effect("within_walls"), help_heading = "Volume")]
     pub(crate) within_walls: bool,
-    /// Patches that each form a rigid body, for `--method bodies`; a patch inside, such as that between fluid
-    /// and solid, carries what it encloses [default: each connected part of the walls except the outer one].
-    /// Repeatable
-    #[arg(long, value_name = "PATCH", help_heading = "Volume")]
+    #[arg(long, help = repeatable("bodies"), value_name = "PATCH", help_heading = "Volume")]
     pub(crate) body: Vec<String>,
-    /// Afterwards move the vertices of bad tets, and no others, to where their tets are better: the number of
-    /// sweeps; 2 are enough
-    #[arg(long, value_name = "SWEEPS", value_parser = clap::value_parser!(u8), default_value_t = 0, help_heading = "Volume")]
+    #[arg(long, help = effect("smooth"), value_name = "SWEEPS", value_parser = clap::value_parser!(u8), default_value_t = 0,
+        help_heading = "Volume")]
     pub(crate) smooth: u8,
-    /// Relative residual to which a method with a linear system solves it
-    #[arg(long, value_name = "RESIDUAL", value_parser = positive, default_value_t = 1e-6, help_heading = "Volume")]
+    #[arg(long, help = effect("residual"), value_name = "RESIDUAL", value_parser = positive,
+        default_value_t = Motion::default().residual, help_heading = "Volume")]
     pub(crate) residual: f64,
-    /// Keep a factorisation of such a system's matrix from step to step, if it takes at most this many GiB:
-    /// steps are faster, setup takes longer
-    #[arg(long, value_name = "GIB", value_parser = positive, help_heading = "Volume")]
+    #[arg(long, help = effect("factor_gib"), value_name = "GIB", value_parser = positive, help_heading = "Volume")]
     pub(crate) factor: Option<f64>,
-    /// Move everything within this distance of the moving boundary rigidly with it, such as 0.2, or 3layers
-    /// for layers of cells
-    #[arg(long, value_name = "DISTANCE|Nlayers", value_parser = parsers::layer, help_heading = "Volume")]
+    #[arg(long, help = effect("rigid_layer"), value_name = "DISTANCE|Nlayers", value_parser = parsers::layer,
+        help_heading = "Volume")]
     pub(crate) rigid_layer: Option<Extent>,
     /// Patches that have the rigid layer [default: the moving ones]. Repeatable
     #[arg(long, value_name = "PATCH", requires = "rigid_layer", help_heading = "Volume")]
@@ -139,6 +127,16 @@ pub(crate) struct MoveArgs {
 
     #[command(flatten)]
     pub(crate) writing: WritingArgs,
+}
+
+/// The effect of an option, as the library says it.
+fn effect(word: &str) -> String {
+    Motion::effect(word).trim_end_matches('.').to_owned()
+}
+
+/// The effect of an option that may be given several times.
+fn repeatable(word: &str) -> String {
+    format!("{} Repeatable", Motion::effect(word))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -163,16 +161,16 @@ pub(crate) enum Method {
 }
 
 impl Method {
-    /// The name of the method in the library. A choice starts with the graph; bodies are tried in their turn.
-    pub(crate) fn library_name(self) -> &'static str {
+    /// The method to begin with. A choice starts with the graph; bodies are tried in their turn.
+    pub(crate) fn name(self) -> MethodName {
         match self {
-            Self::Delaunay => "delaunay",
-            Self::Bodies | Self::Auto => "bodies",
-            Self::Guided => "guided",
-            Self::Elastic => "elastic",
-            Self::Laplace => "laplace",
-            Self::Idw => "idw",
-            Self::Rbf => "rbf",
+            Self::Delaunay => MethodName::Delaunay,
+            Self::Bodies | Self::Auto => MethodName::Bodies,
+            Self::Guided => MethodName::Guided,
+            Self::Elastic => MethodName::Elastic,
+            Self::Laplace => MethodName::Laplace,
+            Self::Idw => MethodName::Idw,
+            Self::Rbf => MethodName::Rbf,
         }
     }
 }

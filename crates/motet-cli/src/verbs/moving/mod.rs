@@ -14,7 +14,7 @@ use motet::base::{Point, Threads};
 use motet::io;
 use motet::mesh::Boundary;
 use motet::motion::{
-    self, Certificate, FacetSet, MethodWords, Mover, Options, RigidLayer, SlideTolerance, mesh_velocity,
+    self, Certificate, FacetSet, Motion, Mover, Options, RigidLayer, SlideTolerance, mesh_velocity,
 };
 use motet::{Error, Mesh};
 
@@ -143,13 +143,13 @@ fn method(
         )
         .remedy("add --method elastic"));
     }
-    let words = MethodWords {
-        bodies,
-        wall: if args.method == Method::Laplace { Some(wall()?) } else { None },
+    let words = Motion {
+        method: args.method.name(),
         residual: args.residual,
         factor_gib: args.factor.unwrap_or(0.0),
+        ..Motion::default()
     };
-    motion::Method::of_name(args.method.library_name(), words)
+    words.method(bodies, if args.method == Method::Laplace { Some(wall()?) } else { None })
 }
 
 /// The facets that have the rigid layer: those of the named patches, otherwise all that move and do not

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use motet::base::Point;
 use motet::motion::Extent;
 
-use crate::words::{named, number, numbers};
+use crate::words::{named, numbers};
 
 /// A parsed `PATCH=dx,dy,dz`.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,17 +71,7 @@ pub(crate) fn patch_file(text: &str) -> Result<PatchFile, String> {
 /// Parses the thickness of the layer that moves rigidly with the wall: a distance, or layers of cells such as
 /// `3layers`.
 pub(crate) fn layer(text: &str) -> Result<Extent, String> {
-    let expected = "a distance such as 0.2, or cell layers such as 3layers, is expected";
-    if let Some(n) = text.strip_suffix("layers").or_else(|| text.strip_suffix("layer")) {
-        return match n.trim().parse() {
-            Ok(n) if n > 0 => Ok(Extent::Cells(n)),
-            _ => Err(expected.into()),
-        };
-    }
-    match number(text) {
-        Ok(d) if d > 0.0 => Ok(Extent::Distance(d)),
-        _ => Err(expected.into()),
-    }
+    Extent::of_text(text).map_err(|e| e.what().to_owned())
 }
 
 fn patch_and_numbers(text: &str) -> Result<(String, Vec<f64>), String> {

@@ -7,7 +7,7 @@ use motet::base::{Point, Threads, VertexId};
 use motet::geometry::vector::distance;
 use motet::mesh::Boundary;
 use motet::mesh::check::{HangingVertex, hanging_vertices};
-use motet::motion::{Certificate, Interface, LeavesPlane, Mover, Setup, SlidingPlane, Tried};
+use motet::motion::{Certificate, Interface, LeavesPlane, MethodName, Mover, Setup, SlidingPlane, Tried};
 use serde::Serialize;
 
 use super::args::MoveArgs;
@@ -88,7 +88,7 @@ struct Hanging {
 /// How a method was chosen.
 #[derive(Debug, Serialize)]
 pub(crate) struct Chosen {
-    pub(crate) method: &'static str,
+    pub(crate) method: MethodName,
     /// The lower bound for the worst cell.
     pub(crate) least: f64,
     pub(crate) tried: Vec<Tried>,

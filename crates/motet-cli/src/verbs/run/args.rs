@@ -76,8 +76,11 @@ Exit status 3: the job cannot be read, or names what does not exist (file, line)
 not be completed, or bad tets are left that walls do not force; what was reached is written.")]
 pub(crate) struct RunArgs {
     /// The job file
-    #[arg(value_name = "JOB.toml")]
-    pub(crate) job: PathBuf,
+    #[arg(value_name = "JOB.toml", required_unless_present = "keys")]
+    pub(crate) job: Option<PathBuf>,
+    /// Print all keys of a job with their defaults and effects, as tables in Markdown
+    #[arg(long, exclusive = true)]
+    pub(crate) keys: bool,
     /// Continue after the last step that an earlier run of the job has saved; start from the beginning where
     /// there is none
     #[arg(long)]

@@ -3,8 +3,8 @@
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::vector::sub;
 use motet::mesh::Surface;
-use motet::motion::{FacetSet, Matching, Prescribed, SurfaceCarrier, SurfaceMotion};
-use motet::moving::{InTime, Motion, Script, normals};
+use motet::motion::{FacetSet, Matching, Motion, Prescribed, SurfaceCarrier, SurfaceMotion};
+use motet::moving::{InTime, Script, normals};
 use motet::{Error, Mesh, Result, io};
 
 use super::job::{Course, Job, Match, Move};
@@ -21,16 +21,16 @@ pub(super) fn script(
     threads: &Threads,
     console: &Console,
 ) -> Result<Script> {
-    let mut script = Script::still(&motion.driven(mesh), &mesh.points);
-    script.hold(&vertices(mesh, &job.motion.fixed).map_err(|e| job.with_job_file(e))?);
-    if let Some(series) = &job.motion.surfaces {
+    let mut script = Script::still(&motion.driven(mesh)?, &mesh.points);
+    script.hold(&vertices(mesh, &job.motion.walls.fixed).map_err(|e| job.with_job_file(e))?);
+    if let Some(series) = &job.motion.walls.surfaces {
         frames(job, &job.path(series), mesh, &mut script, threads)?;
     }
-    for spec in &job.motion.moves {
+    for spec in &job.motion.walls.moves {
         add_move(spec, mesh, &mut script).map_err(|e| job.with_job_file(e))?;
         warn_of_contradiction(spec, mesh, &script, console);
     }
-    if job.motion.surfaces.is_none() && job.motion.moves.is_empty() {
+    if job.motion.walls.surfaces.is_none() && job.motion.walls.moves.is_empty() {
         return Err(job
             .with_job_file(Error::input("nothing moves").remedy("add [[motion.move]], or motion.surfaces")));
     }
@@ -46,10 +46,10 @@ fn frames(
     threads: &Threads,
 ) -> Result<()> {
     let files: Vec<_> = io::read_series(series)?.into_iter().map(|(_, file)| file).collect();
-    if job.motion.matching == Match::Nearest {
+    if job.motion.walls.matching == Match::Nearest {
         return nearest(job, &files, mesh, script, threads);
     }
-    let matching = match job.motion.matching {
+    let matching = match job.motion.walls.matching {
         Match::Position => Matching::Position,
         _ => Matching::Id,
     };
@@ -80,7 +80,7 @@ fn nearest(
     script: &mut Script,
     threads: &Threads,
 ) -> Result<()> {
-    let words: Vec<String> = job.motion.patch.iter().cloned().collect();
+    let words: Vec<String> = job.motion.walls.patch.iter().cloned().collect();
     let followers = match words.is_empty() {
         true => motet::mesh::Boundary::of(&mesh.cells).vertices,
         false => vertices(mesh, &words).map_err(|e| job.with_job_file(e))?,

@@ -1,102 +1,121 @@
 //! The job file: its keys, and errors in it, reported with the line.
 
 use std::collections::BTreeMap;
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
-use motet::base::Point;
+use motet::base::{Point, Word, Words, read_both};
 use motet::mesh::history::Carry;
-use motet::{Error, Result, io};
-use serde::{Deserialize, Serialize};
+use motet::motion::Motion;
+use motet::moving::{ContactWords, RepairWords};
+use motet::{Error, Result, io, words};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::verbs::refine::parsers;
 
-/// The content of a job file.
-#[derive(Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
+/// A job file.
+#[derive(Debug)]
 pub(super) struct Job {
     /// The path of the job file: names of files are relative to it.
-    #[serde(skip)]
     pub(super) file: PathBuf,
-    pub(super) mesh: PathBuf,
-    pub(super) output: PathBuf,
-    #[serde(default = "default_every")]
-    pub(super) every: usize,
-    #[serde(default)]
-    pub(super) contents: Vec<String>,
-    #[serde(default)]
-    pub(super) time: Time,
-    #[serde(default)]
-    pub(super) device: Vec<Device>,
-    #[serde(default)]
-    pub(super) motion: Motion,
-    #[serde(default)]
-    pub(super) repair: Repair,
-    #[serde(default)]
-    pub(super) refine: Vec<Refine>,
-    pub(super) contact: Option<Contact>,
-    #[serde(default)]
-    pub(super) carry: BTreeMap<String, Carry>,
+    content: Content,
 }
 
-/// The default of `every`: each step is written.
-fn default_every() -> usize {
-    1
-}
+impl Deref for Job {
+    type Target = Content;
 
-#[derive(Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub(super) struct Time {
-    pub(super) period: f64,
-    pub(super) steps: Option<usize>,
-    pub(super) periods: usize,
-}
-
-impl Default for Time {
-    fn default() -> Self {
-        Self { period: 1.0, steps: None, periods: 1 }
+    fn deref(&self) -> &Content {
+        &self.content
     }
 }
 
-#[derive(Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Device {
-    pub(super) file: PathBuf,
-    #[serde(default)]
-    pub(super) hollow: bool,
-    #[serde(default)]
-    pub(super) fill: bool,
-    /// Largest distance of a new surface from the device's; without it the triangles are kept.
-    pub(super) conform: Option<f64>,
+words! {
+    /// The content of a job file.
+    pub(super) struct Content {
+        /// The mesh, a file or folder. Required.
+        mesh: PathBuf = PathBuf::new(),
+        /// The series that is written, a `.pvd`; the other files are beside it. Required.
+        output: PathBuf = PathBuf::new(),
+        /// Steps between frames of the output.
+        every: usize = 1,
+        /// Cell arrays that are densities: their integral over each cell stays constant while the cell moves.
+        contents: Vec<String> = Vec::new(),
+        /// The table `[time]`.
+        time: Time = Time::default(),
+        /// Devices that are put into the mesh first, as `motet implant` does: tables `[[device]]`.
+        device: Vec<Device> = Vec::new(),
+        /// The table `[motion]`.
+        motion: MotionTable = MotionTable::default(),
+        /// The table `[repair]`.
+        repair: RepairWords = RepairWords::default(),
+        /// What is refined, and when: tables `[[refine]]`.
+        refine: Vec<Refine> = Vec::new(),
+        /// The table `[contact]`.
+        contact: Option<ContactWords> = None,
+        /// How arrays are carried where the mesh changes, by name: `mean`, `linear`, `inherit` or `drop`.
+        carry: BTreeMap<String, Carry> = BTreeMap::new(),
+    }
 }
 
-#[derive(Debug, Default, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub(super) struct Motion {
-    pub(super) method: Option<String>,
-    pub(super) bodies: Vec<String>,
-    pub(super) strain: Option<String>,
-    pub(super) returns: Option<bool>,
-    pub(super) smooth: usize,
-    pub(super) rigid_layer: Option<Layer>,
-    pub(super) rigid_layer_at: Vec<String>,
-    pub(super) within_walls: bool,
-    pub(super) fixed: Vec<String>,
-    pub(super) slide: Vec<String>,
-    pub(super) slide_tolerance: Option<f64>,
-    pub(super) inside: Vec<String>,
-    pub(super) surfaces: Option<PathBuf>,
-    #[serde(rename = "match")]
-    pub(super) matching: Match,
-    pub(super) patch: Option<String>,
-    #[serde(rename = "move")]
-    pub(super) moves: Vec<Move>,
+words! {
+    /// The times of the steps.
+    pub(super) struct Time {
+        /// How long a period takes, in the unit of time of the output.
+        period: f64 = 1.0,
+        /// Steps per period. By default 20; for measured walls one per frame.
+        steps: Option<usize> = None,
+        /// The number of periods.
+        periods: usize = 1,
+    }
 }
 
-#[derive(Debug, Deserialize, Serialize)]
-#[serde(untagged)]
-pub(super) enum Layer {
-    Distance(f64),
-    Word(String),
+words! {
+    /// A device that is put into the mesh.
+    pub(super) struct Device {
+        /// The file of the device, a closed surface or a mesh of tets. Required.
+        file: PathBuf = PathBuf::new(),
+        /// Its surface bounds the mesh: the flow goes around it.
+        hollow: bool = false,
+        /// It is filled with tets of its own.
+        fill: bool = false,
+        /// The largest distance of a new surface from the device's, in the unit of the mesh. By default the
+        /// triangles of the device are kept.
+        conform: Option<f64> = None,
+    }
+}
+
+/// The table `[motion]`: how the inside follows the walls, and how these move.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct MotionTable {
+    #[serde(flatten)]
+    pub(super) motion: Motion,
+    #[serde(flatten)]
+    pub(super) walls: Walls,
+}
+
+impl<'de> Deserialize<'de> for MotionTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        read_both(deserializer).map(|(motion, walls)| Self { motion, walls })
+    }
+}
+
+words! {
+    /// How the walls move.
+    pub(super) struct Walls {
+        /// Whether walls come back to their first position: then tets are kept good there, too. By default they
+        /// do, except where one moves on or far.
+        returns: Option<bool> = None,
+        /// Patches that stay in place, even where they meet one that moves.
+        fixed: Vec<String> = Vec::new(),
+        /// A series of measured walls, one per step of a period.
+        surfaces: Option<PathBuf> = None,
+        /// How the points of `surfaces` are found in the mesh: `id`, `position`, or `nearest` (of another mesh).
+        matching as "match": Match = Match::Id,
+        /// The patch that follows `surfaces`, with `nearest`.
+        patch: Option<String> = None,
+        /// Walls that move by rule, one entry each; a vertex follows the first entry that contains it.
+        moves as "move": Vec<Move> = Vec::new(),
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
@@ -108,7 +127,7 @@ pub(super) enum Match {
     Nearest,
 }
 
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Move {
     pub(super) patch: String,
@@ -121,7 +140,7 @@ pub(super) struct Move {
     pub(super) in_time: Course,
 }
 
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Turn {
     pub(super) axis: Point,
@@ -129,7 +148,7 @@ pub(super) struct Turn {
     pub(super) centre: Option<Point>,
 }
 
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Bend {
     pub(super) hinge: Point,
@@ -140,7 +159,7 @@ pub(super) struct Bend {
 }
 
 /// The course of a motion in time: a name, or a table.
-#[derive(Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(untagged)]
 pub(super) enum Course {
     Name(String),
@@ -160,86 +179,79 @@ impl Default for Course {
     }
 }
 
-#[derive(Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub(super) struct Repair {
-    pub(super) off: bool,
-    pub(super) min_eas: f64,
-    pub(super) surface: String,
-    pub(super) distance: Option<f64>,
-    /// Names of regions and patches that stay as they are.
-    pub(super) hold: Vec<String>,
-    pub(super) margin: f64,
-    pub(super) floor: f64,
-    pub(super) improve_below: f64,
-    pub(super) valid_at_start: bool,
-}
-
-impl Default for Repair {
-    fn default() -> Self {
-        let usual = motet::moving::Options::default();
-        Self {
-            off: false,
-            min_eas: usual.limit(),
-            surface: "keep".into(),
-            distance: None,
-            hold: Vec::new(),
-            margin: usual.margin,
-            floor: usual.floor,
-            improve_below: usual.improve_below,
-            valid_at_start: usual.valid_at_start,
-        }
+words! {
+    /// An entry of `refine`; each criterion has the syntax of the command line of `motet refine`.
+    pub(super) struct Refine {
+        /// Near surfaces: `FILE=DISTANCE`.
+        near: Vec<String> = Vec::new(),
+        /// Edges near surfaces are at most so long, growing with the distance: `FILE=SIZE,GROWTH`.
+        near_size: Vec<String> = Vec::new(),
+        /// Where an array meets a condition, such as `shear > 2`.
+        conditions as "where": Vec<String> = Vec::new(),
+        /// In balls: `x,y,z,radius`.
+        ball: Vec<String> = Vec::new(),
+        /// In boxes: `x,y,z,x,y,z`.
+        in_box as "box": Vec<String> = Vec::new(),
+        /// At patches: `PATCH` or `PATCH=DISTANCE`.
+        patch: Vec<String> = Vec::new(),
+        /// In regions.
+        region: Vec<String> = Vec::new(),
+        /// Where the gradient of an array is large: `ARRAY>VALUE`.
+        gradient: Vec<String> = Vec::new(),
+        /// Where the curl of an array is large: `ARRAY>VALUE`.
+        vorticity: Vec<String> = Vec::new(),
+        /// Edges of watched patches are divided until they are no longer than the gap between them.
+        gaps: bool = false,
+        /// No edge is divided to less than this length, in the unit of the mesh.
+        smallest: Option<f64> = None,
+        /// Divisions per call. By default as many as the criteria request.
+        generations: Option<u32> = None,
+        /// The largest number of generations.
+        limit_generation: Option<u8> = None,
+        /// Steps from one refinement to the next. By default once, before the first step.
+        every: Option<usize> = None,
+        /// What meets no criterion any more is merged again.
+        coarsen: bool = false,
     }
 }
 
-/// An entry of `refine`; each word has the syntax of the command line of `motet refine`.
-#[derive(Debug, Default, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, default)]
-pub(super) struct Refine {
-    pub(super) near: Vec<String>,
-    pub(super) near_size: Vec<String>,
-    #[serde(rename = "where")]
-    pub(super) conditions: Vec<String>,
-    pub(super) ball: Vec<String>,
-    #[serde(rename = "box")]
-    pub(super) in_box: Vec<String>,
-    pub(super) patch: Vec<String>,
-    pub(super) region: Vec<String>,
-    pub(super) gradient: Vec<String>,
-    pub(super) vorticity: Vec<String>,
-    /// Whether to divide edges of watched patches until they are no longer than the gap between them.
-    pub(super) gaps: bool,
-    pub(super) smallest: Option<f64>,
-    pub(super) generations: Option<u32>,
-    pub(super) limit_generation: Option<u8>,
-    pub(super) every: Option<usize>,
-    pub(super) coarsen: bool,
-}
-
-#[derive(Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Contact {
-    pub(super) patches: Vec<String>,
-    pub(super) warn: Option<f64>,
-    pub(super) within: Option<f64>,
-    #[serde(default)]
-    pub(super) own: bool,
-    pub(super) horizon: Option<f64>,
-    /// The distance at which walls stop.
-    pub(super) hold: Option<f64>,
-}
-
 impl Job {
+    /// All keys of a job with their defaults and effects, as tables in Markdown.
+    pub(super) fn keys() -> String {
+        let of_motion = [Motion::words(), Walls::words()].concat();
+        let tables = [
+            ("A job", Content::words()),
+            ("`[time]`", Time::words()),
+            ("`[[device]]`", Device::words()),
+            ("`[motion]`", of_motion),
+            ("`[repair]`", RepairWords::words()),
+            ("`[[refine]]`", Refine::words()),
+            ("`[contact]`", ContactWords::words()),
+        ];
+        let table = |(title, words): &(&str, Vec<Word>)| {
+            let rows = words.iter().map(|word| {
+                let default = match word.default.as_str() {
+                    "null" | "[]" | "{}" | "\"\"" => String::new(),
+                    value if value.starts_with('{') => String::new(),
+                    value => format!("`{value}`"),
+                };
+                format!("| `{}` | {default} | {} |\n", word.name, word.effect_text().trim_end_matches('.'))
+            });
+            format!("| {title} | default | |\n|---|---|---|\n{}", rows.collect::<String>())
+        };
+        tables.iter().map(table).collect::<Vec<_>>().join("\n")
+    }
+
     /// Reads and checks a job.
     ///
     /// # Errors
     /// When it cannot be read or is not a valid job; with the line.
     pub(super) fn read(file: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, e))?;
-        let job = toml::from_str(&text).map_err(|e| toml_error(&text, &e).in_file(file))?;
-        let mut job = Self { file: file.to_owned(), ..job };
-        if let (None, Some(series)) = (job.time.steps, &job.motion.surfaces) {
-            job.time.steps = Some(io::read_series(job.path(series))?.len());
+        let content = toml::from_str(&text).map_err(|e| toml_error(&text, &e).in_file(file))?;
+        let mut job = Self { file: file.to_owned(), content };
+        if let (None, Some(series)) = (job.time.steps, &job.motion.walls.surfaces) {
+            job.content.time.steps = Some(io::read_series(job.path(series))?.len());
         }
         job.check().map_err(|e| e.in_file(file))?;
         Ok(job)
@@ -256,8 +268,9 @@ impl Job {
         for (i, device) in self.device.iter().enumerate() {
             files.push((format!("device.{i}.file"), device.file.clone()));
         }
-        files
-            .extend(self.motion.surfaces.iter().map(|series| ("motion.surfaces".to_owned(), series.clone())));
+        files.extend(
+            self.motion.walls.surfaces.iter().map(|series| ("motion.surfaces".to_owned(), series.clone())),
+        );
         for (i, refine) in self.refine.iter().enumerate() {
             let near =
                 refine.near.iter().filter_map(|text| parsers::near(text).ok().map(|near| near.surface));
@@ -299,6 +312,13 @@ impl Job {
 
     fn check(&self) -> Result<()> {
         let invalid = |what: &str, remedy: &str| Err(Error::input(what).remedy(remedy));
+        let required = [("mesh", &self.mesh), ("output", &self.output)];
+        let devices = self.device.iter().map(|device| ("device.file", &device.file));
+        for (key, path) in required.into_iter().chain(devices) {
+            if path.as_os_str().is_empty() {
+                return invalid(&format!("`{key}` is missing"), "add it: the name of a file");
+            }
+        }
         if !(self.time.period > 0.0 && self.time.period.is_finite()) {
             return invalid("time.period must be positive", "give a number above 0");
         }
@@ -310,25 +330,6 @@ impl Job {
         }
         if !motet::io::can_write_series(&self.output) {
             return invalid("output is not a series", "name a file that ends in .pvd");
-        }
-        let share = |x: f64| (0.0..1.0).contains(&x);
-        let repair = &self.repair;
-        if !(share(repair.min_eas)
-            && share(repair.margin)
-            && share(repair.floor)
-            && share(repair.improve_below))
-        {
-            return invalid(
-                "a number of [repair] is not between 0 and 1",
-                "min_eas, margin, floor and improve_below are shares",
-            );
-        }
-        let contact = self.contact.as_ref();
-        let distances = contact.map(|contact| [("warn", contact.warn), ("hold", contact.hold)]);
-        for (key, value) in distances.into_iter().flatten() {
-            if let Some(value) = value.filter(|value| *value <= 0.0 || value.is_nan()) {
-                return invalid(&format!("contact.{key} is {value}"), "give a distance above 0");
-            }
         }
         if self.contact.is_none() && self.refine.iter().any(|refine| refine.gaps) {
             return invalid(

@@ -26,6 +26,10 @@ use crate::console::Console;
 use crate::outcome::Outcome;
 
 pub(crate) fn run(args: &RunArgs, common: &Common, console: &Console) -> Result<Outcome> {
+    if args.keys {
+        console.print(Job::keys().trim_end());
+        return Ok(Outcome::Done);
+    }
     let report = execute(args, common, console)?;
     report.print(console);
     Ok(report.outcome())
@@ -35,7 +39,11 @@ pub(crate) fn run(args: &RunArgs, common: &Common, console: &Console) -> Result<
 pub(crate) fn execute(args: &RunArgs, common: &Common, console: &Console) -> Result<Report> {
     let begin = Instant::now();
     let threads = common.threads()?;
-    let job = Job::read(&args.job)?;
+    let file = args
+        .job
+        .as_deref()
+        .ok_or_else(|| Error::options("no job is given").remedy("give a job file, or --keys"))?;
+    let job = Job::read(file)?;
     let mut output = Output::new(&job)?;
     let mut report = Report::new(&job, &output);
     let mut run = Run::begin(&job, args.resume, &mut output, &mut report, &threads, console)?;

@@ -23,7 +23,7 @@ pub(super) type Record = BTreeMap<String, String>;
 /// When a file that the job names cannot be read.
 pub(super) fn of(job: &Job) -> Result<Record> {
     let mut record = Record::new();
-    let said = serde_json::to_value(job).map_err(|e| Error::io(&job.file, e.into()))?;
+    let said = serde_json::to_value(&**job).map_err(|e| Error::io(&job.file, e.into()))?;
     flatten("", &said, &mut record);
     for key in ["output", "time.periods"] {
         record.remove(key);

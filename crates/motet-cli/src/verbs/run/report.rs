@@ -179,7 +179,7 @@ impl Report {
         script: &Script,
         console: &Console,
     ) {
-        if moving.options().motion.sliding.is_empty() {
+        if moving.options().motion.slide.is_empty() {
             return;
         }
         for k in 1..=job.steps_in_period() {

@@ -3,22 +3,19 @@
 use std::path::PathBuf;
 
 use motet::base::Threads;
-use motet::contact;
 use motet::geometry::vector::norm;
 use motet::implant::{self, implant};
 use motet::mesh::history::Rules;
 use motet::mesh::mean_edge_lengths;
-use motet::motion::{Extent, Method, MethodWords, SlideTolerance, Strain};
-use motet::moving::{GAP, Motion, Options, Script, Watching};
+use motet::motion::{MethodName, Motion, Strain};
+use motet::moving::{GAP, Options, Script};
 use motet::refine::{Criterion, Limits, Size, Wanted};
-use motet::remesh::{self, Held, SurfaceRule};
 use motet::{Error, Mesh, Result, io};
 
 use super::course;
-use super::job::{self, Job, Layer, Refine};
+use super::job::{self, Job, Refine};
 use crate::console::Console;
 use crate::verbs::implant::{Names, inside, with_file};
-use crate::verbs::moving;
 use crate::verbs::refine::{parsers, target};
 
 /// Everything that a run starts with.
@@ -34,11 +31,14 @@ pub(super) struct Setup {
 impl Setup {
     pub(super) fn of(job: &Job, threads: &Threads, console: &Console) -> Result<Self> {
         let mesh = with_devices(job, threads, console)?;
-        let mut motion = motion(job, &mesh).map_err(|e| job.with_job_file(e))?;
+        let mut motion = job.motion.motion.clone();
+        motion.options(&mesh).map_err(|e| job.with_job_file(e))?;
         let script = course::script(job, &mesh, &motion, threads, console)?;
-        let moves_on = moves_on(job, &mesh, &motion, &script);
-        motion.strain = strain(job, &motion.method, moves_on).map_err(|e| job.with_job_file(e))?;
-        let returns = job.motion.returns.unwrap_or(!moves_on);
+        let moves_on = moves_on(job, &mesh, &motion, &script)?;
+        if motion.method == MethodName::Bodies && moves_on {
+            motion.strain.get_or_insert(Strain::Band);
+        }
+        let returns = job.motion.walls.returns.unwrap_or(!moves_on);
         let options = options(job, &mesh, motion, returns).map_err(|e| job.with_job_file(e))?;
         let refining = job.refine.iter().map(|spec| wanted(job, spec, threads));
         let refining = refining.collect::<Result<_>>().map_err(|e| job.with_job_file(e))?;
@@ -50,20 +50,23 @@ impl Setup {
 const FAR_EDGES: f64 = 3.0;
 
 /// Whether a wall moves on without coming back, or a rigid body moves far.
-fn moves_on(job: &Job, mesh: &Mesh, motion: &Motion, script: &Script) -> bool {
-    if job.motion.moves.iter().any(|part| part.in_time.is_ramp()) {
-        return true;
+///
+/// # Errors
+/// When the mesh lacks a patch that is driven.
+fn moves_on(job: &Job, mesh: &Mesh, motion: &Motion, script: &Script) -> Result<bool> {
+    if job.motion.walls.moves.iter().any(|part| part.in_time.is_ramp()) {
+        return Ok(true);
     }
-    if !matches!(motion.method, Method::Bodies(_)) {
-        return false;
+    if motion.method != MethodName::Bodies {
+        return Ok(false);
     }
     let edges = mean_edge_lengths(&mesh.points, mesh.cells.tets().map(|(_, tet)| tet));
-    let driven = motion.driven(mesh);
+    let driven = motion.driven(mesh)?;
     let steps = job.steps_in_period();
-    (1..steps).any(|k| {
+    Ok((1..steps).any(|k| {
         let displacement = script.at(k as f64 / steps as f64);
         driven.iter().zip(displacement).any(|(v, d)| norm(d) > FAR_EDGES * edges[v.index()])
-    })
+    }))
 }
 
 /// The mesh with devices put into it: first together those that keep their triangles, since they may be
@@ -106,90 +109,20 @@ fn options(job: &Job, mesh: &Mesh, motion: Motion, returns: bool) -> Result<Opti
         return Err(Error::input(format!("there is no cell array `{name}` for `contents`"))
             .remedy(format!("the mesh has: {}", known.join(", "))));
     }
-    let repair = &job.repair;
-    let repair_options = remesh::Options {
-        min_eas: repair.min_eas,
-        surface: SurfaceRule::of_name(&repair.surface, repair.distance)?,
-        held: Held::of_names(mesh, &repair.hold)?,
-        ..remesh::Options::default()
+    let watch = match &job.contact {
+        Some(contact) => contact.watching(mesh).map_err(|e| e.at("[contact]"))?,
+        None => None,
     };
     Ok(Options {
         motion,
-        repair: (!repair.off).then_some(repair_options),
-        margin: repair.margin,
-        floor: repair.floor,
-        improve_below: repair.improve_below,
         returns,
-        valid_at_start: repair.valid_at_start,
         rules,
         contents: job.contents.clone(),
-        watch: watching(job, mesh)?,
+        watch,
         // Histories are only for callers of the library.
         remembered: 1,
+        ..job.repair.options(mesh).map_err(|e| e.at("[repair]"))?
     })
-}
-
-fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
-    let spec = &job.motion;
-    let method = match &spec.method {
-        None => Method::default(),
-        Some(name) => Method::of_name(name, MethodWords::default())?,
-    };
-    if !spec.bodies.is_empty() && !matches!(method, Method::Bodies(_)) {
-        return Err(Error::input("motion.bodies names rigid bodies, but the method does not use them")
-            .remedy("add method = \"bodies\""));
-    }
-    let rigid_layer = match &spec.rigid_layer {
-        None => None,
-        Some(layer) => Some((extent(layer)?, mesh.find_patches(&spec.rigid_layer_at)?)),
-    };
-    Ok(Motion {
-        method,
-        bodies: mesh.find_patches(&spec.bodies)?,
-        within_walls: spec.within_walls,
-        smoothing: spec.smooth,
-        inside: mesh.find_patches(&spec.inside)?,
-        sliding: mesh.find_patches(&spec.slide)?,
-        slide_tolerance: spec.slide_tolerance.map_or_else(SlideTolerance::default, SlideTolerance),
-        rigid_layer,
-        ..Motion::default()
-    })
-}
-
-/// Where bodies put the strain: as the job says; by default in a band where a body moves on.
-fn strain(job: &Job, method: &Method, moves_on: bool) -> Result<Strain> {
-    let is_of_bodies = matches!(method, Method::Bodies(_));
-    match &job.motion.strain {
-        Some(_) if !is_of_bodies => Err(Error::input(
-            "motion.strain says where bodies put the strain, but the method does not use bodies",
-        )
-        .remedy("add method = \"bodies\"")),
-        Some(name) => Strain::of_name(name),
-        None if is_of_bodies && moves_on => Ok(Strain::Band),
-        None => Ok(Strain::Even),
-    }
-}
-
-/// An extent from a number, or from a word as on the command line of `motet move`.
-fn extent(layer: &Layer) -> Result<Extent> {
-    let word = match layer {
-        Layer::Distance(distance) => distance.to_string(),
-        Layer::Word(word) => word.clone(),
-    };
-    moving::parsers::layer(&word).map_err(|e| Error::input(format!("motion.rigid_layer = {word}: {e}")))
-}
-
-fn watching(job: &Job, mesh: &Mesh) -> Result<Option<Watching>> {
-    let Some(spec) = &job.contact else { return Ok(None) };
-    mesh.find_patches(&spec.patches)?;
-    let options = contact::Options {
-        warn: spec.warn,
-        own: spec.own,
-        within: spec.within.unwrap_or(f64::INFINITY),
-        ..contact::Options::default()
-    };
-    let (horizon, hold) = (spec.horizon, spec.hold);
-    Ok(Some(Watching { patches: spec.patches.clone(), options, horizon, hold }))
 }
 
 /// The refinement that an entry of `refine` requests, and after every how many steps: by default once, before

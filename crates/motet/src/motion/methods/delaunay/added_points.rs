@@ -1,5 +1,5 @@
-//! Points that the graph within walls added: they move by linear elements on the graph for a Laplace equation,
-//! so that an affine motion of the boundary still moves every vertex by the same affine map.
+//! Points that the graph within walls added: they move by linear elements on the graph for a Laplace
+//! equation, so that an affine motion of the boundary still moves every vertex by the same affine map.
 
 use crate::algebra::{Tolerance, conjugate_gradients};
 use crate::base::{Point, Result, Threads};

@@ -1,0 +1,115 @@
+//! How a moving mesh is kept good, in words: what files, Python and other callers give.
+
+use crate::base::{Error, Result};
+use crate::contact;
+use crate::mesh::Mesh;
+use crate::moving::options::{Options, Watching};
+use crate::remesh::{self, Held, SurfaceRule};
+use crate::words;
+
+words! {
+    /// How tets that become bad are repaired on the way.
+    pub struct RepairWords {
+        /// Nothing is repaired, and a step ends where a cell would invert.
+        off: bool = false,
+        /// A tet below this EAS is bad.
+        min_eas: f64 = Options::default().limit(),
+        /// What may happen to walls: `keep`, nothing; `adapt`, they may stray by `distance`, features and
+        /// borders of patches are kept; `loose`, only borders of patches are kept.
+        surface: String = "keep".to_owned(),
+        /// How far walls may stray, in the unit of the mesh. By default a fraction of its largest extent.
+        distance: Option<f64> = None,
+        /// Regions and patches that repairs leave as they are.
+        hold: Vec<String> = Vec::new(),
+        /// Repaired tets reach `min_eas` + `margin`.
+        margin: f64 = Options::default().margin,
+        /// No step takes a repairable tet below this EAS.
+        floor: f64 = Options::default().floor,
+        /// Where a repair changes the mesh, tets below this EAS are improved, too, and the number of vertices
+        /// is kept. With 0 only bad tets are repaired.
+        improve_below: f64 = Options::default().improve_below,
+        /// No tet made by a repair is flat or inverted where its vertices were when the step began, as
+        /// schemes need that integrate over an earlier time level.
+        valid_at_start: bool = Options::default().valid_at_start,
+    }
+}
+
+impl RepairWords {
+    /// The options that these words determine for a mesh; all others have their defaults.
+    ///
+    /// # Errors
+    /// If a number is not in [0, 1), a rule or a name does not exist, or a distance is given for a surface
+    /// that is kept.
+    pub fn options(&self, mesh: &Mesh) -> Result<Options> {
+        for (word, value) in [
+            ("min_eas", self.min_eas),
+            ("margin", self.margin),
+            ("floor", self.floor),
+            ("improve_below", self.improve_below),
+        ] {
+            if !(0.0..1.0).contains(&value) {
+                return Err(Error::options(format!("{word} must be in [0, 1); got {value}"))
+                    .remedy("leave it out, or give a number such as 0.2"));
+            }
+        }
+        let repair = remesh::Options {
+            min_eas: self.min_eas,
+            surface: SurfaceRule::of_name(&self.surface, self.distance)?,
+            held: Held::of_names(mesh, &self.hold)?,
+            ..remesh::Options::default()
+        };
+        Ok(Options {
+            repair: (!self.off).then_some(repair),
+            margin: self.margin,
+            floor: self.floor,
+            improve_below: self.improve_below,
+            valid_at_start: self.valid_at_start,
+            ..Options::default()
+        })
+    }
+}
+
+words! {
+    /// Which patches are watched, and how.
+    pub struct ContactWords {
+        /// Patches, by name or number; each is a body, and all pairs are measured.
+        patches: Vec<String> = Vec::new(),
+        /// Gaps below this distance are reported as warnings, in the unit of the mesh.
+        warn: Option<f64> = None,
+        /// Gaps are measured up to this distance. By default however large they are.
+        within: Option<f64> = None,
+        /// Gaps of a patch with itself are measured, too.
+        own: bool = false,
+        /// How far ahead contact is predicted, at the present velocity, in units of time. By default as far
+        /// as the last step.
+        horizon: Option<f64> = None,
+        /// The distance at which walls stop, whatever the requested motion: each patch gives way to all those
+        /// after it, and slides along them.
+        hold: Option<f64> = None,
+    }
+}
+
+impl ContactWords {
+    /// Which patches of a mesh are watched; `None` without patches.
+    ///
+    /// # Errors
+    /// If the mesh has no such patch, or a distance is not above 0.
+    pub fn watching(&self, mesh: &Mesh) -> Result<Option<Watching>> {
+        mesh.find_patches(&self.patches)?;
+        for (word, value) in [("warn", self.warn), ("hold", self.hold)] {
+            if let Some(value) = value.filter(|value| *value <= 0.0 || value.is_nan()) {
+                return Err(Error::options(format!("{word} must be above 0; got {value}"))
+                    .remedy("give a distance above 0, or leave it out"));
+            }
+        }
+        let options = contact::Options {
+            warn: self.warn,
+            own: self.own,
+            within: self.within.unwrap_or(f64::INFINITY),
+            ..contact::Options::default()
+        };
+        let watching =
+            Watching { patches: self.patches.clone(), options, horizon: self.horizon, hold: self.hold };
+        Ok((!self.patches.is_empty()).then_some(watching))
+    }
+}
