@@ -244,26 +244,26 @@ class Mesh:
     @classmethod
     def from_meshio(cls, mesh: Any) -> Mesh:
         """Create a mesh from a ``meshio.Mesh``."""
-        from ._doors import from_meshio
+        from ._convert import from_meshio
 
         return from_meshio(mesh)
 
     def to_meshio(self) -> Any:
         """Convert the mesh to a ``meshio.Mesh``."""
-        from ._doors import to_meshio
+        from ._convert import to_meshio
 
         return to_meshio(self)
 
     @classmethod
     def from_pyvista(cls, mesh: Any) -> Mesh:
         """Create a mesh from any PyVista or VTK data set with cells."""
-        from ._doors import from_pyvista
+        from ._convert import from_pyvista
 
         return from_pyvista(mesh)
 
     def to_pyvista(self) -> Any:
         """Convert the mesh to a ``pyvista.UnstructuredGrid``."""
-        from ._doors import to_pyvista
+        from ._convert import to_pyvista
 
         return to_pyvista(self)
 
@@ -337,7 +337,7 @@ def as_mesh(mesh: MeshLike) -> Mesh:
     InputError
         If the object is not a mesh, or cannot be converted.
     """
-    from ._doors import from_meshio, from_pyvista
+    from ._convert import from_meshio, from_pyvista
 
     if isinstance(mesh, Mesh):
         return mesh
