@@ -234,13 +234,15 @@ class MovingMesh(NotPickled):
     ) -> MovingMesh:
         """Continue from a state written by :meth:`save`, with identical results.
 
-        All options must be those of the saved mesh, except `remembered` and `threads`. Earlier changes are
-        not part of the state; see :meth:`history_since`.
+        Earlier changes are not part of the state; see :meth:`history_since`.
 
         Parameters
         ----------
         path : path-like
             The file written by :meth:`save`.
+        method, bodies, ..., threads
+            Options of :class:`MovingMesh`. They must be those of the saved mesh, except `remembered` and
+            `threads`.
 
         Returns
         -------
@@ -366,7 +368,44 @@ class MovingMesh(NotPickled):
         generations: int | None = None,
         coarsen: bool = False,
     ) -> list[Report]:
-        """Refine and coarsen tets by the criteria of :func:`refine`.
+        """Refine and coarsen tets by criteria. A tet is marked for division if any criterion marks it.
+
+        Parameters
+        ----------
+        everything : bool, default False
+            Mark all tets.
+        near : sequence of (MeshLike, float), optional
+            Mark tets within a distance of a surface.
+        near_size : sequence of (MeshLike, float) or (MeshLike, float, float), optional
+            Surface, edge length ``h`` and growth (default 0.5): divide until no edge is longer than ``h`` at the
+            surface, and ``h + growth * distance`` away from it.
+        box : sequence of (low, high), optional
+            Mark tets whose centre lies in an axis-aligned box, given by two corners.
+        ball : sequence of (centre, radius), optional
+            Mark tets that are at least partly inside a ball.
+        region : sequence of str or int, optional
+            Mark tets of regions, given by name or label.
+        patch : sequence of str, int or (str or int, float), optional
+            Mark tets at patches, given by name or label, or within a distance of them.
+        size : float or str, optional
+            Divide until no edge is longer than this, or than the values of the named array.
+        where : sequence of str, optional
+            Mark tets where a condition on an array holds, such as ``"wss>4"``.
+        gradient, vorticity, q : sequence of str, optional
+            Mark tets where the gradient of an array, or the vorticity or the Q criterion of a velocity array,
+            exceeds a threshold: ``"ARRAY>VALUE"``.
+        jump, recovery : mapping of str to float or int, optional
+            Mark tets by an error estimate for a point array: gradient jumps or gradient recovery. A float is the
+            share of the total error to mark, an int the target number of tets.
+        hessian : mapping of str or tuple of str to float, str or int, optional
+            Divide by the second derivatives of one or more point arrays. The value is the interpolation error to
+            reach (float), the same as a percentage of the range (``"2%"``), or the target number of tets (int).
+        smallest : float, optional
+            Smallest size that `hessian` requests, in units of the mesh.
+        generations : int, optional
+            Maximum number of divisions in this call. Default: 1, or as many as sizes require.
+        coarsen : bool, default False
+            Undo divisions where no criterion marks a tet.
 
         Returns
         -------
