@@ -117,7 +117,7 @@ class MovingMesh(NotPickled):
         Tets are repaired during a step before their EAS falls below this, if they can be.
     improve_below : float, default 0.75
         Where a repair changes the mesh, tets below this EAS are improved as well: those near the change, and
-        those that differ from the initial mesh. The number of interior vertices is kept. With 0 only bad tets
+        those that have deteriorated since the start. The number of interior vertices is kept. With 0 only bad tets
         are repaired.
     returns : bool, default False
         Whether the walls return to their initial position periodically. Tets are then improved for that
