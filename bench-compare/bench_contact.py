@@ -13,7 +13,8 @@ NEAREST = {"FCL": "fcl", "coal": "coal"}
 REFITS = ("motet", "parry")  # all others rebuild their trees in each step
 # Accuracy of f64, relative to the size of the surfaces.
 EXACT = 1e-12
-# Targets of the project: ratios to the fastest other program in f64, seconds, and speed-up by a second thread.
+# Targets of the project: ratios to the fastest other program in f64, seconds, and speed-up by a second
+# thread.
 WANTED = {"cold": 3.0, "step": 5.0, "nearest": 5e-3, "threads": 1.7}
 
 
@@ -51,7 +52,8 @@ def run(record, options):
 
 
 def differences(folder, places, results):
-    """Add the largest deviation of each program from the median of all f64 programs, relative to the tube's size."""
+    """Add the largest deviation of each program from the median of all f64 programs, relative to the tube's
+    size."""
     corners = np.fromfile(folder / "tube.f64").reshape(-1, 3)
     size = np.linalg.norm(corners.max(0) - corners.min(0))
     for name, end in (("difference", ".f64"), ("difference_step", "_step.f64")):

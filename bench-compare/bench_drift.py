@@ -1,4 +1,5 @@
-"""Numbers of vertices and quality over long motions, by `motet run` and, for two motions, by a loop with Mmg."""
+"""Numbers of vertices and quality over long motions, by `motet run` and, for two motions, by a
+loop with Mmg."""
 import argparse
 import importlib.util
 import json
@@ -45,7 +46,8 @@ def run(record, options):
 
 
 def requested(options):
-    """Return the cases, the names of those without data, and whether to run `drift_transfer`, which is not a case."""
+    """Return the cases, the names of those without data, and whether to run `drift_transfer`, which is not a
+    case."""
     names = options.cases.split(",") if options.cases else None
     if names is None or drift_transfer.NAME not in names:
         return *chosen(options), names is None

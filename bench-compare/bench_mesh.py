@@ -1,4 +1,5 @@
-"""Meshing of closed surfaces of vessels and devices, without and with interior points, by motet and other meshers."""
+"""Meshing of closed surfaces of vessels and devices, without and with interior points, by motet and other
+meshers."""
 import math
 import sys
 
@@ -12,7 +13,8 @@ LIMIT = 120.0  # time limit in seconds, for a process, and for all that search f
 OURS = {"motet --delaunay": ["--delaunay"], "motet": []}
 # Name in the table: keyword of rivals/mesh_python.py.
 PLAIN = {"TetGen -p": "tetgen", "TetGen -pY": "tetgen-keep"}
-# Name in the table: keyword, first size relative to motet's, and number of trials to match motet's number of tets (0: none).
+# Name in the table: keyword, first size relative to motet's, and number of trials to match motet's number of
+# tets (0: none).
 SIZED = {"TetGen -pq1.2/14aVY": ("tetgen-quality", 1.3, 6), "Gmsh": ("gmsh", 0.8, 6), "Gmsh HXT": ("gmsh-hxt", 0.8, 6), "fTetWild": ("ftetwild", 1.0, 0)}
 ONCE = ("fTetWild",)  # one round, since it takes minutes
 
@@ -144,7 +146,8 @@ def line(result, first):
 
 
 def kept(result):
-    """Describe how many triangles of the surface are facets of the mesh exactly, and how many others there are."""
+    """Describe how many triangles of the surface are facets of the mesh exactly, and how many others there
+    are."""
     if result["triangles_found"] == result["triangles"]:
         return "all" if result["triangles_extra"] == 0 else f"all, {result['triangles_extra']:,} more"
     share = math.floor(1000 * result["triangles_found"] / result["triangles"]) / 10

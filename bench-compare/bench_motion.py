@@ -1,4 +1,5 @@
-"""Mesh motion at the paper's four sizes, with and without a rigid layer, by motet, a C loop, SciPy and linear solvers."""
+"""Mesh motion at the paper's four sizes, with and without a rigid layer, by motet, a C loop, SciPy and linear
+solvers."""
 import sys
 import time
 
@@ -9,9 +10,10 @@ from common import HERE, MOTET, TARGET, busy_seconds, call, cell, combine, in_tu
 from common import seconds_text, table
 from meshes import sphere_in_box, vtu
 
-# Table 1 of the paper, in seconds: volume vertices, tets, boundary vertices, boundary triangles, elastic step; then,
-# without and with a rigid layer, graph vertices, graph tets, set-up and Delaunay step. The printed number of graph tets
-# of C with a layer lacks a digit ("14166"; about 99,000 would fit the other models).
+# Table 1 of the paper, in seconds: volume vertices, tets, boundary vertices, boundary triangles, elastic
+# step; then, without and with a rigid layer, graph vertices, graph tets, set-up and Delaunay step. The
+# printed number of graph tets of C with a layer lacks a digit ("14166"; about 99,000 would fit the other
+# models).
 PAPER = {
     "A": (10_203, 52_774, 2_700, 5_392, 4.421, (2_700, 7_811, 1.20, 2.22e-3), (5_400, 25_273, 2.21, 1.25e-3)),
     "B": (32_102, 175_181, 5_704, 11_400, 15.16, (5_704, 16_497, 3.47, 5.65e-3), (11_408, 52_450, 6.14, 6.66e-3)),
@@ -201,7 +203,8 @@ def large(record, model, options):
 
 
 def steps(models):
-    """Print the times of a rebuilt graph with one step, and of one step of OpenFOAM's displacementLaplacian."""
+    """Print the times of a rebuilt graph with one step, and of one step of OpenFOAM's
+    displacementLaplacian."""
     sizes = {"A": 9_921, "B": 31_874, "C": 75_813, "D": 157_535}
     known = {r["size"]: r["seconds"] for r in reference() if r["work"] == "W2-step" and r["seconds"]
              and r["peer"] == "openfoam-displacementLaplacian" and r.get("reltol") == 0.01}

@@ -1,4 +1,5 @@
-"""Mesh quality by method of motion: a translated and rotated sphere, a flap and a vessel that bend, a measured wall."""
+"""Mesh quality by method of motion: a translated and rotated sphere, a flap and a vessel that bend, a
+measured wall."""
 import subprocess
 import sys
 
@@ -7,8 +8,8 @@ from common import MOTET, TARGET
 from meshes import build, flap_in_channel, linear, written
 from walls import branched_vessel, ventricle
 
-# Cell sizes at the sphere and at the walls, and exponent of the grading. The meshes have about 32,000 and 10,000
-# vertices, and 18,500 with uniform cells.
+# Cell sizes at the sphere and at the walls, and exponent of the grading. The meshes have about 32,000 and
+# 10,000 vertices, and 18,500 with uniform cells.
 SPHERES = {"sphere_32k": (0.0901, 0.4305, 1.07), "sphere_10k": (0.1309, 0.6255, 1.0), "sphere_uniform": (0.36, 0.36, 1.0)}
 SWEEPS = {"sphere": (0, 2, 4), "flap": (0, 2, 16), "vessel": (0, 2), "frames": (0, 2)}
 

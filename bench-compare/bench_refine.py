@@ -1,4 +1,5 @@
-"""Refinement towards a point, everywhere, and to a size near a coil, by motet and other programs with one thread."""
+"""Refinement towards a point, everywhere, and to a size near a coil, by motet and other programs with one
+thread."""
 import json
 import subprocess
 import sys
@@ -19,7 +20,10 @@ UNIFORM = {"MFEM": ("mfem", "mfem.ser"), "NGSolve": ("ngsolve", "ngsolve"), "dol
 
 
 def python_with(module):
-    """Return the Python that has a module: this one or the system's (dolfinx is not on PyPI); None if neither has it."""
+    """Return the Python that has a module: this one or the system's (dolfinx is not on PyPI).
+
+    None if neither has it.
+    """
     for python in (sys.executable, "/usr/bin/python3"):
         try:
             if subprocess.run([python, "-c", f"import {module}"], capture_output=True).returncode == 0:

@@ -1,4 +1,5 @@
-"""Repair of the bad tets of a moved mesh with its boundary kept, by motet and other remeshers with one thread."""
+"""Repair of the bad tets of a moved mesh with its boundary kept, by motet and other remeshers with one
+thread."""
 import sys
 
 from common import HERE, MOTET, TARGET, cell, in_turn, seconds_text, table

@@ -1,7 +1,7 @@
 """Helpers of the benchmarks: machine data, programs run in turn, medians and tables.
 
-A contender is a command that prints one JSON object on its last line, with at least `seconds`: one number per repeat
-(or the median of many repeats), measured inside the program without start-up and reading of files.
+A contender is a command that prints one JSON object on its last line, with at least `seconds`: one number per
+repeat (or the median of many repeats), measured inside the program without start-up and reading of files.
 """
 import json
 import os
@@ -22,7 +22,8 @@ DISTURBED = 0.1
 
 
 def machine():
-    """Return the processor, number of cores, memory and system, without which measurements are meaningless."""
+    """Return the processor, number of cores, memory and system, without which measurements are
+    meaningless."""
     model = platform.processor()
     try:
         for line in open("/proc/cpuinfo"):
@@ -107,9 +108,10 @@ print(json.dumps(result))
 def in_turn(contenders, rounds, limit=300.0):
     """Run the contenders {name: command} in turn for several rounds, so that disturbances affect all of them.
 
-    Returns {name: result}: the JSON object of the last round, in which `seconds` is the median over all repeats of all
-    rounds and other `..._seconds` are medians over the rounds, with `best`, `runs`, `peak_mib`, and `other_cpu` (cores
-    used by other programs). A contender that fails is not run again; its result is {"error": reason}.
+    Returns {name: result}: the JSON object of the last round, in which `seconds` is the median over all
+    repeats of all rounds and other `..._seconds` are medians over the rounds, with `best`, `runs`,
+    `peak_mib`, and `other_cpu` (cores used by other programs). A contender that fails is not run again; its
+    result is {"error": reason}.
     """
     results = {name: [] for name in contenders}
     for _ in range(rounds):
@@ -154,7 +156,8 @@ def seconds_text(seconds):
 
 
 def cell(result, text):
-    """Return a table cell: the text, with a star if the run was disturbed, or the reason for a missing result."""
+    """Return a table cell: the text, with a star if the run was disturbed, or the reason for a missing
+    result."""
     if result is None:
         return "-"
     if "error" in result:

@@ -66,7 +66,10 @@ def motet(folder, *arguments):
 
 
 def filled(*arguments, **surfaces):
-    """Return a function that writes surfaces to a folder and fills them; patches are named after the files."""
+    """Return a function that writes surfaces to a folder and fills them.
+
+    Patches are named after the files.
+    """
     def fill(folder):
         for name, triangles in surfaces.items():
             write_stl(folder / f"{name}.stl", triangles)

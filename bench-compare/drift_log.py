@@ -49,7 +49,8 @@ def read_run(folder):
 def changed(step, triangles):
     """Return the fraction of tets removed by a change, summed over the changes of a step.
 
-    The share in a log of motet is relative to all cells, including wall triangles, of which nearly all are kept.
+    The share in a log of motet is relative to all cells, including wall triangles, of which nearly all are
+    kept.
     """
     return sum((1 - change["kept_share"]) * (1 + triangles / change["tets_before"]) for change in step["changes"])
 

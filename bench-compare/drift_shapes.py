@@ -20,13 +20,15 @@ def box(sides, cells, centre=(0, 0, 0)):
 
 
 def halves(corners, which):
-    """Divide quadrilaterals (n, 4, 3) along their first diagonal where `which`, otherwise along the second."""
+    """Divide quadrilaterals (n, 4, 3) along their first diagonal where `which`, otherwise along
+    the second."""
     cut = lambda rows, ids: rows[:, ids].reshape(-1, 3, 3)
     return np.concatenate([cut(corners[which], [0, 1, 2, 0, 2, 3]), cut(corners[~which], [0, 1, 3, 1, 2, 3])])
 
 
 def ellipsoid(radii, cells):
-    """Return an ellipsoid from a cube with `cells` cells per side, at equal angles so that cells are similar."""
+    """Return an ellipsoid from a cube with `cells` cells per side, at equal angles so that cells
+    are similar."""
     cube = np.tan(box((2, 2, 2), [cells] * 3) * np.pi / 4)
     return cube / np.linalg.norm(cube, axis=2, keepdims=True) * radii
 

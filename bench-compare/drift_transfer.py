@@ -1,4 +1,5 @@
-"""Errors of transferred fields over a long motion: a rotating paddle, compared with complete remeshing after each turn.
+"""Errors of transferred fields over a long motion: a rotating paddle, compared with complete remeshing after
+each turn.
 
 Fields on points are transferred by both rules.
 """
@@ -14,7 +15,8 @@ PROGRAM = MOTET / "examples" / "transfer_drift"
 
 
 def run(record, options, case):
-    """Run the paddle's `case`, and for comparison a new mesh after each turn, and as many new meshes as changes."""
+    """Run the paddle's `case`, and for comparison a new mesh after each turn, and as many new meshes as
+    changes."""
     turns = case.cycles
     case.make()
     rows = {}

@@ -1,4 +1,5 @@
-"""Hosts and devices of the implantation benchmark in the formats of all programs, and measures of the results."""
+"""Hosts and devices of the implantation benchmark in the formats of all programs, and measures of the
+results."""
 import subprocess
 
 import numpy as np
@@ -74,7 +75,8 @@ class Case:
         self.surface = self.triangles[self.part == 0]
 
     def background(self, size):
-        """Refine the host for a level set: edges no longer than the size plus their distance from the devices."""
+        """Refine the host for a level set: edges no longer than the size plus their distance from the
+        devices."""
         path = self.folder / "background.vtu"
         near = [argument for device in self.devices for argument in ("--near-size", f"{device}={size},1")]
         quietly("refine", self.host, "-o", path, *near)
@@ -97,14 +99,16 @@ class Case:
                 "apart": apart, "host_kept": host, "volume_off": float(volumes(points, tets).sum() / volumes(self.host_points, self.host_tets).sum() - 1)}
 
     def in_device(self, path, regions, points, tets):
-        """Return which tets belong to devices, by the program's output or by winding numbers of their centroids."""
+        """Return which tets belong to devices, by the program's output or by winding numbers of their
+        centroids."""
         if path.suffix == ".vtu":
             return np.isin(region_of_tets(path), regions)
         written = np.load(path)
         return written["in_device"] if "in_device" in written else winding(self.points, self.device, points[tets].mean(axis=1)) > 0.5
 
     def apart(self, points, tets, in_device):
-        """Return the largest distance, in both directions, between devices inside the host and the interface."""
+        """Return the largest distance, in both directions, between devices inside the host and
+        the interface."""
         bounds = boundary(tets[in_device])
         interface = without(bounds, boundary(tets))
         if len(interface) == 0:

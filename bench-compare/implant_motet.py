@@ -2,8 +2,8 @@
 
 usage: implant_motet.py MOTET RUNS OUT.vtu ARGUMENT...      arguments of `motet implant`: host, devices, options
 
-`seconds` are reported by the program, without files. `whole_seconds` is the median duration of the process, and
-`cpu_seconds` the median of its CPU time.
+`seconds` are reported by the program, without files. `whole_seconds` is the median duration of the process,
+and `cpu_seconds` the median of its CPU time.
 """
 import json
 import resource

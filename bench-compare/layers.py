@@ -1,4 +1,5 @@
-"""Thickness of prism layers on the walls of the branched vessel when it bends, twists and widens, by method."""
+"""Thickness of prism layers on the walls of the branched vessel when it bends, twists and widens,
+by method."""
 import subprocess
 
 import numpy as np

@@ -1,4 +1,5 @@
-"""Closed surfaces of the mesh benchmark in the formats of all programs, matching sizes, and measures of the results."""
+"""Closed surfaces of the mesh benchmark in the formats of all programs, matching sizes, and measures of the
+results."""
 import math
 import os
 import subprocess
@@ -89,9 +90,11 @@ def merged(points, triangles):
 
 
 def calibrated(count, target, size, tries):
-    """Return the size with which a program makes about `target` tets, or the closest one within a number of trials.
+    """Return the size with which a program makes about `target` tets, or the closest one within a number of
+    trials.
 
-    `count(size)` returns the number of tets, or None if the program fails. Returns None if the first trial fails.
+    `count(size)` returns the number of tets, or None if the program fails. Returns None if the first trial
+    fails.
     """
     tried = {}
     slope = 3.0  # counts decrease with this power of the size, or a smaller one if most tets are at the surface

@@ -2,8 +2,8 @@
 
 usage: mesh_motet.py MOTET RUNS SURFACE OUT.vtu [OPTION...]      options of `motet mesh`
 
-`seconds` are reported by the program, for checking and filling the surface without files. `whole_seconds` is the median
-duration of the process.
+`seconds` are reported by the program, for checking and filling the surface without files. `whole_seconds` is
+the median duration of the process.
 """
 import json
 import statistics

@@ -1,7 +1,7 @@
 """The sphere in a box at the paper's four sizes, meshed by Gmsh, for the motion and Delaunay benchmarks.
 
-The paper (table 1) has for A 10,203 vertices with 2,700 on the boundary, for B 32,102/5,704, for C 72,655/10,854 and for
-D 157,887/16,947. The sizes below give both numbers within 2 % with the pinned Gmsh.
+The paper (table 1) has for A 10,203 vertices with 2,700 on the boundary, for B 32,102/5,704, for C
+72,655/10,854 and for D 157,887/16,947. The sizes below give both numbers within 2 % with the pinned Gmsh.
 """
 import os
 
@@ -27,7 +27,10 @@ def linear(sphere_size, wall_size, depth):
 
 
 def build(sphere_size, wall_size, grading, ahead=HALF_EDGE, growth=geometric):
-    """Return points (n, 3) and positive tets (m, 4) of the box without the ball; the box extends to `ahead` in x."""
+    """Return points (n, 3) and positive tets (m, 4) of the box without the ball.
+
+    The box extends to `ahead` in x.
+    """
     import gmsh
 
     gmsh.initialize()
@@ -66,7 +69,8 @@ def meshed(gmsh, field):
 
 
 def flap_in_channel():
-    """Return points and tets of a channel, 4 by 2 by 2, with a flap of 0.06 by 1 by 1 on its floor at y = -1."""
+    """Return points and tets of a channel, 4 by 2 by 2, with a flap of 0.06 by 1 by 1 on its
+    floor at y = -1."""
     import gmsh
 
     gmsh.initialize()
@@ -108,7 +112,8 @@ def vtu(name, folder):
 
 
 def written(name, made, folder):
-    """Return the path of a VTU file, which is created from the points and tets of `made()` if it does not exist."""
+    """Return the path of a VTU file, which is created from the points and tets of `made()` if it does not
+    exist."""
     path = os.path.join(folder, f"{name}.vtu")
     if not os.path.exists(path):
         points, tets = made()

@@ -70,7 +70,8 @@ def patches(points, triangles):
 
 
 def write(path, points, tets):
-    """Write tets and boundary triangles as VTU with raw appended data and the cell arrays `region` and `patch`."""
+    """Write tets and boundary triangles as VTU with raw appended data and the cell arrays `region` and
+    `patch`."""
     import vtk
     from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
@@ -101,7 +102,8 @@ def write(path, points, tets):
 
 
 def channel():
-    """Count the bad tets before and after each step along a channel without remeshing, as in figure 11 of the paper."""
+    """Count the bad tets before and after each step along a channel without remeshing, as in figure 11 of the
+    paper."""
     points, tets = build(*SIZES["A"], ahead=CHANNEL)
     sphere = np.flatnonzero(np.isclose(np.linalg.norm(points, axis=1), RADIUS, rtol=0, atol=1e-9))
     walls = np.setdiff1d(np.unique(boundary(tets)), sphere)

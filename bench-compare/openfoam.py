@@ -1,7 +1,8 @@
-"""Measures a mesh motion step of OpenFOAM's displacementLaplacian or displacementSBRStress (solid-body rotation stress).
+"""Measures a mesh motion step of OpenFOAM's displacementLaplacian or displacementSBRStress (solid-body
+rotation stress).
 
-`moveMesh` only moves the mesh. Its own timer is too coarse, so the time of a step is the difference between a run of
-several steps and a run of one, divided by the number of additional steps.
+`moveMesh` only moves the mesh. Its own timer is too coarse, so the time of a step is the difference between a
+run of several steps and a run of one, divided by the number of additional steps.
 """
 import os
 import shutil
@@ -31,8 +32,8 @@ DYNAMIC = """dynamicFvMesh dynamicMotionSolverFvMesh; motionSolverLibs (fvMotion
 motionSolver {solver}; diffusivity {diffusivity};
 {solver}Coeffs {{ diffusivity {diffusivity}; }}
 """
-# Solvers and their diffusivities. displacementSBRStress divides by zero with 1/volume: its coupling of the coordinates
-# is explicit.
+# Solvers and their diffusivities. displacementSBRStress divides by zero with 1/volume: its coupling of the
+# coordinates is explicit.
 SOLVERS = {"displacementLaplacian": "inverseVolume", "displacementSBRStress": "uniform"}
 DISPLACEMENT = """dimensions [0 1 0 0 0 0 0]; internalField uniform (0 0 0);
 boundaryField {{
@@ -57,7 +58,8 @@ def foam_list(rows):
 
 
 def faces_of(tets):
-    """Return OpenFOAM's faces with owners and neighbours: inner ones in upper-triangular order, then outer ones."""
+    """Return OpenFOAM's faces with owners and neighbours: inner ones in upper-triangular order, then outer
+    ones."""
     corners = tets[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)  # outward
     cell = np.repeat(np.arange(len(tets)), 4)
     key = np.sort(corners, axis=1)
@@ -103,7 +105,10 @@ def seconds_of(case, steps, travel):
 
 
 def step_seconds(case, points, tets, ball, travel, rounds, solver="displacementLaplacian"):
-    """Return the seconds of one step, as the minimum over `rounds`; the ball moves by `travel` along x in total."""
+    """Return the seconds of one step, as the minimum over `rounds`.
+
+    The ball moves by `travel` along x in total.
+    """
     shutil.rmtree(case, ignore_errors=True)
     write_mesh(case, points, tets, ball)
     write(case, "system", "fvSchemes", "dictionary", SCHEMES)

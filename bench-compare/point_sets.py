@@ -9,7 +9,8 @@ def cube(n):
 
 
 def surface(name, folder):
-    """Return the boundary vertices of a sphere in a box: cospherical and coplanar, as usual in mesh motion."""
+    """Return the boundary vertices of a sphere in a box: cospherical and coplanar, as usual in
+    mesh motion."""
     points, _, sphere, walls = sphere_in_box(name, folder)
     return points[np.concatenate([sphere, walls])]
 
@@ -23,7 +24,8 @@ def spiral_sphere(n):
 
 
 def large_surface(n):
-    """Return points of which a third are on the sphere, and the others random on the six walls, one in each square."""
+    """Return points of which a third are on the sphere, and the others random on the six walls, one in each
+    square."""
     random = np.random.default_rng(7)
     on_sphere = n // 3
     side = int(np.sqrt((n - on_sphere) / 6))

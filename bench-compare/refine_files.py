@@ -80,7 +80,8 @@ def in_chunks(work, points, tets):
 
 
 def measured(points, tets, first=None):
-    """Return the quality, also relative to the first mesh, and whether volume and conformity are preserved, if known."""
+    """Return the quality, also relative to the first mesh, and whether volume and conformity are preserved,
+    if known."""
     quality, ratio = in_chunks(eas, points, tets), in_chunks(mean_ratio, points, tets)
     found = {"tets": len(tets), "worst": float(quality.min()), "median": float(np.median(quality)), "worst_mean_ratio": float(ratio.min()),
              "volume": float(in_chunks(volumes, points, tets).sum())}

@@ -26,7 +26,10 @@ class Case:
         return path
 
     def raw(self):
-        """Write points (boundary first), tets and triangles; return the paths and the number of boundary points."""
+        """Write points (boundary first), tets and triangles.
+
+        Return the paths and the number of boundary points.
+        """
         outer = np.unique(self.triangles)
         order = np.r_[outer, np.setdiff1d(np.arange(len(self.points)), outer)]
         row = np.argsort(order)
@@ -58,7 +61,10 @@ class Case:
 
 
 def filled(points, triangles):
-    """Fill a closed surface with tets that keep its triangles; return all points including new ones, and the tets."""
+    """Fill a closed surface with tets that keep its triangles.
+
+    Return all points including new ones, and the tets.
+    """
     import gmsh
 
     ids, corners = np.unique(triangles, return_inverse=True)

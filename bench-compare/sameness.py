@@ -1,4 +1,5 @@
-"""Common cells of two tet meshes, or of a surface and its mesh, with coordinates compared exactly and to 1e-9."""
+"""Common cells of two tet meshes, or of a surface and its mesh, with coordinates compared exactly and to
+1e-9."""
 import numpy as np
 
 from tets import boundary
@@ -30,7 +31,8 @@ def kept(old, new, row, to_the_bit):
 
 
 def compared(old_points, old_tets, points, tets):
-    """Return the shares of old tets kept exactly and to 1e-9, the number of changed tets, and the boundary's accuracy."""
+    """Return the shares of old tets kept exactly and to 1e-9, the number of changed tets, and the boundary's
+    accuracy."""
     row, to_the_bit = matched(old_points, np.ascontiguousarray(points, np.float64))
     bits, near = kept(old_tets, tets, row, to_the_bit)
     old_facets, facets = boundary(old_tets), boundary(tets)

@@ -42,7 +42,8 @@ def facet_angles(points, tets):
 
 
 def eas(points, tets):
-    """Return the equi-angle quality: the sign of the volume times 1 - skew, with Verdict's `tet_equiangle_skew`."""
+    """Return the equi-angle quality: the sign of the volume times 1 - skew, with Verdict's
+    `tet_equiangle_skew`."""
     skews = []
     for (least, greatest), best in ((dihedrals(points, tets), REGULAR), (facet_angles(points, tets), 60)):
         skews += [(greatest - best) / (180 - best), (best - least) / best]

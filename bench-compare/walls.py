@@ -1,4 +1,5 @@
-"""Vessels with moving walls: a branched vessel, and a ventricle with a wall measured in 25 frames of a heartbeat.
+"""Vessels with moving walls: a branched vessel, and a ventricle with a wall measured in 25 frames of a
+heartbeat.
 
 The ventricle is that of patient 1 of biv-me; see the README of the data folder.
 """
@@ -111,7 +112,10 @@ def zipped(outer, inner):
 
 
 def ventricle():
-    """Return the path of a mesh of the ventricle with an array of points per frame; None if there are no data."""
+    """Return the path of a mesh of the ventricle with an array of points per frame.
+
+    None if there are no data.
+    """
     data = Path(os.environ.get("MOTET_DATA") or ROOT.parent / "shared" / "data") / "moving_wall" / "bivme_lv"
     path, surface, volume = (TARGET / f"ventricle{end}" for end in ("_frames.vtu", ".vtp", ".vtu"))
     if not data.is_dir():

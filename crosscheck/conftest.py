@@ -72,8 +72,8 @@ def data():
 def sphere(motet, tmp_path_factory):
     """A folder with a moving sphere, and the report of its motion.
 
-    The folder contains `box.vtu`, a sphere in a box of 184,320 tets with two patches; `moved.pvd`, in which the
-    sphere moves close to a wall; and `move.json`, the report.
+    The folder contains `box.vtu`, a sphere in a box of 184,320 tets with two patches; `moved.pvd`, in which
+    the sphere moves close to a wall; and `move.json`, the report.
     """
     shapes = pytest.importorskip("motet", reason="the package is not installed: ./test does it").shapes
     folder = tmp_path_factory.mktemp("sphere")

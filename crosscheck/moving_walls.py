@@ -27,7 +27,8 @@ STEPS = 20
 
 
 def write_series(path, surface, steps, displacement):
-    """Write a PVD series of `surface` displaced by `displacement(k)` at time k/STEPS, with its point arrays."""
+    """Write a PVD series of `surface` displaced by `displacement(k)` at time k/STEPS, with its
+    point arrays."""
     path.parent.mkdir(parents=True, exist_ok=True)
     entries = []
     for k in steps:

@@ -14,7 +14,8 @@ import numpy as np
 
 COUNT = int(os.environ.get("CAD_BODIES", "28"))
 
-# TetGen runs in a separate process, body by body. Some bodies crash it; the next process continues after these.
+# TetGen runs in a separate process, body by body. Some bodies crash it; the next process continues after
+# these.
 TETGEN = """
 import sys, meshio, numpy, tetgen
 for seed in range(int(sys.argv[2]), int(sys.argv[3])):

@@ -63,7 +63,8 @@ def nearest(queries, points, triangles):
 
 
 def bodies(path):
-    """Read the output of `motet contact`: for each body its points, triangles, gaps and original point ids."""
+    """Read the output of `motet contact`: for each body its points, triangles, gaps and original
+    point ids."""
     data, points, triangles = read_surface(path)
     body = vtk_to_numpy(data.GetCellData().GetArray("body"))
     gap = vtk_to_numpy(data.GetPointData().GetArray("gap"))
@@ -174,8 +175,8 @@ def test_gaps_of_a_coil_with_itself_agree_with_vtk(motet, data, tmp_path, unit):
     [(places, _, gap, origin)] = bodies(tmp_path / "gaps.vtp")
     found = np.full(len(points), np.nan)
     found[origin] = gap
-    # Triangles at a path along the surface of more than half the wire's perimeter and less than a turn belong to
-    # another turn, or to the end of the wire.
+    # Triangles at a path along the surface of more than half the wire's perimeter and less than a turn belong
+    # to another turn, or to the end of the wire.
     edges = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
     graph = csr_matrix((lengths, edges.T), shape=(len(points),) * 2)

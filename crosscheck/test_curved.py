@@ -106,7 +106,8 @@ def test_cells_folded_in_their_interior_are_those_of_gmsh(motet, tmp_path, model
     ("hexahedron20", 17), ("hexahedron27", 12), ("wedge15", 18), ("wedge18", 13), ("pyramid13", 19),
 ])
 def test_folded_cells_of_each_kind_have_negative_samples_of_gmsh_s_jacobian(motet, tmp_path, model, kind, number):
-    """Samples of the determinant by Gmsh's shape functions: negative in reported cells, positive in the others."""
+    """Samples of the determinant by Gmsh's shape functions: negative in reported cells, positive in the
+    others."""
     gmsh_model = model
     name, _, _, n, local, _ = gmsh_model.mesh.getElementProperties(number)
     local = np.array(local).reshape(n, 3)

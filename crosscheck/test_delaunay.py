@@ -1,7 +1,7 @@
 """Delaunay triangulation compared with other programs, and with the definition in integer arithmetic.
 
-Where the triangulation is unique, sets of tets are equal. Elsewhere the volume is that of the hull, facets match,
-and spheres are empty.
+Where the triangulation is unique, sets of tets are equal. Elsewhere the volume is that of the hull, facets
+match, and spheres are empty.
 """
 import shutil
 import subprocess
@@ -16,7 +16,8 @@ from scipy.spatial import ConvexHull, Delaunay
 
 @pytest.fixture
 def triangulate(example, tmp_path):
-    """A function that triangulates points and returns the tets, or the completed process if `code` is not 0."""
+    """A function that triangulates points and returns the tets, or the completed process if
+    `code` is not 0."""
     program = example("delaunay")
 
     def call(points, threads=1, code=0):

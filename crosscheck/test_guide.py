@@ -121,7 +121,10 @@ def environment(motet, folder):
 
 
 def follow(page, motet, folder):
-    """Write the files and run the commands of a page; yield each command, its exit status and printed lines."""
+    """Write the files and run the commands of a page.
+
+    Yield each command, its exit status and printed lines.
+    """
     variables = environment(motet, folder)
     with_library = (CAPI / "lib" / "pkgconfig" / "motet.pc").exists() and shutil.which("pkg-config") and shutil.which("gcc") and shutil.which("gfortran")
     not_built = set()

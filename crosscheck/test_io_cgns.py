@@ -118,7 +118,10 @@ def test_vtk_reads_polyhedra_of_motet(motet, tmp_path):
 
 
 def labelled():
-    """Tets in two regions and their boundary in three patches, one of them without a name; values on all cells."""
+    """Tets in two regions and their boundary in three patches, one of them without a name.
+
+    Values on all cells.
+    """
     volume = tets()
     grid = joined(volume, volume.extract_surface(algorithm=None).cast_to_unstructured_grid())
     grid.clear_data()

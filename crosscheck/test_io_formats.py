@@ -1,4 +1,5 @@
-"""MSH, STL, OBJ, Medit, Abaqus, TetGen, DOLFIN XML and SimVascular folders compared with Gmsh, meshio and VTK."""
+"""MSH, STL, OBJ, Medit, Abaqus, TetGen, DOLFIN XML and SimVascular folders compared with Gmsh, meshio and
+VTK."""
 import gzip
 import itertools
 import os
@@ -144,7 +145,8 @@ def test_gmsh_reads_its_own_mesh_from_files_of_motet(motet, gmsh_session, tmp_pa
 
 
 def assert_same_located(points, elements, other_points, other_elements):
-    """Assert equal elements, with nodes identified by their coordinates, in order, and with entity and groups."""
+    """Assert equal elements, with nodes identified by their coordinates, in order, and with entity and
+    groups."""
     assert len(points) == len(other_points)
     assert set(elements) == set(other_elements)
 
@@ -457,7 +459,8 @@ def test_medit_solutions_have_the_layout_of_the_manual(motet, tmp_path, ending):
 
 
 def test_meshio_reads_its_own_abaqus_mesh_from_a_copy(motet, tmp_path):
-    """All kinds of cells that meshio supports, except lines of three nodes, which it leaves in VTK's order."""
+    """All kinds of cells that meshio supports, except lines of three nodes, which it leaves in
+    VTK's order."""
     mesh = mixed_mesh(["line", "triangle", "quad", "tetra", "hexahedron", "wedge", "triangle6", "quad8", "quad9", "tetra10",
                        "hexahedron20"])
     n = len(mesh.cells)
@@ -557,7 +560,8 @@ FACES_OF_ABAQUS = {"C3D4": ["123", "142", "243", "341"], "C3D10": ["123", "142",
 
 @pytest.mark.parametrize("build", ["tets", "tets of second order", "hexahedra", "prisms"])
 def test_surfaces_of_abaqus_are_the_patches(motet, gmsh_session, tmp_path, build):
-    """Surfaces that motet writes coincide with the patches, and restore these if surface cells are missing."""
+    """Surfaces that motet writes coincide with the patches, and restore these if surface cells
+    are missing."""
     BUILDS[build]()
     source, out, bare, back = (tmp_path / name for name in ("source.msh", "out.inp", "bare.inp", "back.msh"))
     gmsh_write(source, "4.1", "binary")
@@ -695,8 +699,8 @@ def test_real_files_are_converted_without_changes(motet, data, tmp_path, name):
 def for_meshio(source, folder):
     """Return the file, or a copy that meshio can read completely.
 
-    meshio does not decompress files, reads Medit's version 1 in single precision, and requires as many normals
-    as vertices.
+    meshio does not decompress files, reads Medit's version 1 in single precision, and requires as many
+    normals as vertices.
     """
     text = source.read_bytes() if source.suffix in (".gz", ".mesh", ".obj") else None
     if source.suffix == ".gz":
@@ -751,7 +755,8 @@ MSH_HOLDS = {1: "vertex", 3: "line", 5: "triangle", 9: "quad", 10: "tetra", 12: 
 
 @pytest.mark.parametrize("name", vtk_files())
 def test_real_vtk_files_are_converted_to_other_formats_without_changes(motet, data, tmp_path, name):
-    """meshio reads from MSH, Medit and TetGen files the points, cells and numbers that VTK reads from the source."""
+    """meshio reads from MSH, Medit and TetGen files the points, cells and numbers that VTK reads from the
+    source."""
     source = data / name
     expected = pyvista.read(source).cast_to_unstructured_grid()
     points = np.asarray(expected.points, float)

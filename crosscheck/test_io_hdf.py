@@ -166,7 +166,8 @@ def test_partitions_are_joined(motet, tmp_path, name):
         if array in two.cell_data:
             two.cell_data[array] = two.cell_data[array] + two.cell_data[array].dtype.type(100)
     write_hdf(partitioned([one, two]), tmp_path / "in.vtkhdf")
-    # Only an unstructured grid can store the cells of several parts of polygonal data in the order of the parts.
+    # Only an unstructured grid can store the cells of several parts of polygonal data in the order of the
+    # parts.
     motet("convert", tmp_path / "in.vtkhdf", tmp_path / "out.vtu")
     joined = read_xml(tmp_path / "out.vtu")
     assert joined.n_cells == 2 * one.n_cells and joined.n_points == 2 * one.n_points

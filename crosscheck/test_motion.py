@@ -36,7 +36,8 @@ def write_with_displacement(path, points, tets, displacement, boundary):
 
 
 def near_identity(rng):
-    """Return a 3x4 matrix: the identity with a random change of up to 20 % in each entry, and a translation."""
+    """Return a 3x4 matrix: the identity with a random change of up to 20 % in each entry, and a
+    translation."""
     return np.hstack([np.eye(3) + rng.uniform(-0.2, 0.2, (3, 3)), rng.uniform(-1, 1, (3, 1))])
 
 
@@ -78,7 +79,10 @@ def gmsh_meshes():
 
 
 def plain_mapping(points, boundary):
-    """Set up the method with Qhull, find_simplex and barycentric weights; return the map of boundary positions."""
+    """Set up the method with Qhull, find_simplex and barycentric weights.
+
+    Return the map of boundary positions.
+    """
     graph = Delaunay(points[boundary])
     inner = np.setdiff1d(np.arange(len(points)), boundary)
     tet = np.maximum(graph.find_simplex(points[inner], tol=1e-12), 0)

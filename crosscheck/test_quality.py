@@ -1,8 +1,8 @@
 """Quality measures compared with Verdict, and with rational arithmetic where Verdict is inaccurate.
 
 Verdict uses arc cosines of normalised vectors. Near 0 and 180 degrees an arc cosine turns a rounding error of
-1e-16 into 1e-8, and where the cosine is rounded beyond 1 the result is NaN, which Verdict's maximum ignores. For
-flat tets the reference is therefore the definition, evaluated in rational numbers.
+1e-16 into 1e-8, and where the cosine is rounded beyond 1 the result is NaN, which Verdict's maximum ignores.
+For flat tets the reference is therefore the definition, evaluated in rational numbers.
 """
 import math
 from fractions import Fraction

@@ -1,4 +1,5 @@
-"""Refined meshes read by meshio and VTK: conformity, volumes, areas, quality by Verdict, and stored divisions."""
+"""Refined meshes read by meshio and VTK: conformity, volumes, areas, quality by Verdict, and stored
+divisions."""
 import numpy as np
 import pytest
 from meshes import assert_same_array, cell_array_of, cells_of, volumes

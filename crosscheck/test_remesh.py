@@ -16,7 +16,8 @@ BAD = 0.2
 def verdict_eas(path):
     """Return the equi-angle quality of every tet of a VTU file, in the order of its cells, by VTK's Verdict.
 
-    The sign is that of the volume, relative to most tets: all tets of a mesh may be numbered the other way round.
+    The sign is that of the volume, relative to most tets: all tets of a mesh may be numbered the other way
+    round.
     """
     reader = vtk.vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))

@@ -71,7 +71,8 @@ class Page:
         return base64.b64decode(self.js("return document.getElementById('view').toDataURL().split(',')[1]"))
 
     def colours(self):
-        """Return the approximate number of colours of the picture, and the fraction that is not background."""
+        """Return the approximate number of colours of the picture, and the fraction that is not
+        background."""
         return self.js("""
             const view = document.getElementById("view"), copy = document.createElement("canvas");
             [copy.width, copy.height] = [200, 120];
@@ -230,7 +231,8 @@ def test_one_page_shows_a_volume_a_surface_and_a_log(page, motet, example, tmp_p
     assert page.errors() == [] and page.requests() == []
 
 
-# Cuts each frame with the script of the page: the area and bounds of the slice, and the bounds of the whole cells.
+# Cuts each frame with the script of the page: the area and bounds of the slice, and the bounds of the whole
+# cells.
 CUT = """
 const done = arguments[arguments.length - 1], [name, axis, part] = arguments;
 (async () => {

@@ -5,7 +5,8 @@
     cargo run --release -- contact target/contact/stent.pvd VESSEL -o target/contact/gaps.pvd --warn 0.15
     target/venv/bin/python docs/contact_picture.py target/contact
 
-VESSEL is `id1_model.vtp` of the VMTK tutorials (BSD-3; github.com/vmtk/vmtk.github.com, resources/img/tutorials).
+VESSEL is `id1_model.vtp` of the VMTK tutorials (BSD-3; github.com/vmtk/vmtk.github.com,
+resources/img/tutorials).
 """
 import sys
 from pathlib import Path

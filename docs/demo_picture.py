@@ -4,8 +4,8 @@
     cargo run --release -- demo motet-demo
     target/venv/bin/python docs/demo_picture.py motet-demo
 
-Shows the tets behind a plane, coloured by equi-angle quality: the aneurysm with a coil when its wall is widest and
-narrowest, and the dissection when its flap is up and down.
+Shows the tets behind a plane, coloured by equi-angle quality: the aneurysm with a coil when its wall is
+widest and narrowest, and the dissection when its flap is up and down.
 """
 import sys
 from pathlib import Path

@@ -6,9 +6,9 @@
                                                 degrees = 36000 in job.toml
     target/venv/bin/python docs/drift_picture.py
 
-Reads the logs of `bench-compare/run drift`. Each line is a case of that benchmark: the number of vertices relative to
-the initial number, and the mean EAS, at the end of each turn or cycle. Bands show the minimum and maximum of all steps
-within a turn or cycle.
+Reads the logs of `bench-compare/run drift`. Each line is a case of that benchmark: the number of vertices
+relative to the initial number, and the mean EAS, at the end of each turn or cycle. Bands show the minimum and
+maximum of all steps within a turn or cycle.
 """
 import json
 from pathlib import Path

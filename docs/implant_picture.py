@@ -1,4 +1,5 @@
-"""Draws devices implanted in meshes (writes docs/implant_ball.png, docs/implant.png and docs/implant_wall.png).
+"""Draws devices implanted in meshes (writes docs/implant_ball.png, docs/implant.png and
+docs/implant_wall.png).
 
     ./test --setup                                        (once: the Python packages)
     cargo run --release -p motet --example shapes target
@@ -8,9 +9,9 @@
     cargo run --release -- implant target/host.vtu target/stent.vtp -o target/with_stent.vtu
     target/venv/bin/python docs/implant_picture.py target
 
-Shows a ball in a box, a coil in an aneurysm, and a stent across its neck. The tets behind a plane are coloured by
-equi-angle quality in the host, and copper in the device. The surface of the stent is copper inside the vessel, and
-blue where it shares the wall.
+Shows a ball in a box, a coil in an aneurysm, and a stent across its neck. The tets behind a plane are
+coloured by equi-angle quality in the host, and copper in the device. The surface of the stent is copper
+inside the vessel, and blue where it shares the wall.
 """
 import sys
 from pathlib import Path

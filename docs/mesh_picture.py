@@ -6,7 +6,8 @@
     cargo run --release -- mesh target/aneurysm.vtp -o target/layered.vtu --size 0.4 --growth 0.3 --layers 4,0.02,1.4
     target/venv/bin/python docs/mesh_picture.py target/filled.vtu target/layered.vtu
 
-Shows the tets behind a plane along the vessel, coloured by equi-angle quality; on the right the neck of the sac.
+Shows the tets behind a plane along the vessel, coloured by equi-angle quality; on the right the neck of the
+sac.
 """
 import sys
 

@@ -107,7 +107,8 @@ STANDS_OUT = -0.1
 
 
 def cut_panel(mesh, chosen, colour):
-    """Return an image of the cells behind the plane y = 0 in a pale colour, with the chosen ones in a solid colour.
+    """Return an image of the cells behind the plane y = 0 in a pale colour, with the chosen ones in a solid
+    colour.
 
     A few chosen cells in front of the plane are shown as well.
     """

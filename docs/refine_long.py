@@ -2,9 +2,9 @@
 
     python docs/refine_long.py DATA BALL_IN_BOX [--processes N] [--only TEXT]
 
-Runs the example `refine_long` (built with --release) on real and random meshes. DATA is the folder of real meshes,
-BALL_IN_BOX a mesh file. A row describes the last generation, or the extremes over the steps of a front. Takes two
-minutes on two idle cores.
+Runs the example `refine_long` (built with --release) on real and random meshes. DATA is the folder of real
+meshes, BALL_IN_BOX a mesh file. A row describes the last generation, or the extremes over the steps of a
+front. Takes two minutes on two idle cores.
 """
 import argparse
 import concurrent.futures

@@ -5,8 +5,8 @@
     cargo run --release -- refine ANEURYSM -o target/fine.vtu --near-size target/coil.vtp=0.075
     target/venv/bin/python docs/refine_picture.py target/fine.vtu target/coil.vtp
 
-ANEURYSM is `aneurysm.xml.gz` of the DOLFIN project (LGPL-3; data/meshes). A plane through the axis of the coil cuts
-the tets. The outline of the wire is dark; on the right is one turn.
+ANEURYSM is `aneurysm.xml.gz` of the DOLFIN project (LGPL-3; data/meshes). A plane through the axis of the
+coil cuts the tets. The outline of the wire is dark; on the right is one turn.
 """
 import sys
 

@@ -1,14 +1,15 @@
-"""Measures time and memory of `motet run` by mesh size (prints the tables of run.md, writes docs/run_sizes.png).
+"""Measures time and memory of `motet run` by mesh size (prints the tables of run.md, writes
+docs/run_sizes.png).
 
     ./test --setup && target/venv/bin/python -m pip install ./python    (once)
     cargo build --release
     target/venv/bin/python docs/run_sizes.py              (a few minutes, 2 GB of memory and of disk)
 
-A sphere moves by three radii towards the wall of its box in six steps. Meshes grow in two ways: more boxes side by side
-in one mesh, so that the work per tet is constant; and finer meshes of one box, where a larger fraction needs repair.
-Interior vertices are displaced randomly, because rows of equal tets would become bad, and be repaired, together. Times
-are means per step; memory is the maximum of the process. Slopes are those of regression lines in logarithmic axes; 1
-means proportional to the number of tets.
+A sphere moves by three radii towards the wall of its box in six steps. Meshes grow in two ways: more boxes
+side by side in one mesh, so that the work per tet is constant; and finer meshes of one box, where a larger
+fraction needs repair. Interior vertices are displaced randomly, because rows of equal tets would become bad,
+and be repaired, together. Times are means per step; memory is the maximum of the process. Slopes are those of
+regression lines in logarithmic axes; 1 means proportional to the number of tets.
 """
 import json
 import subprocess
@@ -100,7 +101,8 @@ def measured(folder, mesh):
 def watched(command, folder):
     """Run a command and return its peak memory in bytes.
 
-    The memory is sampled during the run, because the resource usage of finished children includes the parent's.
+    The memory is sampled during the run, because the resource usage of finished children includes the
+    parent's.
     """
     run, peak = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL), 0
     while run.poll() is None:

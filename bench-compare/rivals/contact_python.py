@@ -3,8 +3,8 @@
 usage: contact_python.py igl|embree|vtk-cells|vtk-implicit FOLDER THREADS RUNS DISTANCES    all vertices of one surface
        contact_python.py fcl|coal                          FOLDER THREADS RUNS DISTANCES    only the nearest points
 
-In a step the tree is rebuilt: most libraries cannot refit trees, or not from Python. Input lists of a library's own type
-are filled before the time is measured.
+In a step the tree is rebuilt: most libraries cannot refit trees, or not from Python. Input lists of a
+library's own type are filled before the time is measured.
 """
 import json
 import os

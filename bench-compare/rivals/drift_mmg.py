@@ -2,13 +2,13 @@
 
 usage: drift_mmg.py MESH.npz JOB.json LOG.jsonl      MESH: points, tets; LOG: one line per step, as in `motet run`
 
-JOB contains the body, a box around the origin with half sides `half`, rounded by `radius`; the surrounding box from
-`low` to `high`; the motion per step, `turn` degrees about z and `shift` along x; the number of `steps`; and `short`:
-tets with an edge below this fraction of its size also belong to the zone.
+JOB contains the body, a box around the origin with half sides `half`, rounded by `radius`; the surrounding
+box from `low` to `high`; the motion per step, `turn` degrees about z and `shift` along x; the number of
+`steps`; and `short`: tets with an edge below this fraction of its size also belong to the zone.
 
-The sizes of the first mesh and the walls are kept. The strain is restricted to a layer near the body: points are rigid
-up to a fraction of the way to the box, and fixed beyond another one. Mmg may change tets below an EAS and one ring
-around them; all others are required.
+The sizes of the first mesh and the walls are kept. The strain is restricted to a layer near the body: points
+are rigid up to a fraction of the way to the box, and fixed beyond another one. Mmg may change tets below an
+EAS and one ring around them; all others are required.
 """
 import json
 import sys
@@ -42,7 +42,8 @@ class Course:
         self.radius, self.turn, self.shift = job["radius"], np.radians(job["turn"]), job["shift"]
 
     def moved(self, points, steps):
-        """Move points rigidly by a number of steps, which may differ between points: first rotation, then translation."""
+        """Move points rigidly by a number of steps, which may differ between points: first rotation, then
+        translation."""
         angle = self.turn * steps
         c, s = np.cos(angle), np.sin(angle)
         x, y, z = points.T
@@ -55,7 +56,8 @@ class Course:
         return body, np.maximum(np.minimum(points - self.low, self.high - points).min(axis=1), 0)
 
     def share(self, points, at):
-        """Return the share of the body's motion at each point: 1 near the body, 0 far away, smooth in between."""
+        """Return the share of the body's motion at each point: 1 near the body, 0 far away, smooth in
+        between."""
         body, wall = self.distances(points, at)
         t = np.clip((body / np.maximum(body + wall, 1e-30) - LAYER[0]) / (LAYER[1] - LAYER[0]), 0, 1)
         return 1 - t * t * (3 - 2 * t)

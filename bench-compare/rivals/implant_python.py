@@ -1,11 +1,13 @@
-"""Meshes a host with devices from their surfaces by TetGen, Gmsh, fTetWild or Mmg with one thread; prints times as JSON.
+"""Meshes a host with devices from their surfaces by TetGen, Gmsh, fTetWild or Mmg with one thread; prints
+times as JSON.
 
 usage: implant_python.py PROGRAM RUNS IN.npz OUT.npz
 
-IN: points, triangles, part (of each triangle: 0 for the host, then 1, 2, ... for the devices), wire (half the thickness
-of the devices), edge (edge length of the host); for Mmg also background_points and background_tets. OUT: points, tets,
-and in_device if the program reports it. `seconds` are measured between the program's own data structures in memory,
-`whole_seconds` include reading and writing of files, `cpu_seconds` are the CPU time.
+IN: points, triangles, part (of each triangle: 0 for the host, then 1, 2, ... for the devices), wire (half the
+thickness of the devices), edge (edge length of the host); for Mmg also background_points and background_tets.
+OUT: points, tets, and in_device if the program reports it. `seconds` are measured between the program's own
+data structures in memory, `whole_seconds` include reading and writing of files, `cpu_seconds` are the CPU
+time.
 """
 import json
 import os

@@ -2,8 +2,9 @@
 
 usage: mesh_python.py PROGRAM SIZE RUNS IN.npz OUT.npz      IN: points, triangles; OUT: points, tets
 
-SIZE is the requested edge length; for TetGen the volume of the regular tet with such edges is the limit. Times are
-measured between the program's own data structures in memory, with fewer repeats than RUNS if they take long.
+SIZE is the requested edge length; for TetGen the volume of the regular tet with such edges is the limit.
+Times are measured between the program's own data structures in memory, with fewer repeats than RUNS if they
+take long.
 """
 import json
 import os

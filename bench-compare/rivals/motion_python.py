@@ -2,13 +2,14 @@
 
 usage: motion_python.py pardiso|pyamg|ngsolve laplace|elastic MESH.npz THREADS [TOLERANCE]
 
-P1 elements on the tets of a sphere in a box; the sphere moves by half its radius along x, the walls are fixed.
-`laplace` has diffusivity 1; iterative solvers solve only for x, since the other components are zero. `elastic` has
-Poisson's ratio 0.3 and Young's modulus 1/volume (NGSolve: 1/h^3).
+P1 elements on the tets of a sphere in a box; the sphere moves by half its radius along x, the walls are
+fixed. `laplace` has diffusivity 1; iterative solvers solve only for x, since the other components are zero.
+`elastic` has Poisson's ratio 0.3 and Young's modulus 1/volume (NGSolve: 1/h^3).
 
-pardiso (MKL): stored Cholesky factorization. pyamg: conjugate gradients with Ruge-Stueben or smoothed aggregation
-multigrid. ngsolve: its own assembly, and conjugate gradients with its multigrid `h1amg` (laplace) or a diagonal
-preconditioner (elastic, for which it has no multigrid). Iterations stop at TOLERANCE (default 1e-8).
+pardiso (MKL): stored Cholesky factorization. pyamg: conjugate gradients with Ruge-Stueben or smoothed
+aggregation multigrid. ngsolve: its own assembly, and conjugate gradients with its multigrid `h1amg` (laplace)
+or a diagonal preconditioner (elastic, for which it has no multigrid). Iterations stop at TOLERANCE (default
+1e-8).
 """
 import json
 import os
@@ -29,7 +30,10 @@ TRAVEL, POISSON, BUDGET, MOST = 0.5, 0.3, 1.0, 20.0
 
 
 def median_seconds(step):
-    """Repeat a step for about a second, at least five times unless it takes long; return the seconds of each."""
+    """Repeat a step for about a second, at least five times unless it takes long.
+
+    Return the seconds of each.
+    """
     step()
     seconds = []
     while not seconds or (sum(seconds) < MOST and (len(seconds) < 5 or sum(seconds) < BUDGET)):

@@ -1,4 +1,5 @@
-"""Mesh motion by the Delaunay graph in SciPy; measures set-up and update, and writes the weights for the C loop.
+"""Mesh motion by the Delaunay graph in SciPy; measures set-up and update, and writes the weights for the C
+loop.
 
 usage: motion_scipy.py prepare MESH.npz FOLDER       set-up once, weights are written to FOLDER
        motion_scipy.py update FOLDER SECONDS         only the update, repeated
@@ -34,7 +35,8 @@ def prepare(path, folder):
     ids.tofile(folder / "ids.u32")
     weights.tofile(folder / "weights.f64")
     moved.tofile(folder / "boundary.f64")
-    # Data for the same computation as motet's: displacements of all vertices, with boundary vertices at their own node.
+    # Data for the same computation as motet's: displacements of all vertices, with boundary vertices at their
+    # own node.
     all_ids = np.empty((len(points), 4), np.uint32)
     all_weights = np.full((len(points), 4), 0.25)
     all_ids[boundary] = np.arange(len(boundary))[:, None]

@@ -1,11 +1,13 @@
-"""Refinement by NGSolve, MFEM, dolfinx or Gmsh with one thread, generation by generation; prints times as JSON.
+"""Refinement by NGSolve, MFEM, dolfinx or Gmsh with one thread, generation by generation; prints times as
+JSON.
 
 usage: refine_python.py PROGRAM CASE.json OUT     meshes are written to OUT_1.points, OUT_1.tets, ..., unless they exist
 
-All programs have the same mesh and marks. Times include the calls that refine and that pass the marks, between the
-program's own data structures in memory. They exclude the creation of the first mesh, the choice of tets to mark, arrays
-of their ids in the program's own type, and reading of points and tets. A generation that exceeds the `limit` of the case
-is aborted and not started in later rounds. `examples/refine_rivals.rs` defines the marks.
+All programs have the same mesh and marks. Times include the calls that refine and that pass the marks,
+between the program's own data structures in memory. They exclude the creation of the first mesh, the choice
+of tets to mark, arrays of their ids in the program's own type, and reading of points and tets. A generation
+that exceeds the `limit` of the case is aborted and not started in later rounds. `examples/refine_rivals.rs`
+defines the marks.
 """
 import json
 import multiprocessing
@@ -102,7 +104,8 @@ class HangingMFEM(MFEM):
 
 
 class Dolfinx:
-    """Plaza refinement: edges of marked tets are halved, and the longest edges of the facets that contain these."""
+    """Plaza refinement: edges of marked tets are halved, and the longest edges of the facets that contain
+    these."""
 
     def __init__(self, points, tets, _boundary):
         import dolfinx
@@ -191,7 +194,10 @@ def write(points, tets, out, generation):
 
 
 def refine(name, case, folder, out, last, send):
-    """Refine up to the generation `last`; send a message when a generation begins and ends, and its result."""
+    """Refine up to the generation `last`.
+
+    Send a message when a generation begins and ends, and its result.
+    """
     raw = lambda file, kind, width: np.fromfile(folder / file, kind).reshape(-1, width)
     ids = lambda file, width: raw(file, np.uint32, width).astype(np.int64)
     near = raw(case["near"], np.float64, 3) if case["near"] else None
@@ -211,7 +217,10 @@ def refine(name, case, folder, out, last, send):
 
 
 def watched(name, case, folder, out):
-    """Refine in a separate process that is killed if a generation takes too long; return the rows of generations."""
+    """Refine in a separate process that is killed if a generation takes too long.
+
+    Return the rows of generations.
+    """
     stop = Path(f"{out}.stop")
     last = int(stop.read_text().split()[0]) - 1 if stop.exists() else case["generations"]
     receiver, sender = multiprocessing.Pipe(duplex=False)

@@ -2,8 +2,8 @@
 
 usage: remesh_python.py PROGRAM IN.npz OUT.npz
 
-IN: points, tets, boundary (triangles), far (ids of tets to keep). OUT: points, tets. Times are measured between the
-program's own data structures in memory, with three repeats or fewer if they take long.
+IN: points, tets, boundary (triangles), far (ids of tets to keep). OUT: points, tets. Times are measured
+between the program's own data structures in memory, with three repeats or fewer if they take long.
 """
 import json
 import sys

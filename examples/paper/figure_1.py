@@ -1,10 +1,11 @@
-"""Reproduces figure 1 of the paper: how the Delaunay graph of the boundary moves a mesh (writes docs/paper_1.png).
+"""Reproduces figure 1 of the paper: how the Delaunay graph of the boundary moves a mesh (writes
+docs/paper_1.png).
 
     target/venv/bin/python examples/paper/figure_1.py
 
 (a) A sphere in a box, (b) the mesh between them, (c) the Delaunay tets between the vertices of both surfaces,
-(d) the displacements of the boundary, (e) the displacements of interior vertices, (f) the moved mesh. Cuts through
-the centre, seen from the front.
+(d) the displacements of the boundary, (e) the displacements of interior vertices, (f) the moved mesh. Cuts
+through the centre, seen from the front.
 """
 import numpy as np
 import pyvista as pv

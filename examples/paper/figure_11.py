@@ -2,10 +2,10 @@
 
     target/venv/bin/python examples/paper/figure_11.py
 
-Writes docs/paper_11.png and prints three tables. The mesh follows as an elastic body, as in the paper: from (a) to
-(b) the sphere moves by four equal shifts; (c) is (b) repaired. The first table contains these shifts, all from the
-initial position and each repaired separately; the second a longer motion that is repaired after every step; the third
-the same motion with a `MovingMesh`, which keeps the initial quality.
+Writes docs/paper_11.png and prints three tables. The mesh follows as an elastic body, as in the paper: from
+(a) to (b) the sphere moves by four equal shifts; (c) is (b) repaired. The first table contains these shifts,
+all from the initial position and each repaired separately; the second a longer motion that is repaired after
+every step; the third the same motion with a `MovingMesh`, which keeps the initial quality.
 """
 import numpy as np
 from common import BAD, DOCS, behind, grid, patch_triangles, poly, print_table, surface
@@ -79,7 +79,8 @@ def step_by_step(mesh):
 
 
 def as_a_moving_mesh(mesh):
-    """Print the third table: a `MovingMesh` improves what a repair changes, and strains only a band at the sphere."""
+    """Print the third table: a `MovingMesh` improves what a repair changes, and strains only a band at the
+    sphere."""
     import motet
 
     moving = motet.MovingMesh(mesh, method="bodies", strain="band", smooth=2)

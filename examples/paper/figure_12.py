@@ -2,9 +2,10 @@
 
     target/venv/bin/python examples/paper/figure_12.py
 
-As in the paper, the mesh is refined until no edge at the wire is longer than SIZE, then the wire is implanted. Shows
-the whole mesh and three cuts: along the vessel, across it, and through the sac, with the lumen coloured by quality and
-the wire in copper. The last row of the table is for the implantation without refinement, which is motet's default.
+As in the paper, the mesh is refined until no edge at the wire is longer than SIZE, then the wire is
+implanted. Shows the whole mesh and three cuts: along the vessel, across it, and through the sac, with the
+lumen coloured by quality and the wire in copper. The last row of the table is for the implantation without
+refinement, which is motet's default.
 """
 import numpy as np
 from common import BAD, DOCS, grid, patch_triangles, poly, print_table

@@ -2,9 +2,9 @@
 
     target/venv/bin/python examples/paper/figure_13.py
 
-Writes docs/paper_13.png and prints two tables. Shows the exact distance of every vertex to the other surface, on (a)
-the stent and (b) the wall; (c), (d) just before the stent touches the wall. The second table expands the stent in
-steps and shows when motet warns, so that a contact model would be called.
+Writes docs/paper_13.png and prints two tables. Shows the exact distance of every vertex to the other surface,
+on (a) the stent and (b) the wall; (c), (d) just before the stent touches the wall. The second table expands
+the stent in steps and shows when motet warns, so that a contact model would be called.
 """
 import numpy as np
 from common import DOCS, poly, print_table
@@ -13,7 +13,8 @@ from pictures import COPPER, lit, save_sheet, scale_of, shot
 
 PANEL = (600, 400)
 RANGE, WARN = (0.0, 1.2), 0.1
-# Radius of the circle on which the vessel's axis lies: its length over its bend. The radius of the vessel is 1.
+# Radius of the circle on which the vessel's axis lies: its length over its bend. The radius of the vessel is
+# 1.
 AXIS = 10.0 / np.radians(90.0)
 LENGTH = 7.0
 # Distance of the stent from the axis, towards the inside of the bend.

@@ -1,11 +1,12 @@
-"""Reproduces figure 6 of the paper: division of a tet and its neighbours (writes docs/paper_6.png, prints two tables).
+"""Reproduces figure 6 of the paper: division of a tet and its neighbours (writes docs/paper_6.png, prints two
+tables).
 
     target/venv/bin/python examples/paper/figure_6.py
 
-One of three regular tets (a) is divided into eight; the others are cut to conform: (b) shares an edge with it, (c) a
-facet. The upper row shows the new edges, the lower row the separated parts, coloured by quality. Then a mesh is
-divided repeatedly around one point, and its quality is compared with that of a mesh whose divisions are forgotten
-after each generation, so that cut pieces are divided again.
+One of three regular tets (a) is divided into eight; the others are cut to conform: (b) shares an edge with
+it, (c) a facet. The upper row shows the new edges, the lower row the separated parts, coloured by quality.
+Then a mesh is divided repeatedly around one point, and its quality is compared with that of a mesh whose
+divisions are forgotten after each generation, so that cut pieces are divided again.
 """
 import numpy as np
 import pyvista as pv
@@ -24,8 +25,8 @@ VIEWS = (((12.0, -8.0, 2.0), (1.0, 1.0, 1.0)), ((9.0, -14.0, 7.0), (0.0, 0.0, 1.
 def regular():
     """Return three regular tets: one, one that shares a facet with it, and one that shares an edge with it.
 
-    A fourth, separate tet is flat: without it motet would divide all three, since no part may be much worse than
-    the worst tet of the mesh.
+    A fourth, separate tet is flat: without it motet would divide all three, since no part may be much worse
+    than the worst tet of the mesh.
     """
     import motet
 

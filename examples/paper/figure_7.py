@@ -1,9 +1,10 @@
-"""Reproduces figure 7 of the paper: implantation of a body into a mesh, step by step (writes docs/paper_7.png).
+"""Reproduces figure 7 of the paper: implantation of a body into a mesh, step by step (writes
+docs/paper_7.png).
 
     target/venv/bin/python examples/paper/figure_7.py
 
-(a) The outer and (b) the inner mesh; (c) the part of the outer mesh that is kept; (d) the surfaces that bound the
-space in between; (e) its new tets; (f) the whole mesh, coloured by quality. Cuts through the centre.
+(a) The outer and (b) the inner mesh; (c) the part of the outer mesh that is kept; (d) the surfaces that bound
+the space in between; (e) its new tets; (f) the whole mesh, coloured by quality. Cuts through the centre.
 """
 import numpy as np
 from common import BAD, DOCS, PALE, behind, grid, patch_triangles, poly

@@ -3,10 +3,10 @@
     target/venv/bin/python examples/paper/table_1.py            (about three minutes)
     target/venv/bin/python examples/paper/table_1.py A B        (only these sizes)
 
-Prints two tables for meshes of four sizes. A sphere in a box moves by half its radius. Each call of `motet move` is a
-separate process with one thread. Times are medians of REPEATS calls; a step of the graph is the median of STEPS steps.
-Pseudo-elasticity is motet's `--method elastic` with the stiffness 1/volume, with one step per call, so that iterations
-do not start from the solution. Set-up times are given for both.
+Prints two tables for meshes of four sizes. A sphere in a box moves by half its radius. Each call of `motet
+move` is a separate process with one thread. Times are medians of REPEATS calls; a step of the graph is the
+median of STEPS steps. Pseudo-elasticity is motet's `--method elastic` with the stiffness 1/volume, with one
+step per call, so that iterations do not start from the solution. Set-up times are given for both.
 """
 import os
 import sys
@@ -18,8 +18,8 @@ from common import motet_json, print_table, work
 SIZES = {"A": (15, 7), "B": (22, 10), "C": (30, 13), "D": (38, 17)}
 REPEATS, STEPS = 5, 21
 LAYER = ("--rigid-layer", "1layers", "--rigid-layer-at", "sphere", "--rigid-layer-at", "box")
-# Times in the paper, in seconds: set-up without and with a rigid layer, step of the elastic solver, and step of the
-# graph without and with a rigid layer.
+# Times in the paper, in seconds: set-up without and with a rigid layer, step of the elastic solver, and step
+# of the graph without and with a rigid layer.
 PAPER = {
     "A": (1.20, 2.21, 4.42, 2.22e-3, 1.25e-3),
     "B": (3.47, 6.14, 15.16, 5.65e-3, 6.66e-3),

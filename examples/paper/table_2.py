@@ -2,9 +2,9 @@
 
     target/venv/bin/python examples/paper/table_2.py
 
-For each type there is a family of tets that degenerate with one parameter. Bisection finds the parameter at which
-motet's classification changes; the measure at this parameter is evaluated here, independently of motet. Lengths are
-relative to the mean edge length of the tet.
+For each type there is a family of tets that degenerate with one parameter. Bisection finds the parameter at
+which motet's classification changes; the measure at this parameter is evaluated here, independently of motet.
+Lengths are relative to the mean edge length of the tet.
 """
 from itertools import combinations
 
@@ -33,7 +33,8 @@ def edge_to_edge(p):
 
 
 def node_to_edge(p):
-    """Return the least distance of a vertex from the line of another edge, relative to the mean edge length."""
+    """Return the least distance of a vertex from the line of another edge, relative to the mean
+    edge length."""
     def distance(v, i, j):
         edge = p[j] - p[i]
         return np.linalg.norm(np.cross(p[v] - p[i], edge)) / np.linalg.norm(edge)
@@ -46,7 +47,8 @@ def shortest_edge(p):
 
 
 def equi_angle(p):
-    """Return 1 minus Verdict's equi-angle skew, from dihedral angles (ideal 70.53 degrees) and facet angles (60)."""
+    """Return 1 minus Verdict's equi-angle skew, from dihedral angles (ideal 70.53 degrees) and facet angles
+    (60)."""
     def angle(u, v):
         return np.degrees(np.arccos(u @ v / np.linalg.norm(u) / np.linalg.norm(v)))
 

@@ -1,8 +1,8 @@
 """Incompressible flow in NGSolve on a moving `motet.Mesh`, which can be replaced by a repaired mesh.
 
-Navier-Stokes equations in arbitrary Lagrangian-Eulerian form (Donea, Giuliani, Halleux 1982), Taylor-Hood elements,
-implicit Euler with convection by the velocity of the previous step, and the incremental projection of Goda (1979) for
-the pressure. `Mesh.SetDeformation` moves the mesh by a field of order 1.
+Navier-Stokes equations in arbitrary Lagrangian-Eulerian form (Donea, Giuliani, Halleux 1982), Taylor-Hood
+elements, implicit Euler with convection by the velocity of the previous step, and the incremental projection
+of Goda (1979) for the pressure. `Mesh.SetDeformation` moves the mesh by a field of order 1.
 """
 import netgen.meshing
 import numpy as np
@@ -21,7 +21,8 @@ def ramp(t):
 
 
 def to_ngsolve(mesh, points):
-    """Return a mesh of NGSolve, with vertices in the order of the points and boundaries named after the patches."""
+    """Return a mesh of NGSolve, with vertices in the order of the points and boundaries named after the
+    patches."""
     made = netgen.meshing.Mesh(dim=3)
     made.AddPoints(np.ascontiguousarray(points))
     patches = mesh.cell_data["patch"][mesh.cell_ids("triangle")]
@@ -55,7 +56,10 @@ class Flow:
         return self.arrays.points + self.moved.vec.FV().NumPy().reshape(3, -1).T
 
     def step(self, points, t, wall):
-        """Advance to the time `t` and the mesh at `points`; return the force on the sphere, which moves at `wall`."""
+        """Advance to the time `t` and the mesh at `points`.
+
+        Return the force on the sphere, which moves at `wall`.
+        """
         moved = (points - self.arrays.points).T.ravel()
         self.grid.vec.FV().NumPy()[:] = (moved - self.moved.vec.FV().NumPy()) / DT
         self.moved.vec.FV().NumPy()[:] = moved
@@ -117,8 +121,8 @@ class Flow:
 def carried(old, mesh, history):
     """Return the flow on a repaired mesh.
 
-    The velocity is copied exactly at unchanged vertices and edges, and evaluated in the old mesh elsewhere; the
-    pressure is interpolated by motet.
+    The velocity is copied exactly at unchanged vertices and edges, and evaluated in the old mesh elsewhere;
+    the pressure is interpolated by motet.
     """
     new = Flow(mesh)
     new.pressure.vec.FV().NumPy()[:] = history.transfer(old.pressure.vec.FV().NumPy(), on="points")

@@ -1,11 +1,12 @@
 """Incompressible flow around a sphere that drifts along a channel and oscillates across it, on a moving mesh.
 
-    pip install ./python ngsolve
-    python integrations/ngsolve/sphere.py [--steps 100] [--size 1.0] [--swing 2.0] [--drift 4.0] [--worn 0.15] [--save end_{}.vtu]
+    pip install ./python ngsolve python integrations/ngsolve/sphere.py [--steps 100] [--size 1.0] [--swing
+    2.0] [--drift 4.0] [--worn 0.15] [--save end_{}.vtu]
 
-The mesh is moved by motet, with a repair when the worst tet is below `--worn`; by motet without repair; and by a Laplace
-and an elasticity equation solved with NGSolve. The flow solver is `flow.py`. Prints the times of each motion, the
-quality of the mesh, the effect of each repair on the flow, and the differences of drag and lift.
+The mesh is moved by motet, with a repair when the worst tet is below `--worn`; by motet without repair; and
+by a Laplace and an elasticity equation solved with NGSolve. The flow solver is `flow.py`. Prints the times of
+each motion, the quality of the mesh, the effect of each repair on the flow, and the differences of drag and
+lift.
 """
 import argparse
 import functools
@@ -67,7 +68,10 @@ class ByMotet:
         return self.certificate.worst_eas.value < self.worn
 
     def repaired(self):
-        """Repair the mesh at its current position, with the boundary unchanged; return the new motion and the change."""
+        """Repair the mesh at its current position, with the boundary unchanged.
+
+        Return the new motion and the change.
+        """
         here = self.mesh.copy()
         here.points = self.points
         changed = motet.remesh(here)
@@ -75,7 +79,8 @@ class ByMotet:
 
 
 class BySystem:
-    """Motion by a linear system in NGSolve with a stored factorization, its fastest solver for this purpose."""
+    """Motion by a linear system in NGSolve with a stored factorization, its fastest solver for
+    this purpose."""
 
     def __init__(self, mesh, kind):
         self.mesh, self.sphere = mesh, mesh.patch_vertices("sphere")
@@ -156,7 +161,8 @@ class Run:
 
 
 def compare(first, other):
-    """Describe the differences of drag and lift, relative to their means, after the start while both meshes are valid."""
+    """Describe the differences of drag and lift, relative to their means, after the start while both meshes
+    are valid."""
     n, begin = min(len(first.forces), len(other.forces)), round(RAMP / DT)
     if n <= begin:
         return "tangled before the flow has started"

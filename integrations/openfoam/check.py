@@ -3,10 +3,10 @@
 
     integrations/openfoam/check.py FOLDER [--time [CELLS]]
 
-Runs the case with moveDynamicMesh and pimpleFoam, serially and on two processes; points must agree up to rounding.
-With --time, measures a step of `delaunayGraph` and of displacementLaplacian instead. FOLDER contains
-libmotetMotionSolver.so; the cases are written to FOLDER/run. CELLS is the number of cells along an edge of the box
-(default 64). Needs OpenFOAM's programs and mpirun.
+Runs the case with moveDynamicMesh and pimpleFoam, serially and on two processes; points must agree up to
+rounding. With --time, measures a step of `delaunayGraph` and of displacementLaplacian instead. FOLDER
+contains libmotetMotionSolver.so; the cases are written to FOLDER/run. CELLS is the number of cells along an
+edge of the box (default 64). Needs OpenFOAM's programs and mpirun.
 """
 import os
 import re

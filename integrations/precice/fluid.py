@@ -1,4 +1,5 @@
-"""A preCICE participant with a mesh moved by motet: reads the wall displacement of a solid, writes the wall load.
+"""A preCICE participant with a mesh moved by motet: reads the wall displacement of a solid, writes the wall
+load.
 
     python fluid.py precice-config.xml vessel.vtu wall
 
@@ -29,7 +30,8 @@ def couple(participant, mesh, wall, solve=solve):
     points, before = mesh.points.copy(), mesh.points.copy()
     participant.initialize()
     while participant.is_coupling_ongoing():
-        # A step of motet depends only on the displacement, so a repeated iteration needs no saved state of the mesh.
+        # A step of motet depends only on the displacement, so a repeated iteration needs no saved state of
+        # the mesh.
         if participant.requires_writing_checkpoint():
             before = points.copy()
         dt = participant.get_max_time_step_size()

@@ -1,4 +1,5 @@
-"""The loop of `fluid.py` with a stand-in for preCICE: a wall on springs, with two iterations per time window."""
+"""The loop of `fluid.py` with a stand-in for preCICE: a wall on springs, with two iterations per
+time window."""
 import numpy as np
 
 import motet

@@ -1,12 +1,12 @@
-/* A DEFINE_GRID_MOTION function of Fluent for a fluid zone: motet moves the nodes of its cells so that they follow its
- * walls.
+/* A DEFINE_GRID_MOTION function of Fluent for a fluid zone: motet moves the nodes of its cells so that they
+ * follow its walls.
  *
  * Hook the function to the fluid cell zone. WALLS are the ids of the zones with a prescribed motion, which
- * `wall_displacement` computes: here an oscillating sphere. The first call sets up the graph for the current mesh. The
- * example was compiled against stand-in/udf.h; it has not been run in Fluent.
+ * `wall_displacement` computes: here an oscillating sphere. The first call sets up the graph for the current
+ * mesh. The example was compiled against stand-in/udf.h; it has not been run in Fluent.
  *
- * This is for a serial Fluent. In parallel, each process needs the wall nodes of all processes (PRF_GCOLLECT and the
- * like) before motet_point_mover_new and before each step.
+ * This is for a serial Fluent. In parallel, each process needs the wall nodes of all processes (PRF_GCOLLECT
+ * and the like) before motet_point_mover_new and before each step.
  */
 #include <math.h>
 #include <stdlib.h>

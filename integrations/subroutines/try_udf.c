@@ -1,4 +1,4 @@
-/* Calls the example for a small mesh with the stand-in for Fluent, and checks that a node in the middle follows. */
+/* Calls the example for a small mesh with the stand-in for Fluent, and checks that an inner node follows. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,7 +17,7 @@ Thread *Lookup_Thread(Domain *domain, int id)
 
 int main(void)
 {
-    /* The body is an octahedron of radius 1, the walls are one of radius 4, and there is one node in between. */
+    /* The body is an octahedron of radius 1, the walls are one of radius 4; one node lies in between. */
     static Node nodes[13];
     Node *body_nodes[6], *wall_nodes[6], *cell_nodes[4];
     Thread body = {5, 2, 3, body_nodes, 0}, wall = {6, 2, 3, wall_nodes, 0}, fluid = {1, 1, 4, cell_nodes, 0}, *faces[2] = {&body, &wall};

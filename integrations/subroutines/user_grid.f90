@@ -1,9 +1,9 @@
 ! A user subroutine in Fortran that a solver calls once per step. It updates the coordinates `x` of all nodes;
 ! `on_walls` are the ids of the nodes on walls, starting at 1.
 !
-! The motion of the walls is prescribed: here a sphere at the origin oscillates. The first call sets up the graph.
-! The example was run with stand-in/solver.f90, but not in a commercial solver. Adapt names and argument lists to the
-! solver.
+! The motion of the walls is prescribed: here a sphere at the origin oscillates. The first call sets up the
+! graph. The example was run with stand-in/solver.f90, but not in a commercial solver. Adapt names and
+! argument lists to the solver.
 subroutine user_grid(n_points, x, n_walls, on_walls, time)
   use, intrinsic :: iso_c_binding
   use motet, only: point_mover

@@ -1,5 +1,5 @@
-! A stand-in for a solver, such as CFX or CFD-ACE+, that calls a user subroutine in Fortran once per step with its own
-! arrays. Calls user_grid.f90 with a small mesh. Contains no code of these solvers.
+! A stand-in for a solver, such as CFX or CFD-ACE+, that calls a user subroutine in Fortran once per step with
+! its own arrays. Calls user_grid.f90 with a small mesh. Contains no code of these solvers.
 program solver
   use, intrinsic :: iso_c_binding
   implicit none

@@ -1,4 +1,5 @@
-/* A stand-in for Fluent's udf.h with what fluent_udf.c needs to compile. Contains no code of Fluent; not for use in it. */
+/* A stand-in for Fluent's udf.h with what fluent_udf.c needs to compile. Contains no code of Fluent, and is not
+ * for use in it. */
 #ifndef STAND_IN_UDF_H
 #define STAND_IN_UDF_H
 

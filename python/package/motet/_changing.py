@@ -201,8 +201,8 @@ def remesh(
         everywhere as good as possible.
     surface : {"keep", "adapt", "loose"}, default "keep"
         What may happen to boundaries, interfaces and labelled facets. ``"keep"`` leaves them exactly
-        unchanged. ``"adapt"`` allows changes within `distance` and keeps features such as creases. ``"loose"``
-        also allows changes of features where nothing else helps.
+        unchanged. ``"adapt"`` allows changes within `distance` and keeps features such as creases.
+        ``"loose"`` also allows changes of features where nothing else helps.
     distance : float, optional
         How far the surface may deviate, in units of the mesh. Default: 1e-3 of its largest extent.
     keep_layers : bool, default True

@@ -170,8 +170,8 @@ class Contact(NotPickled):
     def rooms(self) -> list[Report]:
         """Which surfaces lie in which rooms: a list of reports with ``room``, ``surface`` and ``share``.
 
-        ``share`` is the fraction of the surface's area that was inside the room initially, or None if the room
-        was given by the parameter `room`.
+        ``share`` is the fraction of the surface's area that was inside the room initially, or None if the
+        room was given by the parameter `room`.
         """
         return report(self._native.rooms())
 

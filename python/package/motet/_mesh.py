@@ -198,7 +198,8 @@ class Mesh:
         ----------
         measure : str, default "eas"
             ``"eas"`` (equi-angle quality: 1 regular, 0 flat, negative inverted; bad below 0.2),
-            ``"mean_ratio"``, ``"min_dihedral_deg"``, ``"max_dihedral_deg"``, ``"edge_ratio"`` or ``"volume"``.
+            ``"mean_ratio"``, ``"min_dihedral_deg"``, ``"max_dihedral_deg"``, ``"edge_ratio"`` or
+            ``"volume"``.
 
         Returns
         -------

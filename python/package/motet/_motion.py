@@ -89,7 +89,7 @@ class Mover(NotPickled):
         - ``"delaunay"``: by weights in the graph of the boundary; the cheapest.
         - ``"bodies"``: rigid bodies carry along the mesh around them, for large rotations and translations.
         - ``"guided"``: by a graph with interior nodes that rotate, for walls that bend.
-        - ``"elastic"``, ``"laplace"``: by linear elasticity or a Laplace equation; one linear system per step.
+        - ``"elastic"``, ``"laplace"``: by linear elasticity or a Laplace equation, one system per step.
         - ``"idw"``, ``"rbf"``: by inverse distance weighting or radial basis functions.
 
         The last four are provided for comparison.
@@ -394,9 +394,9 @@ def move(
     mesh : MeshLike
         Mesh with volume cells of any kind: a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
     displacement : str or array_like of shape (n, 3), optional
-        Displacement of every point, or the name of a point array with it. In the interior only non-zero values
-        on interfaces between regions and on labelled facets are used. Boundary vertices with zero displacement
-        stay.
+        Displacement of every point, or the name of a point array with it. In the interior only non-zero
+        values on interfaces between regions and on labelled facets are used. Boundary vertices with zero
+        displacement stay.
     translate : mapping of str or int to array_like of shape (3,), optional
         Translation vector by patch. A patch may be interior, such as the surface of a device. Patches that
         share vertices must move these equally.

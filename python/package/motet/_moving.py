@@ -83,7 +83,8 @@ class MovingMesh(NotPickled):
     bodies : sequence of str or int, optional
         Names or labels of the patches that are rigid bodies; see :class:`Mover`.
     strain : "even" or "band"
-        Of the method ``bodies``: over all that is between a body and the walls that stay, or in a band beside the body, for bodies that go on.
+        Of the method ``bodies``: over all that is between a body and the walls that stay, or in a band beside
+        the body, for bodies that go on.
     within_walls : bool, default False
         Whether vertices follow only walls that they can reach; see :class:`Mover`.
     smooth : int, default 0
@@ -117,8 +118,8 @@ class MovingMesh(NotPickled):
         Tets are repaired during a step before their EAS falls below this, if they can be.
     improve_below : float, default 0.75
         Where a repair changes the mesh, tets below this EAS are improved as well: those near the change, and
-        those that have deteriorated since the start. The number of interior vertices is kept. With 0 only bad tets
-        are repaired.
+        those that have deteriorated since the start. The number of interior vertices is kept. With 0 only bad
+        tets are repaired.
     returns : bool, default False
         Whether the walls return to their initial position periodically. Tets are then improved for that
         position as well, so that a cycle does not undo the improvements of the previous one. A mesh that
@@ -377,8 +378,8 @@ class MovingMesh(NotPickled):
         near : sequence of (MeshLike, float), optional
             Mark tets within a distance of a surface.
         near_size : sequence of (MeshLike, float) or (MeshLike, float, float), optional
-            Surface, edge length ``h`` and growth (default 0.5): divide until no edge is longer than ``h`` at the
-            surface, and ``h + growth * distance`` away from it.
+            Surface, edge length ``h`` and growth (default 0.5): divide until no edge is longer than ``h`` at
+            the surface, and ``h + growth * distance`` away from it.
         box : sequence of (low, high), optional
             Mark tets whose centre lies in an axis-aligned box, given by two corners.
         ball : sequence of (centre, radius), optional
@@ -395,11 +396,12 @@ class MovingMesh(NotPickled):
             Mark tets where the gradient of an array, or the vorticity or the Q criterion of a velocity array,
             exceeds a threshold: ``"ARRAY>VALUE"``.
         jump, recovery : mapping of str to float or int, optional
-            Mark tets by an error estimate for a point array: gradient jumps or gradient recovery. A float is the
-            share of the total error to mark, an int the target number of tets.
+            Mark tets by an error estimate for a point array: gradient jumps or gradient recovery. A float is
+            the share of the total error to mark, an int the target number of tets.
         hessian : mapping of str or tuple of str to float, str or int, optional
-            Divide by the second derivatives of one or more point arrays. The value is the interpolation error to
-            reach (float), the same as a percentage of the range (``"2%"``), or the target number of tets (int).
+            Divide by the second derivatives of one or more point arrays. The value is the interpolation error
+            to reach (float), the same as a percentage of the range (``"2%"``), or the target number of tets
+            (int).
         smallest : float, optional
             Smallest size that `hessian` requests, in units of the mesh.
         generations : int, optional

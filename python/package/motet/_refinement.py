@@ -193,9 +193,9 @@ def _hessian(arrays: str | tuple[str, ...], aim: float | str, smallest: float | 
 class Refinement:
     """A mesh whose tets are refined and coarsened step by step, as marked by the caller.
 
-    The parts of a divided cell take its place in the order of cells; new points are appended. The mesh depends
-    only on the initial mesh and on the requested divisions, so undoing all of them restores the initial mesh
-    exactly. A refinement can be pickled.
+    The parts of a divided cell take its place in the order of cells; new points are appended. The mesh
+    depends only on the initial mesh and on the requested divisions, so undoing all of them restores the
+    initial mesh exactly. A refinement can be pickled.
 
     Parameters
     ----------
