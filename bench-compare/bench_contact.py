@@ -1,4 +1,4 @@
-"""Distances between two surfaces, a stent lattice in a tube: motet beside its rivals on the same bytes."""
+"""Distances between a stent lattice and a tube, by motet and other programs on identical input."""
 import subprocess
 import sys
 
@@ -6,19 +6,20 @@ import numpy as np
 
 from common import HERE, MOTET, TARGET, cell, in_turn, seconds_text, table
 
-# name in the table: word for rivals/contact_python.py, threads
+# Name in the table: keyword of rivals/contact_python.py, numbers of threads.
 BY_VERTEX = {"libigl": ("igl", (1, 2)), "Embree (Open3D, f32)": ("embree", (1, 2)), "VTK static locator": ("vtk-cells", (1,)),
              "VTK implicit distance": ("vtk-implicit", (1,))}
 NEAREST = {"FCL": "fcl", "coal": "coal"}
-REFITS = ("motet", "parry")  # the others build their trees again at a step
-# As exact as f64 lets it be, of the size of what is measured.
+REFITS = ("motet", "parry")  # all others rebuild their trees in each step
+# Accuracy of f64, relative to the size of the surfaces.
 EXACT = 1e-12
-# What the project wants: ratios to the fastest rival that computes in f64, seconds, the gain of a second thread.
+# Targets of the project: ratios to the fastest other program in f64, seconds, and speed-up by a second
+# thread.
 WANTED = {"cold": 3.0, "step": 5.0, "nearest": 5e-3, "threads": 1.7}
 
 
 def contenders(folder, quick):
-    """{(program, threads): command}; each writes its distances to `folder`/program_threads."""
+    """Return {(program, threads): command}, and the files to which the programs write distances."""
     runs = 1 if quick else 5
     motet = MOTET / "examples" / "contact_timing"
     found = {("motet", t): [motet, "--threads", t, "--seconds", 0.05 if quick else 0.3, "--distances", prefix(folder, "motet", t)]
@@ -26,16 +27,16 @@ def contenders(folder, quick):
     for program, path in (("parry", TARGET / "contact_parry"), ("CGAL", TARGET / "contact_cgal")):
         found |= {(program, t): [path, folder, t, runs, prefix(folder, program, t)] for t in (1, 2) if path.exists()}
     python = [sys.executable, HERE / "rivals" / "contact_python.py"]
-    for program, (word, threads) in BY_VERTEX.items():
-        found |= {(program, t): [*python, word, folder, t, runs, prefix(folder, word, t)] for t in threads}
-    for program, word in NEAREST.items():
-        found[program, 1] = [*python, word, folder, 1, runs, "-"]
+    for program, (keyword, threads) in BY_VERTEX.items():
+        found |= {(program, t): [*python, keyword, folder, t, runs, prefix(folder, keyword, t)] for t in threads}
+    for program, keyword in NEAREST.items():
+        found[program, 1] = [*python, keyword, folder, 1, runs, "-"]
     places = {key: command[-1] for key, command in found.items() if key[0] not in NEAREST}
     return found, places
 
 
-def prefix(folder, word, threads):
-    return folder / f"{word}_{threads}t"
+def prefix(folder, name, threads):
+    return folder / f"{name}_{threads}t"
 
 
 def run(record, options):
@@ -51,7 +52,8 @@ def run(record, options):
 
 
 def differences(folder, places, results):
-    """How far each program's distances are at most from the middle one of all f64 programs, over the size of the tube."""
+    """Add the largest deviation of each program from the median of all f64 programs, relative to the tube's
+    size."""
     corners = np.fromfile(folder / "tube.f64").reshape(-1, 3)
     size = np.linalg.norm(corners.max(0) - corners.min(0))
     for name, end in (("difference", ".f64"), ("difference_step", "_step.f64")):
@@ -67,30 +69,30 @@ def tables(results, commands):
     motet = good.get(("motet", 1), {})
     print("\n## Distances between two surfaces\n")
     print(f"{motet.get('queries', 0):,} vertices of a stent lattice ({motet.get('inner_triangles', 0):,} triangles) against a tube "
-          f"of {motet.get('triangles', 0):,} triangles.\nThe nearest triangle of the tube for every vertex; from nothing. "
-          "Difference: the largest from the middle of all f64 programs, of the size of the tube.\n")
-    print(table(["program", "version", "threads", "set-up", "asking", "both", "/motet", "difference", f"to {EXACT:g}"],
+          f"of {motet.get('triangles', 0):,} triangles.\nThe nearest triangle of the tube for every vertex, without previous results. "
+          "Difference: largest deviation from the median of all f64 programs, relative to the size of the tube.\n")
+    print(table(["program", "version", "threads", "set-up", "query", "both", "/motet", "difference", f"to {EXACT:g}"],
                 [[*named(key, result), *times(result, "build_seconds", "cold_seconds", "seconds"),
-                  beside(good, key, "seconds"), *exact(result["difference"])] for key, result in by_vertex.items()]))
+                  ratio_to_motet(good, key, "seconds"), *exact(result["difference"])] for key, result in by_vertex.items()]))
     print("\nA time step: all points moved by up to 5e-4 in each direction (1 % of the gap). motet and parry refit their trees and "
-          "start from\nthe last answers; CGAL builds its tree again and starts from the last answers; the others build and ask again.\n")
-    print(table(["program", "threads", "tree", "it takes", "asking", "both", "/motet", "difference", f"to {EXACT:g}"],
+          "start from\nthe previous results; CGAL rebuilds its tree and starts from the previous results; the others start anew.\n")
+    print(table(["program", "threads", "tree", "time", "query", "both", "/motet", "difference", f"to {EXACT:g}"],
                 [[*key, "refit" if key[0] in REFITS else "rebuilt", *times(result, "refit_seconds", "warm_seconds", "step_seconds"),
-                  beside(good, key, "step_seconds"), *exact(result["difference_step"])] for key, result in by_vertex.items()]))
+                  ratio_to_motet(good, key, "step_seconds"), *exact(result["difference_step"])] for key, result in by_vertex.items()]))
     nearest(good)
     whole(good)
     wanted(good)
     for (program, threads), result in results.items():
         if "error" in result:
-            print(f"\nLeft out: {program}, threads {threads} ({result['error']})")
+            print(f"\nOmitted: {program}, threads {threads} ({result['error']})")
     for program in ("parry", "CGAL"):
         if (program, 1) not in commands:
-            print(f"\nLeft out: {program} (not built)")
+            print(f"\nOmitted: {program} (not built)")
 
 
 def nearest(good):
-    print("\nThe nearest places of both surfaces over all pairs of triangles, and nothing else; one thread. CGAL, libigl, Open3D and VTK"
-          "\nhave no such question.\n")
+    print("\nOnly the nearest points of both surfaces, over all pairs of triangles; one thread. CGAL, libigl, Open3D and VTK"
+          "\nhave no such query.\n")
     rows = []
     for program in ("motet", *NEAREST):
         if result := good.get((program, 1)):
@@ -100,13 +102,13 @@ def nearest(good):
             first, second = ("nearest_distance", "nearest_distance_step") if ours else ("distance", "distance_step")
             rows.append([program, result["version"], *times(result, *keys[:2]), "refit" if program in REFITS else "rebuilt",
                          *times(result, *keys[2:]), f"{result[first]:.15g}", f"{result[second]:.15g}"])
-    print(table(["program", "version", "set-up", "first answer", "tree at a step", "it takes", "answer", "distance", "after the steps"], rows))
+    print(table(["program", "version", "set-up", "first query", "tree in a step", "time", "query", "distance", "after the steps"], rows))
 
 
 def whole(good):
-    print("\nThe whole of motet's `Contact`: gaps of all vertices both ways with signs, nearest places, warnings; no rival does it all.\n")
+    print("\nAll of motet's `Contact`: signed gaps of all vertices of both surfaces, nearest points and warnings, which no other program has.\n")
     keys = ("contact_new_seconds", "measure_cold_seconds", "contact_refit_seconds", "measure_seconds")
-    print(table(["threads", "set-up", "first measuring", "refit at a step", "measuring"],
+    print(table(["threads", "set-up", "first measurement", "refit in a step", "measurement"],
                 [[t, *times(good["motet", t], *keys)] for t in (1, 2) if ("motet", t) in good]))
 
 
@@ -124,16 +126,16 @@ def wanted(good):
     for threads in (1, 2):
         name, theirs = fastest(built, "step_seconds", threads)
         if name and ("motet", threads) in good:
-            rows.append([f"step, threads {threads}: {name}, built again / motet",
+            rows.append([f"step, threads {threads}: {name}, rebuilt / motet",
                          f"{theirs / good['motet', threads]['step_seconds']:.2f}", WANTED["step"]])
-    rows.append(["nearest places at a step, refit apart", seconds_text(ours["nearest_warm_seconds"]),
+    rows.append(["nearest points in a step, without refit", seconds_text(ours["nearest_warm_seconds"]),
                  "< " + seconds_text(WANTED["nearest"])])
     if two := good.get(("motet", 2)):
-        for what, key in (("asking, cold", "cold_seconds"), ("asking at a step", "warm_seconds"), ("set-up and asking", "seconds"),
-                          ("refit and asking", "step_seconds"), ("everything at a step", "measure_seconds")):
+        for what, key in (("first query", "cold_seconds"), ("query in a step", "warm_seconds"), ("set-up and query", "seconds"),
+                          ("refit and query", "step_seconds"), ("complete step", "measure_seconds")):
             rows.append([f"{what}: threads 1 / 2", f"{ours[key] / two[key]:.2f}", WANTED["threads"]])
-    print("\nBeside the fastest rival that computes in f64:\n")
-    print(table(["what", "is", "wanted"], rows))
+    print("\nCompared with the fastest other program in f64:\n")
+    print(table(["quantity", "value", "target"], rows))
 
 
 def fastest(good, key, threads):
@@ -142,9 +144,9 @@ def fastest(good, key, threads):
     return min(rivals.items(), key=lambda pair: pair[1], default=(None, None))
 
 
-def beside(good, key, what):
-    ours = good.get(("motet", key[1]), {}).get(what)
-    return f"{good[key][what] / ours:.2f}" if ours else "-"
+def ratio_to_motet(good, key, quantity):
+    ours = good.get(("motet", key[1]), {}).get(quantity)
+    return f"{good[key][quantity] / ours:.2f}" if ours else "-"
 
 
 def named(key, result):

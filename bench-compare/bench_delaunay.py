@@ -1,17 +1,17 @@
-"""Delaunay tetrahedralisation of bare points: motet beside CGAL, TetGen, Gmsh and Qhull on the same files."""
+"""Delaunay tetrahedralisation of points by motet, CGAL, TetGen, Gmsh and Qhull on the same files."""
 import shutil
 import sys
 
 from common import HERE, MOTET, TARGET, cell, in_turn, reference, seconds_text, table
 from point_sets import point_sets
 
-# The ratio to CGAL (one thread each) that the project wants; nothing is said of the other sets.
+# Target ratios to CGAL, with one thread each; there are no targets for the other sets.
 WANTED = {"cube 1,000,000": 2.2, "surface D": 3.5, "surface D turned": 3.5, "surface 200k": 3.0,
           "surface 200k turned": 3.0, "grid 50^3": 1.6}
 
 
 def contenders(name, group, path, n, runs):
-    """{label: command} of every program that has a chance on this set."""
+    """Return {label: command} for all programs that can process this set in reasonable time."""
     motet = MOTET / "examples" / "delaunay"
     cgal = TARGET / "delaunay_cgal"
     python = [sys.executable, HERE / "rivals" / "delaunay_python.py"]
@@ -23,7 +23,7 @@ def contenders(name, group, path, n, runs):
         found["TetGen"] = [*python, "tetgen", path, 1]
     if group != "adversarial":
         found["Gmsh"] = [*python, "gmsh", path, 1]
-    # Qhull is quadratic on coplanar points: minutes on the larger surfaces.
+    # Qhull takes quadratic time for coplanar points: minutes for the larger surfaces.
     if (group == "cube" and n <= 100_000) or (group == "surface" and n < 7_000):
         found["Qhull"] = [*python, "qhull", path, 1]
     return found
@@ -48,14 +48,14 @@ def run(record, options):
         counts.append([name, *[tets(results.get(label)) for label in labels if label != "motet 2t"],
                        *[memory(results.get(label), n) for label in ("motet 1t", "CGAL 1t", "TetGen")]])
         print(f"  {name}: done", file=sys.stderr, flush=True)
-    print("\n## Delaunay tetrahedralisation of bare points\n")
-    print(f"Seconds, medians over {options.rounds} rounds in turn; TetGen tells processor seconds. CGAL/motet above 1: motet"
+    print("\n## Delaunay tetrahedralisation of points\n")
+    print(f"Seconds, medians over {options.rounds} rounds in turn; CPU seconds for TetGen. CGAL/motet above 1: motet"
           " is faster.\n")
-    print(table(["set", "points", *labels, "CGAL/motet 1t", "wanted", "CGAL/motet 2t", "motet 1t/2t"], times))
-    print("\nTets, and peak memory of the whole program in bytes per point (input included):\n")
+    print(table(["set", "points", *labels, "CGAL/motet 1t", "target", "CGAL/motet 2t", "motet 1t/2t"], times))
+    print("\nTets, and peak memory of the whole program in bytes per point, including the input:\n")
     print(table(["set", *[label.removesuffix(" 1t") + " tets" for label in labels if label != "motet 2t"],
                  "motet B/pt", "CGAL B/pt", "TetGen B/pt"], counts))
-    beside()
+    print_reference()
 
 
 def shown(result):
@@ -75,8 +75,8 @@ def memory(result, n):
     return f"{result['peak_mib'] * 2**20 / n:,.0f}" if result and "peak_mib" in result and n >= 10_000 else "-"
 
 
-def beside():
-    """Figures of the reference machine, which cannot be rerun here: geogram is in no registry."""
+def print_reference():
+    """Print measurements of the reference machine, which include geogram (in no package registry)."""
     rows = [[r["peer"], r.get("algorithm", ""), r.get("threads", 1), seconds_text(r["seconds"]), f"{r['tets']:,}"]
             for r in reference() if r["work"] == "W1a-cube" and r["size"] == 1_000_000 and r["seconds"]]
     if rows:

@@ -1,4 +1,5 @@
-"""Does a mesh stay the mesh it was? Long motions by `motet run`, and two of them by a loop round Mmg: counts and quality, step by step."""
+"""Numbers of vertices and quality over long motions, by `motet run` and, for two motions, by a
+loop with Mmg."""
 import argparse
 import importlib.util
 import json
@@ -13,16 +14,16 @@ from common import HERE, MOTET, busy_seconds, call, cell, own_seconds, table
 from drift_cases import cases, chosen
 from drift_log import cycle_ends, lines, read_frame, read_run, sums
 
-QUICK = 12  # steps of each case
-LIMIT = 5.0  # seconds that a step may take, all in all: a mesh that grows in each cycle comes to no end
-ROWS = 12  # cycles in the table of cycles, at most
-# name in the table: tets with an edge below this part of its size belong to the zone of a repair
+QUICK = 12  # number of steps of each case with --quick
+LIMIT = 5.0  # mean seconds that a step may take; a mesh that grows in each cycle would never finish
+ROWS = 12  # largest number of cycles in a table of cycles
+# Name in the table: tets with an edge below this fraction of its size belong to the zone of a repair.
 RIVALS = {"Mmg loop": 0.0, "Mmg loop, short edges too": 0.55}
 
 
 def run(record, options):
-    found, without, with_transfer = asked(options)
-    left_out, results = [f"{name} (no data; MOTET_DATA names the folder)" for name in without], []
+    found, without, with_transfer = requested(options)
+    omitted, results = [f"{name} (no data: set MOTET_DATA to the folder of real meshes)" for name in without], []
     for case in found:
         for program, done in programs(case, options):
             steps = done.get("log", [])
@@ -31,21 +32,22 @@ def run(record, options):
             if steps:
                 results.append((case, program, row, steps))
             if "error" in done:
-                left_out.append(f"{case.name}, {program} ({done['error']})")
+                omitted.append(f"{case.name}, {program} ({done['error']})")
             print(f"  drift {case.name}, {program}: done", file=sys.stderr, flush=True)
     if results:
         tables(results)
     if with_transfer:
         try:
             drift_transfer.run(record, options, next(case for case in cases(options) if case.name == "paddle"))
-        except (OSError, RuntimeError) as why:
-            left_out.append(f"{drift_transfer.NAME} ({why})")
-    for line in left_out:
-        print(f"\nLeft out: {line}")
+        except (OSError, RuntimeError) as error:
+            omitted.append(f"{drift_transfer.NAME} ({error})")
+    for line in omitted:
+        print(f"\nOmitted: {line}")
 
 
-def asked(options):
-    """The cases, the names of those without data, and whether fields are looked at, too: that is no case of `motet run`."""
+def requested(options):
+    """Return the cases, the names of those without data, and whether to run `drift_transfer`, which is not a
+    case."""
     names = options.cases.split(",") if options.cases else None
     if names is None or drift_transfer.NAME not in names:
         return *chosen(options), names is None
@@ -55,11 +57,11 @@ def asked(options):
 
 
 def programs(case, options):
-    """Each program's name and what it did: `log` and `status`, or `error`."""
+    """Yield the name and the result of each program: `log` and `status`, or `error`."""
     try:
         case.make()
-    except RuntimeError as why:
-        yield "motet", {"error": str(why)}
+    except RuntimeError as error:
+        yield "motet", {"error": str(error)}
         return
     yield "motet", ours(case, options)
     if case.body:
@@ -68,7 +70,7 @@ def programs(case, options):
 
 
 def limit(case, options):
-    """How many steps there are, and how many seconds they may take."""
+    """Return the number of steps, and their time limit in seconds."""
     steps = min(QUICK if options.quick else case.steps * case.cycles, case.steps * case.cycles)
     return steps, max(options.limit, LIMIT * steps)
 
@@ -79,18 +81,18 @@ def ours(case, options):
     start, busy, own = time.perf_counter(), busy_seconds(), own_seconds()
     try:
         done = subprocess.run(command, cwd=case.folder, capture_output=True, text=True, timeout=most)
-        status, why = done.returncode, (done.stderr.strip().splitlines() or ["?"])[-1][:200]
+        status, error = done.returncode, (done.stderr.strip().splitlines() or ["?"])[-1][:200]
     except subprocess.TimeoutExpired:
-        status = why = f"> {most:g} s"
+        status = error = f"> {most:g} s"
     others = max(0.0, busy_seconds() - busy - (own_seconds() - own)) / (time.perf_counter() - start)
     log = read_run(case.folder / "out")
-    return {"log": log, "status": status, "other_cpu": others} if log else {"error": why, "status": status}
+    return {"log": log, "status": status, "other_cpu": others} if log else {"error": error, "status": status}
 
 
 def rival(case, options, short):
-    """The same motion from the same mesh, in a process of its own."""
+    """Run the motion of a case with Mmg, from the same mesh, in a separate process."""
     if not importlib.util.find_spec("mmgpy"):
-        return {"error": "no mmgpy"}
+        return {"error": "mmgpy is not installed"}
     steps, most = limit(case, options)
     points, tets, _ = read_frame(case.folder / case.mesh)
     mesh, job, path = (case.folder / name for name in ("mesh.npz", "mmg.json", "mmg.jsonl"))
@@ -100,16 +102,16 @@ def rival(case, options, short):
     done = call([sys.executable, HERE / "rivals" / "drift_mmg.py", mesh, job, path], most)
     if "error" not in done:
         return {"log": lines(path), "status": done["status"], "other_cpu": done["others"] / done["wall"]}
-    log = lines(path)  # what it did until its time was over
+    log = lines(path)  # the steps within the time limit
     return {"log": log, "status": done["error"]} if log else done
 
 
 def tables(results):
-    print("\n## Does a mesh stay the mesh it was\n")
-    print("Long motions, one thread. Vertices, tets, vertices of walls at first, least, most, last. EAS and mean ratio over all tets: their means; "
-          "\"1 %\": a hundredth is below. \"Changed\": tets\nthat are no longer there after a step, mean over steps. In brackets: at how many steps quality is known, where not at all of them.\n")
-    header = ["case", "program", "steps", "vertices", "tets", "walls", "mean EAS first, last", "least", "1 % last", "mean ratio", "worst ever",
-              "bad ever", "inverted", "changed", "a step", "status"]
+    print("\n## Long motions\n")
+    print("One thread. Numbers of vertices, tets and wall vertices: first, minimum, maximum, last. EAS and mean ratio are means over all tets; "
+          "\"1 %\" is a percentile. \"Changed\": fraction of\ntets that a step removes, mean over steps. In brackets: the number of steps with known quality, if fewer than all.\n")
+    header = ["case", "program", "steps", "vertices", "tets", "walls", "mean EAS first, last", "min", "1 % last", "mean ratio", "worst of all",
+              "most bad", "inverted", "changed", "per step", "status"]
     print(table(header, [columns(case, program, row) for case, program, row, _ in results]))
     for case, program, _, steps in results:
         ends = cycle_ends(steps, case.steps)
@@ -120,7 +122,7 @@ def tables(results):
 
 
 def columns(case, program, row):
-    """A row of the large table."""
+    """Return a row of the table of all cases."""
     four = lambda key: " ".join(f"{row[f'{key}_{when}']:,}" for when in ("first", "least", "most", "last"))
     known = "" if row["qualities"] == row["steps"] + 1 else f" ({row['qualities']})"
     return [case.name, program, row["steps"], four("points"), four("tets"), f"{row['walls_first']:,} {row['walls_last']:,}",
@@ -136,7 +138,7 @@ def at_end(cycle, step):
 
 
 def some(ends):
-    """All where they are few; else every second, fifth, tenth, ... and the last."""
+    """Return all ends of cycles if they are few, otherwise every second, fifth, tenth, ... and the last."""
     last = ends[-1][0]
-    apart = next((n for n in (1, 2, 5, 10, 20, 50, 100, 200, 500) if last / n <= ROWS), 1000)
-    return [end for end in ends if end[0] % apart == 0 or end is ends[-1]]
+    stride = next((n for n in (1, 2, 5, 10, 20, 50, 100, 200, 500) if last / n <= ROWS), 1000)
+    return [end for end in ends if end[0] % stride == 0 or end is ends[-1]]

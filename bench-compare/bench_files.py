@@ -1,4 +1,4 @@
-"""A VTU file of a million tets, read and written by motet and by VTK's own reader and writer."""
+"""Reading and writing of a VTU file of a million tets, by motet and by VTK."""
 import sys
 
 from common import HERE, MOTET, TARGET, call, cell, in_turn, seconds_text, table
@@ -20,8 +20,8 @@ def run(record, options):
     runs, rows = 3, []
     for compression, path in (("none", plain), ("zlib", packed)):
         for verb in ("read", "write"):
-            words = [path, runs] if verb == "read" else [plain, None, compression, runs]
-            command = lambda program, out: [*program, verb, *[out if w is None else w for w in words]]
+            arguments = [path, runs] if verb == "read" else [plain, None, compression, runs]
+            command = lambda program, out: [*program, verb, *[out if a is None else a for a in arguments]]
             results = in_turn({"motet": command(motet, folder / "out_motet.vtu"),
                                "VTK": command(vtk, folder / "out_vtk.vtu")}, options.rounds, limit=options.limit)
             for program, result in results.items():
@@ -35,8 +35,8 @@ def run(record, options):
         print(f"  {compression}: done", file=sys.stderr, flush=True)
     print("\n## A VTU file of a million tets\n")
     print(f"{6 * CUBES**3:,} tets, {(CUBES + 1) ** 3:,} points, raw appended; medians over {options.rounds} rounds in turn;"
-          " the file is in the system's cache, written files are not forced to disk.\n")
-    print(table(["", "motet", "VTK", "VTK/motet", "wanted", "motet MiB", "VTK MiB"], rows))
+          " the file is in the system's cache, and written files are not synchronised to disk.\n")
+    print(table(["", "motet", "VTK", "VTK/motet", "target", "motet MiB", "VTK MiB"], rows))
 
 
 def shown(result):

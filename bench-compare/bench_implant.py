@@ -1,18 +1,18 @@
-"""Devices put into a mesh, one conforming mesh out: motet beside meshers that fill both surfaces anew."""
+"""Implantation of devices into a mesh, by motet and by meshers that fill both surfaces anew."""
 import sys
 
 from common import HERE, MOTET, call, cell, combine, seconds_text, table
-from bench_mesh import in_words
+from bench_mesh import short_error
 from implant_files import cases
 
 ROUNDS = 3
-LIMIT = 150.0  # seconds that a process may take
-QUICK = 10.0  # what takes longer runs once
+LIMIT = 150.0  # time limit of a process, in seconds
+QUICK = 10.0  # programs that take longer, in seconds, run once
 OURS = "motet"
-# name in the table: word for rivals/implant_python.py
+# Name in the table: keyword of rivals/implant_python.py.
 RIVALS = {"TetGen -pq1.2Y": "tetgen", "TetGen -pq1.2/14Y": "tetgen-angles", "Gmsh": "gmsh", "Gmsh HXT": "gmsh-hxt", "fTetWild": "ftetwild",
           "Mmg level set": "mmg"}
-# What motet wants to reach with the coil in the box.
+# Targets for the coil in the box: seconds, and degrees.
 SECONDS, DIHEDRAL = 1.5, 10.0
 
 
@@ -23,19 +23,19 @@ def run(record, options):
         results[case.name] = finished(record, case, in_turn(commands(case), min(options.rounds, ROUNDS), max(options.limit, LIMIT)))
         print(f"  {case.name}: done", file=sys.stderr, flush=True)
     show(found, results)
-    aims(next(iter(results.values()))[OURS])
+    targets(next(iter(results.values()))[OURS])
     for name in missing:
-        print(f"\nLeft out: {name} (no file; MOTET_DATA names the folder of real meshes)")
+        print(f"\nOmitted: {name} (no file: set MOTET_DATA to the folder of real meshes)")
 
 
 def commands(case):
-    ours = [sys.executable, HERE / "implant_motet.py", MOTET / "motet", 1, case.out(OURS, ".vtu"), case.host, *case.devices, *case.words]
-    rival = lambda name, word: [sys.executable, HERE / "rivals" / "implant_python.py", word, 1, case.npz, case.out(name, ".npz")]
-    return {OURS: ours} | {name: rival(name, word) for name, word in RIVALS.items()}
+    ours = [sys.executable, HERE / "implant_motet.py", MOTET / "motet", 1, case.out(OURS, ".vtu"), case.host, *case.devices, *case.options]
+    rival = lambda name, keyword: [sys.executable, HERE / "rivals" / "implant_python.py", keyword, 1, case.npz, case.out(name, ".npz")]
+    return {OURS: ours} | {name: rival(name, keyword) for name, keyword in RIVALS.items()}
 
 
 def in_turn(commands, rounds, limit):
-    """All once, then again what was quick or is motet."""
+    """Run all commands once, then repeat motet and those that are quick."""
     parts = {name: [] for name in commands}
     for _ in range(rounds):
         for name, command in commands.items():
@@ -46,22 +46,22 @@ def in_turn(commands, rounds, limit):
 
 
 def finished(record, case, results):
-    """Results with what the meshes are worth; recorded."""
+    """Add the quality of the meshes to the results, and record them."""
     for name, result in results.items():
         if "error" in result:
-            result["error"] = in_words(result["error"])
+            result["error"] = short_error(result["error"])
         else:
             result |= case.measured(case.out(name, ".vtu" if name == OURS else ".npz"), result.get("regions"))
         record.add(**{**result, "bench": "implant", "case": case.name, "program": name})
     return results
 
 
-HEADER = ["done", "seconds", "file to file", "CPU", "tets", "bad", "worst dihedral", "triangles kept", "surfaces apart", "host kept"]
+HEADER = ["complete", "seconds", "whole process", "CPU", "tets", "bad", "worst dihedral", "triangles kept", "surface distance", "host kept"]
 
 
 def show(found, all_results):
-    print("\n## Devices put into a mesh\n")
-    print(f"One thread each; medians of up to {ROUNDS} runs in turn, one of what takes longer than {QUICK:g} s.\n")
+    print("\n## Implantation of devices\n")
+    print(f"One thread each; medians of up to {ROUNDS} runs in turn, or a single run if it takes longer than {QUICK:g} s.\n")
     rows = []
     for case in found:
         for name, result in all_results[case.name].items():
@@ -74,7 +74,7 @@ def show(found, all_results):
 
 
 def walls(result):
-    """What the wall does to a device that goes through it."""
+    """Describe the triangles of devices at and outside the wall."""
     at_walls, outside = result.get("at_walls", 0), result.get("outside", 0)
     return f", of which {at_walls:,} meet the wall and {outside:,} lie outside and are cut off" if at_walls + outside else ""
 
@@ -84,7 +84,7 @@ def line(result):
         return [f"failed: {result['error']}", *["-"] * (len(HEADER) - 1)]
     bad = f"{result['bad']:,}" + (f", {result['unforced']:,} not forced" if "unforced" in result and result["bad"] else "")
     apart = "-" if result["apart"] is None else "0" if result["apart"] == 0 else f"{result['apart']:.2g}"
-    return ["yes" if result.get("complete", True) else "in part", cell(result, seconds_text(result["seconds"])), seconds_text(result["whole_seconds"]),
+    return ["yes" if result.get("complete", True) else "no", cell(result, seconds_text(result["seconds"])), seconds_text(result["whole_seconds"]),
             seconds_text(result["cpu_seconds"]),
             f"{result['tets']:,}", bad, f"{result['least_dihedral']:.2g}", triangles(result), apart, f"{100 * result['host_kept']:.3g} %"]
 
@@ -94,11 +94,11 @@ def triangles(result):
     return "all" if found == whole else f"{found:,} of {whole:,}" if found else "none"
 
 
-def aims(result):
+def targets(result):
     if "error" in result:
-        return print(f"\nAims: not reached, motet {result['error']}")
-    said = {f"file to file under {SECONDS} s": result["whole_seconds"] < SECONDS,
+        return print(f"\nTargets: not reached, motet {result['error']}")
+    reached = {f"whole process under {SECONDS} s": result["whole_seconds"] < SECONDS,
             "all triangles kept": result["triangles_found"] == result["triangles"],
             "no bad tet that is not forced": result["unforced"] == 0,
             f"worst dihedral angle at least {DIHEDRAL:g} degrees": result["least_dihedral"] >= DIHEDRAL}
-    print("\nAims for the coil in the box: " + "; ".join(f"{aim}: {'reached' if is_so else 'NOT reached'}" for aim, is_so in said.items()) + ".")
+    print("\nTargets for the coil in the box: " + "; ".join(f"{target}: {'reached' if yes else 'NOT reached'}" for target, yes in reached.items()) + ".")

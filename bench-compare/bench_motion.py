@@ -1,4 +1,5 @@
-"""Mesh motion: the paper's four sizes, with and without a rigid layer, beside a C loop, SciPy, and what solves a linear system a step."""
+"""Mesh motion at the paper's four sizes, with and without a rigid layer, by motet, a C loop, SciPy and linear
+solvers."""
 import sys
 import time
 
@@ -9,9 +10,10 @@ from common import HERE, MOTET, TARGET, busy_seconds, call, cell, combine, in_tu
 from common import seconds_text, table
 from meshes import sphere_in_box, vtu
 
-# Table 1 of the paper: volume vertices, tets, boundary vertices, boundary triangles, elastic step; then
-# (without, with rigid layer) graph vertices, graph tets, set-up, Delaunay step; seconds. The print of the graph
-# tets of C with layer lacks a digit ("14166"; about 99,000 would fit the other models).
+# Table 1 of the paper, in seconds: volume vertices, tets, boundary vertices, boundary triangles, elastic
+# step; then, without and with a rigid layer, graph vertices, graph tets, set-up and Delaunay step. The
+# printed number of graph tets of C with a layer lacks a digit ("14166"; about 99,000 would fit the other
+# models).
 PAPER = {
     "A": (10_203, 52_774, 2_700, 5_392, 4.421, (2_700, 7_811, 1.20, 2.22e-3), (5_400, 25_273, 2.21, 1.25e-3)),
     "B": (32_102, 175_181, 5_704, 11_400, 15.16, (5_704, 16_497, 3.47, 5.65e-3), (11_408, 52_450, 6.14, 6.66e-3)),
@@ -19,13 +21,13 @@ PAPER = {
     "D": (157_887, 968_185, 16_947, 33_886, 78.69, (16_947, 49_462, 19.2, 30.8e-3), (33_894, 154_615, 28.9, 37.7e-3)),
 }
 LAYERS = ("no layer", "rigid layer")
-BIG = 1 << 30  # bytes that no cache holds
-LARGE = "56,64"  # motet's built-in sphere in a box with 1.2 M vertices: its update moves more than caches hold
+BIG = 1 << 30  # bytes, more than any cache
+LARGE = "56,64"  # motet's built-in sphere in a box with 1.2 M vertices, whose update exceeds the caches
 LARGE_INSIDE = 1_185_408
-BUDGET = 0.5  # seconds that an update is repeated for in one turn
-SOLVE_LIMIT = 600.0  # seconds that setting up and some steps of a linear system may take
-FACTOR = 8  # GiB that motet's factor may take
-# Programs that solve a linear system a step: threads, which equation, what it is, a C loop's factor that was reached elsewhere.
+BUDGET = 0.5  # seconds for which an update is repeated in one turn
+SOLVE_LIMIT = 600.0  # time limit for the set-up and some steps of a linear system, in seconds
+FACTOR = 8  # memory limit of motet's factorization, in GiB
+# Programs that solve a linear system in each step: threads, solver, and ratio to a C loop on another machine.
 SOLVERS = {
     "NGSolve, elastic": (2, "conjugate gradients, diagonal, 1e-8", 38_000),
     "pyamg, elastic": (1, "conjugate gradients, smoothed aggregation, 1e-8", None),
@@ -43,7 +45,7 @@ SOLVERS = {
 
 
 class Model:
-    """One of the four sizes: its mesh, and everybody's figures on it."""
+    """One of the four sizes: its mesh, and the results of all programs."""
 
     def __init__(self, name):
         self.name = name
@@ -69,14 +71,14 @@ class Model:
             contenders[f"copy big {t}t"] = [loop, "copy", BIG, t, BUDGET]
         self.add(record, in_turn(contenders, options.rounds, options.limit))
         for program, (threads, _, _) in SOLVERS.items():
-            who, what, *factor = program.split(", ")
-            if who == "OpenFOAM":
-                result = self.foam(options, what) if openfoam.available() else {"error": "not installed"}
-            elif who == "motet":
+            name, equation, *factor = program.split(", ")
+            if name == "OpenFOAM":
+                result = self.foam(options, equation) if openfoam.available() else {"error": "not installed"}
+            elif name == "motet":
                 kept = ["--factor", FACTOR] if factor else []
-                result = combine([call([*motet(path, LAYERS[0], threads), "--method", what, *kept], SOLVE_LIMIT)])
+                result = combine([call([*motet(path, LAYERS[0], threads), "--method", equation, *kept], SOLVE_LIMIT)])
             else:
-                rival = [sys.executable, HERE / "rivals" / "motion_python.py", who.lower(), what, mesh, threads]
+                rival = [sys.executable, HERE / "rivals" / "motion_python.py", name.lower(), equation, mesh, threads]
                 result = combine([call(rival, SOLVE_LIMIT)])
             self.add(record, {program: result})
 
@@ -90,7 +92,7 @@ class Model:
         try:
             rounds = min(options.rounds, 3)
             step = openfoam.step_seconds(TARGET / "foam", self.points, self.tets, self.sphere, 0.5, rounds, solver)
-        except Exception as error:  # an optional rival: whatever stops it, the others go on
+        except Exception as error:  # OpenFOAM is optional, so its errors must not stop the others
             return {"error": str(error)[-200:]}
         others = (busy_seconds() - busy) - (own_seconds() - own)
         return {"seconds": step, "other_cpu": max(0.0, others) / (time.perf_counter() - start), "version": "1912"}
@@ -122,7 +124,7 @@ def run(record, options):
 
 
 def setups(models):
-    """Everything before the first step: boundary, graph, a tet and four weights for each vertex."""
+    """Print the set-up times: boundary, graph, and a tet with four weights for each vertex."""
     rows = []
     for m in models:
         for layer, theirs in zip(LAYERS, PAPER[m.name][5:]):
@@ -134,13 +136,13 @@ def setups(models):
                          over(m.seconds("SciPy set-up"), ours) if layer == LAYERS[0] else "",
                          seconds_text(theirs[2]), over(theirs[2], ours, 0),
                          "< 250 ms" if m.name == "D" and layer == LAYERS[0] else ""])
-    print("\nSet-up: the boundary found, its graph built, a tet and four weights for every other vertex.\n")
+    print("\nSet-up: boundary, graph, and a tet with four weights for every other vertex.\n")
     print(table(["model", "vertices", "boundary", "graph tets", "motet 1t", "motet 2t", "SciPy", "SciPy/motet",
-                 "the paper", "paper/motet", "wanted"], rows))
+                 "paper", "paper/motet", "target"], rows))
 
 
 def updates(models):
-    """The step itself, and what the memory allows."""
+    """Print the times of a step, and compare them with the memory bandwidth."""
     rows = []
     for m in models:
         for layer in LAYERS:
@@ -156,10 +158,10 @@ def updates(models):
                          over(m.seconds("C loop 2t"), b), shown(m.results["C same 1t"]), shown(m.results["C same 2t"]),
                          over(m.seconds("C same 1t"), a), over(m.seconds("C same 2t"), b), shown(m.results["SciPy update"]),
                          over(m.seconds("SciPy update"), a)])
-    print("\nUpdate: displacement of the boundary in, all points out. The C loops (`gcc -O3 -march=native`):"
-          "\n`C` moves the inner vertices alone, from places and not by displacements, 72 bytes each; `C same` does motet's"
-          "\njob, all vertices by displacements, 96 bytes each. B/v: bytes that motet must move per vertex of the mesh. Share of the speed of a"
-          "\nplain copy measured in the same run: `memory` of 1 GiB, `cache` of as many bytes as the C loop moves.\n")
+    print("\nUpdate: all points from the displacement of the boundary. The C loops (`gcc -O3 -march=native`):"
+          "\n`C` computes only the inner vertices, by positions instead of displacements, with 72 bytes each; `C same` does the same as motet,"
+          "\nall vertices by displacements, with 96 bytes each. B/v: bytes that motet must move per vertex of the mesh. Shares are relative to the"
+          "\nspeed of a plain copy in the same run: `memory` of 1 GiB, `cache` of as many bytes as the C loop moves.\n")
     print(table(["model", "motet 1t", "motet 2t", "1t/2t", "ns/v", "B/v", "GB/s", "of memory 1t", "2t", "of cache 1t", "2t",
                  "C 1t", "C 2t", "C ns/v", "C/motet 1t", "2t", "C same 1t", "2t", "C same/motet 1t", "2t", "SciPy", "SciPy/motet"], rows))
     print("\nCopy (read + write), GB/s:\n")
@@ -169,7 +171,7 @@ def updates(models):
 
 
 def large(record, model, options):
-    """The update where no cache helps: the C loop goes over the weights of D again and again."""
+    """Print the times of an update that exceeds the caches; the C loop repeats the weights of D."""
     files = []
     for name, kind, width in (("ids", np.uint32, 4), ("weights", np.float64, 4)):
         rows = np.fromfile(next(model.folder.glob(f"{name}.*")), kind).reshape(-1, width)
@@ -186,7 +188,7 @@ def large(record, model, options):
         record.add(**{**result, "bench": "motion", "model": "large", "program": program})
     rows = []
     for t in (1, 2):
-        ours, loop, copy = (results[f"{who} {t}t"] for who in ("motet", "C loop", "copy"))
+        ours, loop, copy = (results[f"{name} {t}t"] for name in ("motet", "C loop", "copy"))
         n, moved, a = (ours.get(k) for k in ("vertices", "bytes", "seconds"))
         if not a or not loop.get("seconds") or not copy.get("seconds"):
             continue
@@ -195,30 +197,31 @@ def large(record, model, options):
                      f"{bandwidth:.1f}", f"{moved / a / 1e9 / bandwidth:.0%}", "80%",
                      nanoseconds(loop["seconds"], LARGE_INSIDE), f"{72 * LARGE_INSIDE / loop['seconds'] / 1e9:.1f}",
                      over(loop["seconds"] / LARGE_INSIDE, a / n)])
-    print("\nUpdate of a mesh that no cache holds (the C loop: as many inner vertices, D's weights over and over).\n")
-    print(table(["threads", "vertices", "motet", "ns/v", "B/v", "GB/s", "copy GB/s", "share", "wanted", "C ns/v", "C GB/s",
+    print("\nUpdate of a mesh larger than the caches (the C loop has as many inner vertices, with repeated weights of D).\n")
+    print(table(["threads", "vertices", "motet", "ns/v", "B/v", "GB/s", "copy GB/s", "share", "target", "C ns/v", "C GB/s",
                  "C/motet per vertex"], rows))
 
 
 def steps(models):
-    """Graph and weights built anew plus one step, against one step of the solver that everybody has."""
-    there = {"A": 9_921, "B": 31_874, "C": 75_813, "D": 157_535}
+    """Print the times of a rebuilt graph with one step, and of one step of OpenFOAM's
+    displacementLaplacian."""
+    sizes = {"A": 9_921, "B": 31_874, "C": 75_813, "D": 157_535}
     known = {r["size"]: r["seconds"] for r in reference() if r["work"] == "W2-step" and r["seconds"]
              and r["peer"] == "openfoam-displacementLaplacian" and r.get("reltol") == 0.01}
     rows = []
     for m in models:
         ours = [m.seconds(f"motet {LAYERS[0]} {t}t", "rebuild_seconds") for t in (1, 2)]
-        foam, other = m.results.get("OpenFOAM, displacementLaplacian"), known.get(there[m.name])
+        foam, other = m.results.get("OpenFOAM, displacementLaplacian"), known.get(sizes[m.name])
         rows.append([m.name, *map(seconds_text, ours), shown(foam) if foam else "not installed",
                      over(foam and foam.get("seconds"), ours[0], 1), seconds_text(other), over(other, ours[0], 1), "8"])
-    print("\nGraph and weights built anew plus one step, against one step of OpenFOAM's displacementLaplacian"
-          "\n(PCG, relTol 0.01, diffusivity 1/volume; one thread; it moves along x only).\n")
+    print("\nRebuilding graph and weights plus one step, compared with one step of OpenFOAM's displacementLaplacian"
+          "\n(PCG, relTol 0.01, diffusivity 1/volume; one thread; motion along x only).\n")
     print(table(["model", "motet 1t", "motet 2t", "OpenFOAM here", "OpenFOAM/motet", "OpenFOAM, reference machine", "ratio",
-                 "wanted"], rows))
+                 "target"], rows))
 
 
 def solvers(models):
-    """What solves a linear system a step: set-up, step, and how many of motet's steps that is."""
+    """Print the times of programs that solve a linear system in each step, also relative to motet's steps."""
     known = {m.name: [m.results[f"motet {layer} 2t"] for layer in LAYERS] for m in models}
     rows = []
     for program, (threads, how, reached) in SOLVERS.items():
@@ -227,7 +230,7 @@ def solvers(models):
             result = m.results.get(program)
             step, setup = ((result or {}).get(key) for key in ("seconds", "setup_seconds"))
             if program.endswith("factor") and step and not result["setup"]["factor_bytes"]:
-                row += [f"a factor of more than {FACTOR} GiB", "-", "-", "-", "-"]
+                row += [f"factorization above {FACTOR} GiB", "-", "-", "-", "-"]
                 continue
             row += [cell(result, seconds_text(setup)), shown(result)]
             row += [over(step, r.get("seconds"), 0) for r in known[m.name]]
@@ -235,16 +238,16 @@ def solvers(models):
         largest = models[-1]
         row += [over(largest.seconds(program), largest.seconds("C loop 2t"), 0), f"{reached:,}" if reached and largest.name == "D" else ""]
         rows.append(row)
-    head = [f"{m.name} {what}" for m in models for what in ("set-up", "step", "ratio", "rigid layer", "rebuilt")]
-    print("\nA step of what solves a linear system, beside motet's (two threads). `ratio`: to the update, without a layer; `rigid layer`: to"
-          "\nthe update with one; `rebuilt`: to graph, weights and a step together (wanted: 30). `C loop`: of the largest model, to the C loop on two"
-          "\nthreads; `reached`: what that was on the machine where the aim was set. The sphere moves along x: the iterated Laplace equations"
-          "\nsolve for x alone, but for motet's.\n")
-    print(table(["program", "threads", "how", *head, "C loop", "reached"], rows))
+    head = [f"{m.name} {column}" for m in models for column in ("set-up", "step", "ratio", "rigid layer", "rebuilt")]
+    print("\nSteps that solve a linear system, compared with motet's (two threads). `ratio`: to the update without a layer; `rigid layer`: to"
+          "\nthe update with one; `rebuilt`: to graph, weights and a step together (target: 30). `C loop`: of the largest model, to the C loop on two"
+          "\nthreads; `reached`: that ratio on the machine of the target. The sphere moves along x, so the iterated Laplace equations"
+          "\nare solved only for x, except by motet.\n")
+    print(table(["program", "threads", "solver", *head, "C loop", "reached"], rows))
 
 
 def paper(models):
-    """Table 1 row by row: the paper / here."""
+    """Print table 1 of the paper row by row, each cell as `paper / here`."""
     columns = [(m, layer, PAPER[m.name], PAPER[m.name][5 + i], m.results[f"motet {layer} 1t"])
                for m in models for i, layer in reversed(list(enumerate(LAYERS)))]
     pair = lambda a, b: f"{a} / {b}"
@@ -264,8 +267,8 @@ def paper(models):
         ["computational timestep: Delaunay", *[pair(seconds_text(q[3]), seconds_text(r.get("seconds"))) for _, _, _, q, r in columns]],
         ["speed increase factor", *[pair(factor(p[4], q[3]), factor(solved(m), r.get("seconds"))) for m, _, p, q, r in columns]],
     ]
-    print("\nThe paper's table 1, row by row, each cell `the paper / here` (here one thread, and two for elasticity, which"
-          "\nis NGSolve's).\n")
+    print("\nTable 1 of the paper, row by row, each cell `paper / here` (here with one thread, and with NGSolve on two threads"
+          "\nfor elasticity).\n")
     print(table(["", *[f"{m.name}{' rigid' if layer == LAYERS[1] else ''}" for m, layer, *_ in columns]], rows))
 
 
@@ -282,7 +285,7 @@ def nanoseconds(seconds, n):
 
 
 def speed(model, program):
-    """Bytes per second of a copy, in GB/s."""
+    """Return the speed of a copy in GB/s."""
     size = BIG if "big" in program else 72 * model.inside
     return size / model.seconds(program) / 1e9
 

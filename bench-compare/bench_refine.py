@@ -1,4 +1,5 @@
-"""Refinement towards a point, everywhere, and to a size near a coil: motet beside the refiners there are; one thread each."""
+"""Refinement towards a point, everywhere, and to a size near a coil, by motet and other programs with one
+thread."""
 import json
 import subprocess
 import sys
@@ -7,19 +8,22 @@ from common import HERE, MOTET, cell, in_turn, reference, seconds_text, table
 from refine_files import Case, coil, first_mesh
 
 ROUNDS = 3
-LIMIT = 120.0  # seconds that a generation may take
-TIMEOUT = 1800.0  # and a process, with reading and writing
+LIMIT = 120.0  # time limit of a generation, in seconds
+TIMEOUT = 1800.0  # time limit of a process including files, in seconds
 POINT, POINT_TEXT, RADIUS, FACTOR = (1.0, 0.0, 0.0), "(1, 0, 0)", 1.2, 0.6
 GENERATIONS = 8
-DISTANCE, SIZE = 0.05, 0.05  # from the coil's surface, and of the tets there
-# name in the table: word for rivals/refine_python.py, module
+DISTANCE, SIZE = 0.05, 0.05  # distance from the surface of the coil, and size of the tets there
+# Name in the table: keyword of rivals/refine_python.py, module.
 BISECTION = {"MFEM, bisection": ("mfem", "mfem.ser"), "NGSolve, bisection": ("ngsolve", "ngsolve"), "dolfinx, Plaza": ("dolfinx", "dolfinx")}
 LOCAL = {**BISECTION, "MFEM, hanging vertices": ("mfem-hanging", "mfem.ser")}
 UNIFORM = {"MFEM": ("mfem", "mfem.ser"), "NGSolve": ("ngsolve", "ngsolve"), "dolfinx, Plaza": ("dolfinx", "dolfinx"), "Gmsh": ("gmsh", "gmsh")}
 
 
 def python_with(module):
-    """The bench's Python or the system's (dolfinx is in no registry of Python's), whichever has the module; or None."""
+    """Return the Python that has a module: this one or the system's (dolfinx is not on PyPI).
+
+    None if neither has it.
+    """
     for python in (sys.executable, "/usr/bin/python3"):
         try:
             if subprocess.run([python, "-c", f"import {module}"], capture_output=True).returncode == 0:
@@ -30,19 +34,19 @@ def python_with(module):
 
 
 def contenders(case, rivals):
-    """{name: command}, and the names of those that are not installed."""
+    """Return {name: command}, and the names of programs that are not installed."""
     commands = {"motet": [MOTET / "examples" / "refine_rivals", case.json, case.out("motet")]}
     missing = []
-    for name, (word, module) in rivals.items():
+    for name, (keyword, module) in rivals.items():
         if python := python_with(module):
-            commands[name] = [python, HERE / "rivals" / "refine_python.py", word, case.json, case.out(name)]
+            commands[name] = [python, HERE / "rivals" / "refine_python.py", keyword, case.json, case.out(name)]
         else:
             missing.append(name)
     return commands, missing
 
 
 def cases(quick):
-    """(case, rivals, its table)."""
+    """Yield each case, its programs, and the function that prints its table."""
     mesh, limit = first_mesh(quick), LIMIT
     radii = [RADIUS * FACTOR**k for k in range(2 if quick else GENERATIONS)]
     yield Case("local", mesh, len(radii), limit, near=[POINT], radii=radii), LOCAL, local
@@ -61,19 +65,19 @@ def run(record, options):
             record.add(**{**result, "bench": "refine", "case": case.name, "program": program})
         print(f"  refine {case.name}: done", file=sys.stderr, flush=True)
         shown(case, {name: result for name, result in results.items() if "error" not in result})
-        left_out(results, missing)
+        print_omitted(results, missing)
 
 
-def left_out(results, missing):
+def print_omitted(results, missing):
     for name, result in results.items():
-        if why := result.get("error", result.get("stopped")):
-            print(f"\nLeft out: {name} ({why})")
+        if reason := result.get("error", result.get("stopped")):
+            print(f"\nOmitted: {name} ({reason})")
     for name in missing:
-        print(f"\nLeft out: {name} (not installed)")
+        print(f"\nOmitted: {name} (not installed)")
 
 
-def beside(results, generation, row):
-    """How many times motet's seconds of this generation."""
+def ratio_to_motet(results, generation, row):
+    """Return the seconds of a generation relative to motet's."""
     ours = results.get("motet", {}).get("generations", [])
     return f"{row['seconds'] / ours[generation - 1]['seconds']:.2f}" if generation <= len(ours) else "-"
 
@@ -85,15 +89,15 @@ def shapes(row):
 SHAPES = ["tets", "worst EAS", "median EAS", "worst mean ratio"]
 
 
-def fits(row):
-    """Whether the mesh is conforming, and fills what it should."""
+def conformity(row):
+    """Describe whether the mesh is conforming and has the right volume."""
     if not row["fills"]:
         return "volume lost"
     return {True: "yes", False: "no", None: "-"}[row["conforming"]]
 
 
 def generations(case, results):
-    """Each program's rows, with the number of new tets in a second."""
+    """Yield the results of each program by generation, with the number of new tets per second."""
     for name, result in results.items():
         before = len(case.tets)
         for generation, row in enumerate(result["generations"], 1):
@@ -105,29 +109,29 @@ def generations(case, results):
 def heading(case, title, text):
     print(f"\n## {title}\n")
     print(f"{len(case.tets):,} tets, worst EAS {case.first['worst']:.3f}, median {case.first['median']:.3f}. {text}\n"
-          "Worst EAS and worst mean ratio are over the first mesh's. One thread each; medians of up to "
+          "Worst EAS and worst mean ratio are relative to the initial mesh. One thread each; medians of up to "
           f"{ROUNDS} rounds in turn.\n")
 
 
 def local(case, results):
-    heading(case, "Refinement towards a point", f"Generation k divides the tets whose centroid is nearer to {POINT_TEXT} than "
+    heading(case, "Refinement towards a point", f"Generation k divides the tets with a centroid closer to {POINT_TEXT} than "
             f"{RADIUS:g} {FACTOR:g}^(k-1).")
     rows = [[name, result["version"], generation, *shapes(row), cell(result, seconds_text(row["seconds"])),
-             beside(results, generation, row), f"{row['new_per_second'] / 1e6:.2f} M", fits(row)]
+             ratio_to_motet(results, generation, row), f"{row['new_per_second'] / 1e6:.2f} M", conformity(row)]
             for name, result, generation, row in generations(case, results)]
     print(table(["program", "version", "generation", *SHAPES, "seconds", "/motet", "new tets/s", "conforming"], rows))
     memory(results)
-    ours_alone(results)
-    elsewhere("W6-local")
+    best_of_others(results)
+    print_reference("W6-local")
 
 
 def memory(results):
     if rows := results.get("motet", {}).get("generations"):
-        print(f"\nmotet remembers {rows[-1]['memory_per_tet']:.0f} bytes a tet beside the mesh.")
+        print(f"\nmotet stores {rows[-1]['memory_per_tet']:.0f} bytes per tet in addition to the mesh.")
 
 
-def ours_alone(results):
-    """Motet beside the best rival that is conforming, at the last generation that all have."""
+def best_of_others(results):
+    """Compare motet with the best of the conforming programs, in the last generation that all completed."""
     good = {name: result["generations"] for name, result in results.items()}
     last = min(map(len, good.values()), default=0)
     rivals = {name: rows[last - 1] for name, rows in good.items() if name in BISECTION}
@@ -139,25 +143,25 @@ def ours_alone(results):
                 ("worst EAS", "worst_to_first"), ("median EAS", "median"), ("worst mean ratio", "mean_ratio_to_first"))],
             ["seconds", seconds_text(ours["seconds"]), seconds_text(best("seconds", min))],
             ["new tets/s", f"{ours['new_per_second'] / 1e6:.2f} M", f"{best('new_per_second', max) / 1e6:.2f} M"]]
-    print(f"\nGeneration {last}, motet beside the best of the conforming ones in each row:\n")
-    print(table(["what", "motet", "best"], rows))
+    print(f"\nGeneration {last}, motet compared with the best conforming program in each row:\n")
+    print(table(["quantity", "motet", "best"], rows))
 
 
 def uniform(case, results):
     heading(case, "Refinement everywhere", "All tets, each generation.")
-    rows = [[name, result["version"], generation, *shapes(row), cell(result, seconds_text(row["seconds"])), beside(results, generation, row),
-             f"{row['new_per_second'] / 1e6:.2f} M", fits(row)]
+    rows = [[name, result["version"], generation, *shapes(row), cell(result, seconds_text(row["seconds"])), ratio_to_motet(results, generation, row),
+             f"{row['new_per_second'] / 1e6:.2f} M", conformity(row)]
             for name, result, generation, row in generations(case, results)]
     print(table(["program", "version", "generation", *SHAPES, "seconds", "/motet", "new tets/s", "conforming"], rows))
-    print("\nPeak memory, each for all its generations: "
+    print("\nPeak memory over all generations: "
           + ", ".join(f"{name} {result['peak_mib']:,.0f} MiB" for name, result in results.items()) + ".")
-    elsewhere("W6-uniform")
+    print_reference("W6-uniform")
 
 
 def near_coil(case, results):
     rule = json.loads(case.json.read_text())
     heading(case, "Refinement to a size near a coil", f"Until no tet has an edge above {rule['longest']:g} and a bounding ball "
-            f"about its centroid nearer than {rule['radii'][0]:g} to the\nvertices of a coil's surface (wire of radius 0.05, five turns).")
+            f"about its centroid closer than {rule['radii'][0]:g} to the\nvertices of the surface of a coil (wire of radius 0.05, five turns).")
     ours = results.get("motet", {})
     rows = []
     for name, result in results.items():
@@ -165,12 +169,12 @@ def near_coil(case, results):
         over = lambda value, own: f"{value / own:.2f}" if own else "-"
         own = ours["generations"][-1]["tets"] if ours else None
         rows.append([name, result["version"], len(result["generations"]), *shapes(row), over(row["tets"], own),
-                     cell(result, seconds_text(result["seconds"])), over(result["seconds"], ours.get("seconds")), fits(row)])
+                     cell(result, seconds_text(result["seconds"])), over(result["seconds"], ours.get("seconds")), conformity(row)])
     print(table(["program", "version", "generations", *SHAPES, "/motet", "seconds", "/motet", "conforming"], rows))
 
 
-def elsewhere(work):
-    """Figures of the reference machine: the same mesh and marks, one run each."""
+def print_reference(work):
+    """Print measurements of the reference machine, with the same mesh and marks and one run each."""
     rows = [[r["peer"], r["version"], r["generation"], f"{r['tets']:,}", f"{r['q_ratio']:.3f}", f"{r['q_median']:.3f}", seconds_text(r["seconds"])]
             for r in reference() if r["work"].startswith(work) and "q_ratio" in r and "q_measure" not in r]
     if rows:

@@ -1,8 +1,7 @@
-"""What the benches share: the machine, contenders run in turn, medians, tables.
+"""Helpers of the benchmarks: machine data, programs run in turn, medians and tables.
 
-A contender is a command that prints one JSON object on its last line, with at least
-`seconds`: one number per repeat (or the median of many repeats), clocked inside the program
-(no start-up, no file reading).
+A contender is a command that prints one JSON object on its last line, with at least `seconds`: one number per
+repeat (or the median of many repeats), measured inside the program without start-up and reading of files.
 """
 import json
 import os
@@ -18,12 +17,13 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 TARGET = HERE / "target"
 MOTET = Path(os.environ.get("MOTET_BIN_DIR") or ROOT / "target" / "release")
-# A run counts as disturbed when other programs kept more than this share of one core busy.
+# A run counts as disturbed if other programs used more than this fraction of one core.
 DISTURBED = 0.1
 
 
 def machine():
-    """Processor, cores, memory, system: what a figure is worth nothing without."""
+    """Return the processor, number of cores, memory and system, without which measurements are
+    meaningless."""
     model = platform.processor()
     try:
         for line in open("/proc/cpuinfo"):
@@ -39,7 +39,7 @@ def machine():
 
 
 def busy_seconds():
-    """CPU seconds that all programs of the machine have used since it started."""
+    """Return the CPU seconds used by all programs since the machine started."""
     try:
         user, nice, system, _idle, _wait, irq, softirq, _steal = map(
             int, Path("/proc/stat").read_text().split("\n", 1)[0].split()[1:9])
@@ -49,7 +49,7 @@ def busy_seconds():
 
 
 class Record:
-    """Results: a JSON line each in a file, and kept for the tables."""
+    """Results, written to a file as JSON lines and kept for the tables."""
 
     def __init__(self, path):
         self.file = open(path, "a")
@@ -62,19 +62,21 @@ class Record:
         self.file.flush()
 
     def of(self, **wanted):
-        """The first row with these values, or None."""
+        """Return the first row with the given values, or None."""
         return next((r for r in self.rows if all(r.get(k) == v for k, v in wanted.items())), None)
 
 
 def own_seconds():
-    """CPU seconds of this process and of its children that have ended."""
+    """Return the CPU seconds of this process and of its finished children."""
     used = os.times()
     return used.user + used.system + used.children_user + used.children_system
 
 
 def call(command, limit):
-    """Runs a contender once: its JSON object plus `peak_mib`, `wall` and `others` (CPU seconds that other
-    programs used meanwhile); `error` when it failed."""
+    """Run a contender once and return its JSON object, or {"error": reason}.
+
+    Adds `peak_mib`, `wall`, and `others`: CPU seconds used by other programs during the run.
+    """
     start, busy, own = time.perf_counter(), busy_seconds(), own_seconds()
     process = subprocess.Popen([sys.executable, "-c", _WRAPPER, *map(str, command)], text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
@@ -92,7 +94,7 @@ def call(command, limit):
     return result
 
 
-# Runs a command and adds its peak memory: that of the children of *this* small process alone.
+# Runs a command in a small process of its own and adds the peak memory of that process's children.
 _WRAPPER = """
 import json, resource, subprocess, sys
 done = subprocess.run(sys.argv[1:], stdout=subprocess.PIPE, text=True)
@@ -104,12 +106,12 @@ print(json.dumps(result))
 
 
 def in_turn(contenders, rounds, limit=300.0):
-    """Runs the contenders one after the other, `rounds` times round, so that a disturbance meets all of them.
+    """Run the contenders {name: command} in turn for several rounds, so that disturbances affect all of them.
 
-    `contenders`: {name: command}. Gives {name: result}: the program's own JSON of the last round with
-    `seconds` replaced by the median over all repeats of all rounds, other `..._seconds` by their medians over
-    the rounds, and with `best`, `runs`, `peak_mib`, and `other_cpu` (cores kept busy by other programs
-    meanwhile). A contender that fails is not called again and gives {"error": why}.
+    Returns {name: result}: the JSON object of the last round, in which `seconds` is the median over all
+    repeats of all rounds and other `..._seconds` are medians over the rounds, with `best`, `runs`,
+    `peak_mib`, and `other_cpu` (cores used by other programs). A contender that fails is not run again; its
+    result is {"error": reason}.
     """
     results = {name: [] for name in contenders}
     for _ in range(rounds):
@@ -120,7 +122,7 @@ def in_turn(contenders, rounds, limit=300.0):
 
 
 def combine(parts):
-    """One result of a contender's rounds."""
+    """Combine the rounds of a contender to one result."""
     failed = next((p for p in parts if "error" in p), None)
     if failed:
         return failed
@@ -136,7 +138,7 @@ def combine(parts):
 
 
 def reference(name="results.jsonl"):
-    """Figures from another machine of this kind, when the folder that holds them is there."""
+    """Return measurements of another machine, or an empty list if their folder does not exist."""
     path = Path(os.environ.get("MOTET_REFERENCE") or ROOT.parent / "shared" / "bench" / name)
     if not path.is_file():
         return []
@@ -144,7 +146,7 @@ def reference(name="results.jsonl"):
 
 
 def seconds_text(seconds):
-    """Three digits with the unit that fits."""
+    """Format a time with three digits in a suitable unit."""
     if seconds is None:
         return "-"
     for factor, unit in ((1, "s"), (1e3, "ms"), (1e6, "us")):
@@ -154,7 +156,8 @@ def seconds_text(seconds):
 
 
 def cell(result, text):
-    """A table's cell: the text, a star where other programs disturbed the run, a reason where there is none."""
+    """Return a table cell: the text, with a star if the run was disturbed, or the reason for a missing
+    result."""
     if result is None:
         return "-"
     if "error" in result:
@@ -163,7 +166,7 @@ def cell(result, text):
 
 
 def table(header, rows):
-    """A markdown table, columns aligned."""
+    """Return a Markdown table with aligned columns."""
     cells = [list(map(str, header)), *[list(map(str, r)) for r in rows]]
     width = [max(len(r[i]) for r in cells) for i in range(len(header))]
     line = lambda r: "| " + " | ".join(c.ljust(w) for c, w in zip(r, width)) + " |"

@@ -1,4 +1,4 @@
-"""Long motions: their meshes, made here, and their jobs for `motet run`."""
+"""Long motions: meshes, and jobs for `motet run`."""
 import os
 import shutil
 import subprocess
@@ -11,22 +11,22 @@ from common import MOTET, ROOT, TARGET
 from drift_shapes import along_x, box, cylinder, ellipsoid, sheet, write_frames, write_stl
 
 DATA = Path(os.environ.get("MOTET_DATA") or ROOT.parent / "shared" / "data") / "moving_wall" / "bivme_lv"
-FRAMES = 120  # about as many frames are written in a run, at most
-TURNS = 3  # of what turns, where nobody says
+FRAMES = 120  # approximate maximum number of frames written in a run
+TURNS = 3  # default number of turns of rotating bodies
 
 
 @dataclass
 class Case:
-    """A mesh and a job. What turns does so evenly over all of its cycles; all else is periodic."""
+    """A mesh and a job. Rotations are uniform over all cycles; all other motions are periodic."""
     name: str
     about: str
-    steps: int  # in a cycle
+    steps: int  # number of steps in a cycle
     cycles: int
-    motion: str  # the keys of [motion], and what comes after it
-    fill: object  # makes mesh.vtu, and what else the job names, in a folder
+    motion: str  # the keys of [motion], and the sections after it
+    fill: object  # function that creates mesh.vtu and other files of the job in a folder
     mesh: str = "mesh.vtu"
     turn: dict = None  # patch, axis, centre
-    body: dict = None  # for the rival: a rigid body in a box
+    body: dict = None  # for Mmg: a rigid body in a box
     folder: Path = field(init=False)
 
     def __post_init__(self):
@@ -34,12 +34,12 @@ class Case:
 
     @property
     def every(self):
-        """Steps from frame to frame: some in a cycle, so that its end is one of them; in a long run the ends alone."""
+        """Number of steps between frames, such that ends of cycles are frames; in a long run only these."""
         per_cycle = min(6, FRAMES // self.cycles, self.steps)
         return next(n for n in range(self.steps // max(per_cycle, 1), self.steps + 1) if self.steps % n == 0)
 
     def make(self):
-        """Begins anew in the folder."""
+        """Create the folder of the case, replacing an existing one."""
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
         self.fill(self.folder)
@@ -53,24 +53,27 @@ class Case:
     def turning(self):
         if not self.turn:
             return ""
-        words = ", ".join(f"{key} = {value}" for key, value in self.turn.items() if key != "patch")
+        entries = ", ".join(f"{key} = {value}" for key, value in self.turn.items() if key != "patch")
         return (f'[[motion.move]]\npatch = "{self.turn["patch"]}"\nin_time = "ramp"\n'
-                f"turn = {{ {words}, degrees = {360 * self.cycles} }}\n")
+                f"turn = {{ {entries}, degrees = {360 * self.cycles} }}\n")
 
 
-def motet(folder, *words):
-    """A call within the folder; exit status 4 (bad tets are left) is no failure."""
-    done = subprocess.run([MOTET / "motet", *map(str, words), "-q"], cwd=folder, capture_output=True, text=True)
+def motet(folder, *arguments):
+    """Run motet in a folder; exit status 4 (bad tets are left) is not an error."""
+    done = subprocess.run([MOTET / "motet", *map(str, arguments), "-q"], cwd=folder, capture_output=True, text=True)
     if done.returncode not in (0, 4):
         raise RuntimeError(" ".join(done.stderr.split())[:200])
 
 
-def filled(*words, **surfaces):
-    """What fills a folder's surfaces; files have the names of their patches."""
+def filled(*arguments, **surfaces):
+    """Return a function that writes surfaces to a folder and fills them.
+
+    Patches are named after the files.
+    """
     def fill(folder):
         for name, triangles in surfaces.items():
             write_stl(folder / f"{name}.stl", triangles)
-        motet(folder, "mesh", *words, "-o", "mesh.vtu", "--surface", "keep")
+        motet(folder, "mesh", *arguments, "-o", "mesh.vtu", "--surface", "keep")
     return fill
 
 
@@ -79,7 +82,7 @@ PADDLE = {"walls": box((4, 4, 2), (16, 16, 8)), "paddle": box((2, 0.25, 0.75), (
 SPHERE = {"walls": box((6, 2, 2), (30, 10, 10), (1.5, 0, 0)), "sphere": ellipsoid((0.5,) * 3, 8)}
 EGG = {"walls": ellipsoid((2,) * 3, 10), "egg": ellipsoid((1.2, 0.8, 0.6), 10)}
 CUP = {"cup": cylinder(4, 5, 6, 7), "interface": box((5, 1.2, 1.6), (7, 2, 2), (0, 0, 2))}
-# Rounded, so that both have the very same vertices where the flap stands on the floor.
+# Rounded, so that both have exactly the same vertices where the flap meets the floor.
 FLAP = {"walls": box((1.6, 2, 4), (8, 10, 20)).round(9), "flap": sheet((0, -1, -0.6), (0, 1.2, 0), (0, 0, 1.2), (6, 6)).round(9)}
 TUBE = along_x(cylinder(5, 60, 3, 34))
 CUBE = box((2, 2, 2), (10, 10, 10))
@@ -93,7 +96,7 @@ fill_flap = filled("walls.stl", "--membrane", "flap.stl", "--size", 0.2, **FLAP)
 
 
 def measured_walls(surface, size, place, count):
-    """A surface filled, and frames that its walls follow."""
+    """Return a function that fills a surface, and writes frames of its moving walls."""
     def fill(folder):
         filled("walls.stl", "--size", size, walls=surface)(folder)
         write_frames(folder, "walls", surface, place, count)
@@ -101,7 +104,7 @@ def measured_walls(surface, size, place, count):
 
 
 def squeezed(points, phase):
-    """A tube of which nine tenths are closed; the place wanders from x = 15 to 45 and back at rest."""
+    """Squeeze a tube by 90 %, at a position that moves from x = 15 to 45."""
     x = points[:, 0]
     depth = 0.9 * min(1, 4 * phase, 4 * (1 - phase))
     centre = 15 + 30 * min(max(2 * phase - 0.5, 0), 1)
@@ -110,14 +113,14 @@ def squeezed(points, phase):
 
 
 def twisted(points, phase):
-    """A cube whose top and bottom turn against each other by 90 degrees, to both sides."""
+    """Twist a cube by 90 degrees between bottom and top, to both sides."""
     angle = np.radians(45) * np.sin(2 * np.pi * phase) * points[:, 2]
     x, y, z = points.T
     return np.stack([np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y, z], axis=1)
 
 
 def ventricle(folder):
-    """As docs/run.md has it, without the coil."""
+    """Create the case of docs/run.md without the coil."""
     motet(folder, "cap", *sorted(DATA.glob("patient1_LV_ENDOCARDIAL_*.vtk")), "-o", "wall.pvd", "--period", 1)
     motet(folder, "mesh", "wall_0000.vtu", "-o", "filled.vtu", "--size", 4)
     motet(folder, "remesh", "filled.vtu", "-o", "mesh.vtu", "--surface", "adapt", "--distance", 0.3)
@@ -144,22 +147,22 @@ IN_CHANNEL = {"half": [0, 0, 0], "radius": 0.5, "low": [-1.5, -1, -1], "high": [
 
 
 def cases(options):
-    """All cases, as long as the options say."""
+    """Return all cases, with the numbers of turns and cycles of the options."""
     turns, cycles = options.turns or TURNS, lambda usual: options.cycles or usual
     paddle, bar = {"patch": "paddle", **Z}, {"patch": "interface", **Z, "centre": [0, 0, 2]}
     return [
-        Case("paddle", "a paddle turns in a box", 72, turns, BODIES, fill_paddle, turn=paddle, body=IN_BOX),
-        Case("paddle-delaunay", "the same by another method", 72, turns, METHOD.format("delaunay"), fill_paddle, turn=paddle),
-        Case("channel", "a sphere goes six radii along a channel", 60, 1, SHIFT + '"ramp"\n', fill_sphere, body=IN_CHANNEL),
-        Case("channel-back", "there and back", 120, cycles(10), SHIFT + "[[0, 0], [0.5, 1], [1, 0]]\n", fill_sphere),
-        Case("ellipsoid", "an ellipsoid tumbles in a ball about none of its axes", 72, turns, BODIES, fill_egg,
+        Case("paddle", "a paddle rotates in a box", 72, turns, BODIES, fill_paddle, turn=paddle, body=IN_BOX),
+        Case("paddle-delaunay", "a paddle rotates in a box, method delaunay", 72, turns, METHOD.format("delaunay"), fill_paddle, turn=paddle),
+        Case("channel", "a sphere moves six radii along a channel", 60, 1, SHIFT + '"ramp"\n', fill_sphere, body=IN_CHANNEL),
+        Case("channel-back", "a sphere moves along a channel and back", 120, cycles(10), SHIFT + "[[0, 0], [0.5, 1], [1, 0]]\n", fill_sphere),
+        Case("ellipsoid", "an ellipsoid rotates in a ball, about none of its principal axes", 72, turns, BODIES, fill_egg,
              turn={"patch": "egg", "axis": [1, 1, 1], "centre": [0, 0, 0]}),
-        Case("bar", "a bar, meshed too, turns in a cup", 30, options.turns or 6, 'smooth = 2\n' + INSIDE, fill_cup, turn=bar),
-        Case("bar-bodies", "the same by another method", 30, options.turns or 6, BODIES + INSIDE, fill_cup, turn=bar),
+        Case("bar", "a meshed bar rotates in a cup", 30, options.turns or 6, 'smooth = 2\n' + INSIDE, fill_cup, turn=bar),
+        Case("bar-bodies", "a meshed bar rotates in a cup, method bodies", 30, options.turns or 6, BODIES + INSIDE, fill_cup, turn=bar),
         Case("tube", "a tube is squeezed to a tenth of its width", 16, cycles(20), FOLLOW.format("walls", "position"),
              measured_walls(TUBE, 1.745, squeezed, 16)),
-        Case("flap", "a flap beats to both sides, nearly to the walls", 24, cycles(20), BEND, fill_flap),
-        Case("ventricle", "a ventricle whose wall was measured", 25, cycles(3),
+        Case("flap", "a flap bends to both sides, nearly to the walls", 24, cycles(20), BEND, fill_flap),
+        Case("ventricle", "a ventricle with a measured wall", 25, cycles(3),
              FOLLOW.format("wall", "nearest") + '[repair]\nsurface = "adapt"\ndistance = 0.3\n', ventricle),
         Case("cube", "a cube is twisted to both sides", 24, cycles(10), FOLLOW.format("walls", "position"),
              measured_walls(CUBE, 0.2, twisted, 24)),
@@ -167,10 +170,10 @@ def cases(options):
 
 
 def chosen(options):
-    """The cases that are asked for and can be made, and the names of those without data."""
+    """Return the requested cases, and the names of those without data."""
     known = {case.name: case for case in cases(options)}
     names = options.cases.split(",") if options.cases else list(known)
     if unknown := set(names) - set(known):
-        raise SystemExit(f"no case called {', '.join(sorted(unknown))}; there are {', '.join(known)}")
+        raise SystemExit(f"unknown case {', '.join(sorted(unknown))}; known: {', '.join(known)}")
     without = {"ventricle"} if not DATA.is_dir() else set()
     return [known[name] for name in names if name not in without], [name for name in names if name in without]

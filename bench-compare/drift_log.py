@@ -1,15 +1,15 @@
-"""What a long motion left of a mesh: the log of `motet run`, a line a step, in the same form for rivals, and sums over it."""
+"""Logs of long motions, by `motet run` and in the same form by other programs, and summaries of them."""
 import json
 
 import numpy as np
 
 from tets import spread
 
-TRIANGLE, TET = 5, 10  # as VTK counts them
+TRIANGLE, TET = 5, 10  # VTK's numbers
 
 
 def read_frame(path):
-    """Points, tets, and triangles of walls of a VTU file."""
+    """Read the points, tets and wall triangles of a VTU file."""
     import vtk
     from vtk.util.numpy_support import vtk_to_numpy
 
@@ -24,13 +24,13 @@ def read_frame(path):
 
 
 def lines(path):
-    """A program that was ended may have left its last line cut."""
+    """Read the complete lines of a log; the last line of a terminated program may be incomplete."""
     whole = path.read_text().rpartition("\n")[0] if path.exists() else ""
     return [json.loads(line) for line in whole.splitlines()]
 
 
 def read_run(folder):
-    """The steps of a run from step 0 on. Where the log has no `quality` (older programs), it comes from the frames that there are."""
+    """Return the steps of a run from step 0 on. If the log has no `quality`, it is measured in the frames."""
     pairs = zip(lines(folder / "run.jsonl"), lines(folder / "run.times.jsonl"))
     steps = [step | {"seconds": times["seconds"]["total"]} for step, times in pairs]
     if steps and (folder / "run.state.vtu").exists():
@@ -47,16 +47,19 @@ def read_run(folder):
 
 
 def changed(step, triangles):
-    """Of the tets before a change, the part that is gone after it; summed over the changes of a step. The share in a log of motet is one of all cells,
-    so of wall triangles, too, nearly all of which stay."""
+    """Return the fraction of tets removed by a change, summed over the changes of a step.
+
+    The share in a log of motet is relative to all cells, including wall triangles, of which nearly all are
+    kept.
+    """
     return sum((1 - change["kept_share"]) * (1 + triangles / change["tets_before"]) for change in step["changes"])
 
 
 def sums(steps):
-    """The columns of the table, from the steps with step 0."""
+    """Return the columns of the table from all steps, including step 0."""
     known = [step["quality"] for step in steps if "quality" in step]
     walls = [step["wall_points"] for step in steps if "wall_points" in step]
-    gone, triangles = steps[1:] or steps, steps[0].get("triangles", 0)
+    made, triangles = steps[1:] or steps, steps[0].get("triangles", 0)
     worst = [step["worst"]["eas"] for step in steps if step.get("worst")]
     counts = {key: [step[key] for step in steps] for key in ("points", "tets")}
     result = {f"{key}_{when}": of(count) for key, count in counts.items()
@@ -67,9 +70,9 @@ def sums(steps):
         "p1_last": known[-1]["p1"], "ratio_first": known[0]["mean_ratio"], "ratio_last": known[-1]["mean_ratio"],
         "worst_ever": min(worst), "bad_ever": max(step["bad"] for step in steps),
         "inverted_ever": max(step["inverted"] for step in steps),
-        "changed": float(np.mean([changed(step, triangles) for step in gone])), "seconds": float(np.mean([step["seconds"] for step in gone]))}
+        "changed": float(np.mean([changed(step, triangles) for step in made])), "seconds": float(np.mean([step["seconds"] for step in made]))}
 
 
 def cycle_ends(steps, per_cycle):
-    """The steps at which a cycle ends, with the number of the cycle."""
+    """Return the steps at which cycles end, with the numbers of the cycles."""
     return [(step["step"] // per_cycle, step) for step in steps if step["step"] % per_cycle == 0 and "quality" in step]

@@ -1,9 +1,9 @@
-"""Closed surfaces in numpy, as triangles (n, 3, 3) turned outward, and the files that hold them."""
+"""Closed surfaces in numpy, as outward triangles of shape (n, 3, 3), and their files."""
 import numpy as np
 
 
 def box(sides, cells, centre=(0, 0, 0)):
-    """A lattice on each side; diagonals alternate, so that no direction is preferred."""
+    """Return a box with a lattice on each side; diagonals alternate to avoid a preferred direction."""
     triangles = []
     for axis in range(3):
         u, v = (axis + 1) % 3, (axis + 2) % 3
@@ -20,32 +20,34 @@ def box(sides, cells, centre=(0, 0, 0)):
 
 
 def halves(corners, which):
-    """Each quadrilateral (n, 4, 3) cut along its first diagonal where `which`, else along the other."""
+    """Divide quadrilaterals (n, 4, 3) along their first diagonal where `which`, otherwise along
+    the second."""
     cut = lambda rows, ids: rows[:, ids].reshape(-1, 3, 3)
     return np.concatenate([cut(corners[which], [0, 1, 2, 0, 2, 3]), cut(corners[~which], [0, 1, 3, 1, 2, 3])])
 
 
 def ellipsoid(radii, cells):
-    """A cube with so many cells a side, blown up: equal angles, so that cells are about alike."""
+    """Return an ellipsoid from a cube with `cells` cells per side, at equal angles so that cells
+    are similar."""
     cube = np.tan(box((2, 2, 2), [cells] * 3) * np.pi / 4)
     return cube / np.linalg.norm(cube, axis=2, keepdims=True) * radii
 
 
 def sheet(origin, u, v, cells):
-    """A parallelogram from an origin along u and v: an open surface."""
+    """Return a parallelogram from an origin along u and v, an open surface."""
     i, j = (index.ravel() for index in np.indices(cells))
     place = lambda right, up: np.asarray(origin) + np.outer((i + right) / cells[0], u) + np.outer((j + up) / cells[1], v)
     return halves(np.stack([place(0, 0), place(1, 0), place(1, 1), place(0, 1)], axis=1), (i + j) % 2 == 1)
 
 
 def ring(k, radius):
-    """6 k places on a circle; the centre for k = 0."""
+    """Return 6 k points on a circle, or the centre for k = 0."""
     angle = 2 * np.pi * np.arange(max(6 * k, 1)) / max(6 * k, 1)
     return radius * (k > 0) * np.stack([np.cos(angle), np.sin(angle), np.zeros(len(angle))], axis=1)
 
 
 def disc(rings, radius):
-    """Triangles of about the same size: each ring has six places more than the one in it."""
+    """Return triangles of similar size: each ring has six points more than the next inner one."""
     triangles = []
     for k in range(1, rings + 1):
         inner, outer = ring(k - 1, radius * (k - 1) / rings), ring(k, radius * k / rings)
@@ -60,7 +62,7 @@ def disc(rings, radius):
 
 
 def cylinder(radius, length, rings, slices):
-    """Along z from 0, both ends closed."""
+    """Return a cylinder along z, starting at 0, with both ends closed."""
     rim, low = ring(rings, radius), disc(rings, radius)
     i, j = (index.ravel() for index in np.indices((len(rim), slices)))
     place = lambda right, up: rim[(i + right) % len(rim)] + np.outer((j + up) * length / slices, (0, 0, 1))
@@ -69,12 +71,12 @@ def cylinder(radius, length, rings, slices):
 
 
 def along_x(triangles):
-    """What was along z; still turned outward."""
+    """Rotate triangles from the z axis to the x axis; they remain outward."""
     return triangles[:, :, [2, 0, 1]]
 
 
 def write_stl(path, triangles):
-    """In text, with all digits."""
+    """Write an ASCII STL file with all digits."""
     with open(path, "w") as file:
         file.write("solid made\n")
         for triangle in triangles:
@@ -84,7 +86,7 @@ def write_stl(path, triangles):
 
 
 def write_frames(folder, name, triangles, place, count):
-    """A series NAME.pvd: the surface at `count` times of a period, its points where `place(points, phase)` has them."""
+    """Write a series NAME.pvd of `count` frames of a period, with points at `place(points, phase)`."""
     points, corners = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
     lines = []
     for frame in range(count):
@@ -96,7 +98,7 @@ def write_frames(folder, name, triangles, place, count):
 
 
 def write_vtp(path, points, triangles):
-    """In text, with all digits."""
+    """Write an ASCII VTP file with all digits."""
     array = lambda kind, name, width, values: (
         f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{width}" format="ascii">\n'
         + "\n".join(map(repr, values.ravel().tolist())) + "\n</DataArray>\n")

@@ -1,4 +1,5 @@
-"""Hosts and devices to put in, in the form that each program reads, and what came of it."""
+"""Hosts and devices of the implantation benchmark in the formats of all programs, and measures of the
+results."""
 import subprocess
 
 import numpy as np
@@ -7,14 +8,14 @@ from common import MOTET, TARGET
 from mesh_files import DATA, merged, read_vtp
 from remesh_files import made, read_vtu
 from sameness import compared, kept, matched
-from tets import EDGES, FACETS, boundary, volumes, worth
+from tets import EDGES, FACETS, boundary, measures, volumes
 
 WITHIN_ROUNDING = 1e-9
 PUBLIC = DATA / "vessels" / "vmtk_id1_aneurysm.vtp"
 
 
 def shapes(quick):
-    """Motet's own shapes, and the hosts that are made of them. Not clocked."""
+    """Create motet's built-in shapes and the hosts meshed from them. Not timed."""
     folder = TARGET / "implant_shapes"
     folder.mkdir(exist_ok=True)
     subprocess.run([MOTET / "examples" / "shapes", folder], check=True)
@@ -24,7 +25,7 @@ def shapes(quick):
 
 
 def cases(quick):
-    """The cases, and the names of those that this machine has not."""
+    """Return the cases, and the names of those without data."""
     own = shapes(quick)
     found = [Case("coil in a box", own / "block.vtu", [own / "turns.vtp"], 0.12, ["--growth", "0.4"])]
     if quick:
@@ -40,25 +41,25 @@ def cases(quick):
     return [*found, Case("coil in a public aneurysm", host, [coil], 0.15)], []
 
 
-def quietly(*words):
-    """A call of motet that may leave bad tets."""
-    done = subprocess.run([MOTET / "motet", *words, "-q"])
+def quietly(*arguments):
+    """Run motet; bad tets in the result are not an error."""
+    done = subprocess.run([MOTET / "motet", *arguments, "-q"])
     if done.returncode not in (0, 4):
-        raise SystemExit(f"motet {' '.join(map(str, words))}: exit status {done.returncode}")
+        raise SystemExit(f"motet {' '.join(map(str, arguments))}: exit status {done.returncode}")
 
 
 class Case:
     """A host, devices, and their files: `host` and `devices` for motet, `npz` for the others."""
 
-    def __init__(self, name, host, devices, wire, words=()):
-        """`wire`: half of the thickness of the devices; `words` for `motet implant`."""
-        self.name, self.host, self.devices, self.words = name, host, devices, words
+    def __init__(self, name, host, devices, wire, options=()):
+        """`wire` is half the thickness of the devices; `options` are those of `motet implant`."""
+        self.name, self.host, self.devices, self.options = name, host, devices, options
         self.folder = TARGET / f"implant_{''.join(letter for letter in name if letter.isalpha() or letter == ' ').replace(' ', '_')}"
         self.folder.mkdir(exist_ok=True)
         for path in self.folder.iterdir():
             path.unlink()
         self.host_points, self.host_tets = read_vtu(host)
-        self.host_bad = worth(self.host_points, self.host_tets)["bad"]
+        self.host_bad = measures(self.host_points, self.host_tets)["bad"]
         surfaces = [merged(self.host_points, boundary(self.host_tets)), *(merged(*read_vtp(device)) for device in devices)]
         first = np.cumsum([0, *(len(points) for points, _ in surfaces)])
         self.points = np.concatenate([points for points, _ in surfaces])
@@ -74,9 +75,10 @@ class Case:
         self.surface = self.triangles[self.part == 0]
 
     def background(self, size):
-        """The host divided until edges at the devices are no longer than the size, and as much more as they are away: a level set needs that."""
+        """Refine the host for a level set: edges no longer than the size plus their distance from the
+        devices."""
         path = self.folder / "background.vtu"
-        near = [word for device in self.devices for word in ("--near-size", f"{device}={size},1")]
+        near = [argument for device in self.devices for argument in ("--near-size", f"{device}={size},1")]
         quietly("refine", self.host, "-o", path, *near)
         return read_vtu(path)
 
@@ -84,37 +86,39 @@ class Case:
         return self.folder / ("".join(letter if letter.isalnum() else "_" for letter in program) + end)
 
     def measured(self, path, regions):
-        """What a mesh that a program wrote is worth, and how much of the devices and of the host it has kept."""
+        """Measure the quality of a program's mesh, and how much of the devices and of the host it kept."""
         points, tets = made(path)
-        if volumes(points, tets).sum() < 0:  # TetGen counts the corners the other way round
+        if volumes(points, tets).sum() < 0:  # TetGen's tets have the opposite orientation
             tets = tets[:, [1, 0, 2, 3]]
         row, to_the_bit = matched(self.points, np.ascontiguousarray(points, np.float64) + 0.0)  # no negative zeros
         found, _ = kept(self.device, tets[:, FACETS].reshape(-1, 3), row, to_the_bit)
         in_device = self.in_device(path, regions, points, tets)
         apart = self.apart(points, tets, in_device)
         host = compared(self.host_points, self.host_tets, points, tets)["kept"]
-        return {**worth(points, tets), "in_device": int(in_device.sum()), "triangles": len(self.device), "triangles_found": found,
+        return {**measures(points, tets), "in_device": int(in_device.sum()), "triangles": len(self.device), "triangles_found": found,
                 "apart": apart, "host_kept": host, "volume_off": float(volumes(points, tets).sum() / volumes(self.host_points, self.host_tets).sum() - 1)}
 
     def in_device(self, path, regions, points, tets):
-        """Which tets are the devices': as the program says, or by winding numbers of their centroids."""
+        """Return which tets belong to devices, by the program's output or by winding numbers of their
+        centroids."""
         if path.suffix == ".vtu":
             return np.isin(region_of_tets(path), regions)
-        told = np.load(path)
-        return told["in_device"] if "in_device" in told else winding(self.points, self.device, points[tets].mean(axis=1)) > 0.5
+        written = np.load(path)
+        return written["in_device"] if "in_device" in written else winding(self.points, self.device, points[tets].mean(axis=1)) > 0.5
 
     def apart(self, points, tets, in_device):
-        """The largest distance between the devices within the host and the interface of a mesh, either way."""
+        """Return the largest distance, in both directions, between devices inside the host and
+        the interface."""
         bounds = boundary(tets[in_device])
         interface = without(bounds, boundary(tets))
         if len(interface) == 0:
             return None
         samples = sampled(self.points, self.device)
         samples = samples[winding(self.points, self.surface, samples) > 0.5]
-        there = distances(samples, points, bounds)
-        back = distances(sampled(points, interface), self.points, self.device)
-        apart = float(max(there.max(), back.max()))
-        return 0.0 if apart < WITHIN_ROUNDING * np.ptp(self.points) else apart
+        to_interface = distances(samples, points, bounds)
+        to_device = distances(sampled(points, interface), self.points, self.device)
+        largest = float(max(to_interface.max(), to_device.max()))
+        return 0.0 if largest < WITHIN_ROUNDING * np.ptp(self.points) else largest
 
 
 def region_of_tets(path):
@@ -135,7 +139,7 @@ def winding(points, triangles, places):
 
 
 def sampled(points, triangles):
-    """Corners, middles of edges, centroids."""
+    """Return the corners, edge midpoints and centroids of triangles."""
     corners = points[triangles]
     middles = (corners + corners[:, [1, 2, 0]]) / 2
     return np.concatenate([points[np.unique(triangles)], middles.reshape(-1, 3), corners.mean(axis=1)])
@@ -149,6 +153,6 @@ def distances(places, points, triangles):
 
 
 def without(facets, others):
-    """The facets that are none of the others."""
+    """Return the facets that are not among the others."""
     key = lambda rows: np.sort(rows, axis=1).astype(np.int64) @ [1 << 42, 1 << 21, 1]  # up to two million vertices
     return facets[~np.isin(key(facets), key(others))]

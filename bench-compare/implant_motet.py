@@ -1,9 +1,9 @@
-"""`motet implant` called as a user calls it: files in, a mesh file out, JSON out.
+"""Runs `motet implant` on files and prints its times as JSON.
 
-usage: implant_motet.py MOTET RUNS OUT.vtu WORD...      WORDs for `motet implant`: host, devices, options
+usage: implant_motet.py MOTET RUNS OUT.vtu ARGUMENT...      arguments of `motet implant`: host, devices, options
 
-`seconds` are the program's own, without reading and writing. `whole_seconds` is the median of the process from its start to its end,
-`cpu_seconds` are those of the processor meanwhile.
+`seconds` are reported by the program, without files. `whole_seconds` is the median duration of the process,
+and `cpu_seconds` the median of its CPU time.
 """
 import json
 import resource
@@ -12,10 +12,10 @@ import subprocess
 import sys
 import time
 
-BUDGET = 10.0  # no call is begun after so many seconds of work
+BUDGET = 10.0  # no call is started after this number of seconds
 DONE, NOT_REACHED = 0, 4
 
-motet, runs, target, *words = sys.argv[1:]
+motet, runs, target, *arguments = sys.argv[1:]
 
 
 def used():
@@ -26,20 +26,20 @@ def used():
 seconds, whole, cpu = [], [], []
 while len(seconds) < int(runs) and sum(seconds) < BUDGET:
     start, before = time.perf_counter(), used()
-    done = subprocess.run([motet, "implant", *words, "-o", target, "--threads", "1", "--json"], capture_output=True, text=True)
+    done = subprocess.run([motet, "implant", *arguments, "-o", target, "--threads", "1", "--json"], capture_output=True, text=True)
     whole.append(time.perf_counter() - start)
     cpu.append(used() - before)
     if done.returncode not in (DONE, NOT_REACHED):
-        said = (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
-        print(json.dumps({"error": said.removeprefix(f"error: {words[0]}: ")[:200]}))
+        error = (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
+        print(json.dumps({"error": error.removeprefix(f"error: {arguments[0]}: ")[:200]}))
         break
-    said = json.loads(done.stdout)
-    seconds.append(said["seconds"]["total"] - said["seconds"]["read"] - said["seconds"]["write"])
+    report = json.loads(done.stdout)
+    seconds.append(report["seconds"]["total"] - report["seconds"]["read"] - report["seconds"]["write"])
 else:
     version = subprocess.run([motet, "--version"], capture_output=True, text=True).stdout.split()[-1]
-    devices = said["report"]["devices"]
+    devices = report["report"]["devices"]
     print(json.dumps({"seconds": seconds, "whole_seconds": statistics.median(whole), "cpu_seconds": statistics.median(cpu),
-                      "version": version, "complete": said["complete"], "unforced": said["unforced"],
+                      "version": version, "complete": report["complete"], "unforced": report["unforced"],
                       "regions": [region for device in devices for region in device["regions"]],
                       "at_walls": sum(device["triangles_at_walls"] for device in devices),
                       "outside": sum(device["triangles_outside"] for device in devices)}))

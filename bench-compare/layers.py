@@ -1,4 +1,5 @@
-"""How thick layers of prisms stay on the walls of the branched vessel when it bends, twists and widens, by method."""
+"""Thickness of prism layers on the walls of the branched vessel when it bends, twists and widens,
+by method."""
 import subprocess
 
 import numpy as np
@@ -8,7 +9,7 @@ from meshes import written
 from walls import LENGTH, branched_vessel
 
 WEDGE = 13
-# Degrees that the vessel is bent and twisted by in all, and how much wider it gets in its middle.
+# Angles of bending and twisting in degrees, and relative widening at the centre.
 MOTIONS = {"bent 60": (60, 0, 0.0), "twisted 60": (0, 60, 0.0), "wider by 0.15": (0, 0, 0.15), "all three": (60, 60, 0.15)}
 METHODS = {"delaunay": [], "guided": ["--method", "guided"], "elastic": ["--method", "elastic"],
            "delaunay, rigid layer": ["--rigid-layer", "0.1"]}
@@ -27,11 +28,11 @@ def place(points, bend, twist, wider):
 
 
 def thickness(points, wedges):
-    """Volume over the mean area of the two triangles."""
+    """Return the volume of each wedge over the mean area of its two triangles."""
     p = points[wedges]
     area = lambda a, b, c: np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
     six = lambda a, b, c, d: np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
-    tets = ((0, 1, 2, 3), (1, 2, 3, 4), (2, 3, 4, 5))  # what a prism is divided into, signs apart
+    tets = ((0, 1, 2, 3), (1, 2, 3, 4), (2, 3, 4, 5))  # a division of the prism, up to orientation
     volume = sum(np.abs(six(*(p[:, i] for i in tet))) for tet in tets)
     return volume / ((area(p[:, 0], p[:, 1], p[:, 2]) + area(p[:, 3], p[:, 4], p[:, 5])) / 2)
 
@@ -43,7 +44,7 @@ def run():
     whole = pyvista.read(written("vessel", branched_vessel, TARGET)).extract_surface().triangulate()
     whole.clear_data()
     whole.save(surface)
-    motet = lambda *words: subprocess.run([MOTET / "motet", *map(str, words)], capture_output=True, check=False).returncode
+    motet = lambda *arguments: subprocess.run([MOTET / "motet", *map(str, arguments)], capture_output=True, check=False).returncode
     motet("mesh", surface, "-o", layered, "--size", 0.25, "--layers", "4,0.015,1.3", "--keep-prisms")
     mesh = pyvista.read(layered)
     first, wedges = np.asarray(mesh.points), mesh.cells_dict[WEDGE]
@@ -51,10 +52,10 @@ def run():
     for motion, numbers in MOTIONS.items():
         mesh.point_data["u"] = place(first, *numbers) - first
         mesh.save(TARGET / "vessel_u.vtu")
-        for method, words in METHODS.items():
-            status = motet("move", TARGET / "vessel_u.vtu", "-o", moved, "--displacement", "u", *words)
+        for method, options in METHODS.items():
+            status = motet("move", TARGET / "vessel_u.vtu", "-o", moved, "--displacement", "u", *options)
             share = thickness(np.asarray(pyvista.read(moved).points), wedges) / before
             parts = [share.min(), *np.quantile(share, (0.01, 0.5, 0.99)), share.max()]
             rows.append([motion, method, *[f"{x:.2f}" for x in parts], "" if status == 0 else f"exit status {status}"])
-    print(f"\n### How thick layers stay\n\n{len(wedges):,} prisms, thickness after as a part of that before.\n")
-    print(table(["motion", "method", "least", "1 %", "median", "99 %", "most", ""], rows))
+    print(f"\n### Thickness of layers\n\n{len(wedges):,} prisms, thickness after the motion relative to that before.\n")
+    print(table(["motion", "method", "min", "1 %", "median", "99 %", "max", ""], rows))

@@ -1,4 +1,5 @@
-"""Closed surfaces to fill, in the form that each program reads, sizes with which programs make as many tets, and what came of it."""
+"""Closed surfaces of the mesh benchmark in the formats of all programs, matching sizes, and measures of the
+results."""
 import math
 import os
 import subprocess
@@ -9,11 +10,11 @@ import numpy as np
 from common import MOTET, ROOT, TARGET
 from remesh_files import made
 from sameness import surface_kept
-from tets import volumes, worth
+from tets import measures, volumes
 
 DATA = Path(os.environ.get("MOTET_DATA") or ROOT.parent / "shared" / "data")
 OWN = ("aneurysm", "bifurcation")
-# name: file within the real meshes, size of edges inside; with these motet makes 50,000 to 200,000 tets
+# Name: file among the real meshes, and interior edge length with which motet makes 50,000 to 200,000 tets.
 REAL = {
     "seqseg_demo": ("vessels/seqseg_demo.vtp", 0.2),
     "lh_template": ("vessels/heartdeformnets_lh_template.vtp", 0.01),
@@ -23,11 +24,11 @@ REAL = {
     "7_8ths_cube": ("hostile_surfaces/trimesh_7_8ths_cube.stl", 2.0),
 }
 OWN_SIZE = 0.15
-NEAR = 0.05  # counts of tets that differ by less are about equal
+NEAR = 0.05  # relative difference below which numbers of tets count as equal
 
 
 def surfaces(quick, wanted):
-    """The cases that are asked for (all where `wanted` names none), and the names of those that this machine has not."""
+    """Return the requested cases (all if `wanted` is empty), and the names of those without data."""
     folder = TARGET / "mesh_surfaces"
     folder.mkdir(exist_ok=True)
     subprocess.run([MOTET / "examples" / "shapes", folder, "--around", "24" if quick else "48"], check=True)
@@ -35,7 +36,7 @@ def surfaces(quick, wanted):
     known |= {name: (DATA / file, size) for name, (file, size) in REAL.items()}
     names = wanted.split(",") if wanted else list(OWN[:1]) if quick else list(known)
     if unknown := set(names) - set(known):
-        raise SystemExit(f"no surface called {', '.join(sorted(unknown))}; there are {', '.join(known)}")
+        raise SystemExit(f"unknown surface {', '.join(sorted(unknown))}; known: {', '.join(known)}")
     files = {name: known[name] for name in names}
     cases = [Case(name, file, size) for name, (file, size) in files.items() if file.is_file()]
     return cases, [name for name, (file, _) in files.items() if not file.is_file()]
@@ -60,12 +61,12 @@ class Case:
         return self.folder / ("".join(letter if letter.isalnum() else "_" for letter in program) + end)
 
     def measured(self, path):
-        """What a mesh that a program wrote is worth, and how much of the surface it has kept."""
+        """Measure the quality of a program's mesh, and how much of the surface it kept."""
         points, tets = made(path)
-        if volumes(points, tets).sum() < 0:  # TetGen counts the corners the other way round
+        if volumes(points, tets).sum() < 0:  # TetGen's tets have the opposite orientation
             tets = tets[:, [1, 0, 2, 3]]
         found, extra = surface_kept(self.points, self.triangles, points, tets)
-        return {**worth(points, tets), "points": len(np.unique(tets)), "triangles": len(self.triangles), "triangles_found": found,
+        return {**measures(points, tets), "points": len(np.unique(tets)), "triangles": len(self.triangles), "triangles_found": found,
                 "triangles_extra": extra, "volume_off": abs(float(volumes(points, tets).sum()) / self.volume - 1)}
 
 
@@ -82,19 +83,21 @@ def read_vtp(path):
 
 
 def merged(points, triangles):
-    """Points at one place as one, those that no triangle uses left out."""
+    """Merge coincident points and remove unused ones."""
     used, triangles = np.unique(triangles, return_inverse=True)
     points, row = np.unique(points[used] + 0.0, axis=0, return_inverse=True)  # no negative zeros
     return points, row.ravel()[triangles.reshape(-1, 3)]
 
 
 def calibrated(count, target, size, tries):
-    """The size with which a program makes about `target` tets, or comes nearest to that in so many tries.
+    """Return the size with which a program makes about `target` tets, or the closest one within a number of
+    trials.
 
-    `count(size)` gives the number of tets, None where the program fails; so does this where it failed the first time.
+    `count(size)` returns the number of tets, or None if the program fails. Returns None if the first trial
+    fails.
     """
     tried = {}
-    slope = 3.0  # counts fall with this power of the size, with less where the surface has most of the tets
+    slope = 3.0  # counts decrease with this power of the size, or a smaller one if most tets are at the surface
     for _ in range(tries):
         tets = count(size)
         if tets is None:

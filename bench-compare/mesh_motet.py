@@ -1,9 +1,9 @@
-"""`motet mesh` called as a user calls it: a surface file in, a mesh file out, JSON out.
+"""Runs `motet mesh` on files and prints its times as JSON.
 
-usage: mesh_motet.py MOTET RUNS SURFACE OUT.vtu [WORD...]      WORDs for `motet mesh`
+usage: mesh_motet.py MOTET RUNS SURFACE OUT.vtu [OPTION...]      options of `motet mesh`
 
-`seconds` are those of the meshing alone, as the program reports them: surface looked at and filled, without files.
-`whole_seconds` is the median of the process from its start to its end.
+`seconds` are reported by the program, for checking and filling the surface without files. `whole_seconds` is
+the median duration of the process.
 """
 import json
 import statistics
@@ -11,14 +11,14 @@ import subprocess
 import sys
 import time
 
-BUDGET = 3.0  # no call is begun after so many seconds of work
+BUDGET = 3.0  # no call is started after this number of seconds
 DONE, NOT_REACHED = 0, 4
 
-motet, runs, source, target, *words = sys.argv[1:]
+motet, runs, source, target, *options = sys.argv[1:]
 seconds, whole = [], []
 while len(seconds) < int(runs) and sum(seconds) < BUDGET:
     start = time.perf_counter()
-    done = subprocess.run([motet, "mesh", source, "-o", target, "--threads", "1", "--json", *words], capture_output=True, text=True)
+    done = subprocess.run([motet, "mesh", source, "-o", target, "--threads", "1", "--json", *options], capture_output=True, text=True)
     whole.append(time.perf_counter() - start)
     if done.returncode not in (DONE, NOT_REACHED):
         print(json.dumps({"error": (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1][:200]}))

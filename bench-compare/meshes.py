@@ -1,8 +1,7 @@
-"""The sphere in a box at the paper's four sizes, meshed by Gmsh: volume meshes for the motion bench, their
-boundary vertices for the Delaunay bench.
+"""The sphere in a box at the paper's four sizes, meshed by Gmsh, for the motion and Delaunay benchmarks.
 
-The paper (table 1) has A 10,203 vertices of which 2,700 on the boundary, B 32,102/5,704, C 72,655/10,854,
-D 157,887/16,947. The sizes below come within 2 % of both counts with the pinned Gmsh.
+The paper (table 1) has for A 10,203 vertices with 2,700 on the boundary, for B 32,102/5,704, for C
+72,655/10,854 and for D 157,887/16,947. The sizes below give both numbers within 2 % with the pinned Gmsh.
 """
 import os
 
@@ -10,7 +9,7 @@ import numpy as np
 
 RADIUS = 1.0
 HALF_EDGE = 5.0
-# name: cell size at the sphere, at the walls, exponent of the grading between (found by trial)
+# Name: cell size at the sphere and at the walls, and exponent of the grading in between (found by trial).
 SIZES = {
     "A": (0.1324, 0.6339, 0.633),
     "B": (0.0907, 0.4349, 0.694),
@@ -28,7 +27,10 @@ def linear(sphere_size, wall_size, depth):
 
 
 def build(sphere_size, wall_size, grading, ahead=HALF_EDGE, growth=geometric):
-    """Points (n, 3) and positive tets (m, 4) of the box without the ball; it reaches to `ahead` in x."""
+    """Return points (n, 3) and positive tets (m, 4) of the box without the ball.
+
+    The box extends to `ahead` in x.
+    """
     import gmsh
 
     gmsh.initialize()
@@ -47,7 +49,7 @@ def build(sphere_size, wall_size, grading, ahead=HALF_EDGE, growth=geometric):
 
 
 def meshed(gmsh, field):
-    """Points and positive tets of Gmsh's model, in the sizes of a field."""
+    """Mesh Gmsh's model with the sizes of a field; return points and positive tets."""
     gmsh.model.mesh.field.setAsBackgroundMesh(field)
     for option in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
         gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
@@ -67,7 +69,8 @@ def meshed(gmsh, field):
 
 
 def flap_in_channel():
-    """A channel, 4 by 2 by 2, with a flap of 0.06 by 1 by 1 on its floor, y = -1: points and tets."""
+    """Return points and tets of a channel, 4 by 2 by 2, with a flap of 0.06 by 1 by 1 on its
+    floor at y = -1."""
     import gmsh
 
     gmsh.initialize()
@@ -85,14 +88,14 @@ def flap_in_channel():
 
 
 def boundary_vertices(points):
-    """Ids of the vertices on the sphere, and of those on the walls."""
+    """Return the ids of the vertices on the sphere, and of those on the walls."""
     on_wall = np.isclose(np.abs(points).max(axis=1), HALF_EDGE, rtol=0, atol=1e-9)
     on_sphere = np.isclose(np.linalg.norm(points, axis=1), RADIUS, rtol=0, atol=1e-9)
     return np.flatnonzero(on_sphere), np.flatnonzero(on_wall)
 
 
 def sphere_in_box(name, folder):
-    """Points, tets, ids on the sphere, ids on the walls; made once and kept in `folder`."""
+    """Return points, tets, and ids of vertices on the sphere and on the walls; cached in `folder`."""
     path = os.path.join(folder, f"sphere_in_box_{name}.npz")
     if not os.path.exists(path):
         points, tets = build(*SIZES[name])
@@ -103,13 +106,14 @@ def sphere_in_box(name, folder):
 
 
 def vtu(name, folder):
-    """The same mesh as a VTU file, for programs that read files; its path."""
+    """Write the sphere in a box as a VTU file, and return its path."""
     points, tets, _, _ = sphere_in_box(name, folder)
     return written(f"sphere_in_box_{name}", lambda: (points, tets), folder)
 
 
 def written(name, made, folder):
-    """The path of a VTU file; `made` tells its points and tets where it is not there."""
+    """Return the path of a VTU file, which is created from the points and tets of `made()` if it does not
+    exist."""
     path = os.path.join(folder, f"{name}.vtu")
     if not os.path.exists(path):
         points, tets = made()

@@ -1,8 +1,7 @@
-"""Meshes that motion has spoilt: the sphere moved along x, the vertices of the volume after it by a Laplace equation.
+"""Meshes with bad tets: the sphere moved along x, with interior vertices moved by a Laplace equation.
 
-    python moved.py         makes the bench's meshes, then counts the bad tets of a sphere that moves along a channel
+    python moved.py         creates the meshes of the benchmark, and counts bad tets for a sphere in a channel
 """
-import os
 import sys
 from pathlib import Path
 
@@ -10,17 +9,17 @@ import numpy as np
 
 from common import TARGET
 from meshes import HALF_EDGE, RADIUS, SIZES, build, sphere_in_box
-from tets import BAD, boundary, eas, volumes
+from tets import BAD, boundary, eas
 
-# name: model, travel in radii
+# Name: model, and displacement in radii.
 MOVED = {"moved_A": ("A", 1.5), "moved_B": ("B", 1.75), "moved_1M": ("D", 0.2)}
-CHANNEL = 12.0  # how far the channel of figure 11 reaches in x
-STEPS = 4  # of a radius each
-SPHERE, INSIDE = 1, 1  # the sphere's patch, the volume's region; the walls are patches 2 to 7
+CHANNEL = 12.0  # end of the channel of figure 11 in x
+STEPS = 4  # number of steps, of one radius each
+SPHERE, INSIDE = 1, 1  # patch of the sphere, region of the volume; the walls are patches 2 to 7
 
 
 def laplace(points, tets, driven, held):
-    """Each vertex's share of the driven ones' displacement: linear elements, diffusivity 1/volume."""
+    """Return each vertex's share of the driven displacement, by linear elements with diffusivity 1/volume."""
     import scipy.sparse as sparse
     from scipy.sparse.linalg import cg
 
@@ -49,7 +48,7 @@ def along_x(points, share, travel):
 
 
 def moved(name, folder=TARGET):
-    """Points and tets of a moved mesh; made once and kept in `folder`."""
+    """Return the points and tets of a moved mesh; cached in `folder`."""
     path = Path(folder) / f"{name}.npz"
     if not path.exists():
         model, travel = MOVED[name]
@@ -62,7 +61,7 @@ def moved(name, folder=TARGET):
 
 
 def patches(points, triangles):
-    """The sphere is 1; the walls at low and high x, y, z are 2 to 7."""
+    """Return the patch of each triangle: 1 on the sphere, 2 to 7 on the walls at low and high x, y, z."""
     corners = points[triangles]
     patch = np.full(len(triangles), SPHERE, np.int32)
     for wall, (axis, sign) in enumerate((axis, sign) for axis in range(3) for sign in (-1, 1)):
@@ -71,7 +70,8 @@ def patches(points, triangles):
 
 
 def write(path, points, tets):
-    """Tets and boundary triangles as VTU, raw appended; cell arrays `region` and `patch`."""
+    """Write tets and boundary triangles as VTU with raw appended data and the cell arrays `region` and
+    `patch`."""
     import vtk
     from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
@@ -102,7 +102,8 @@ def write(path, points, tets):
 
 
 def channel():
-    """As in the paper's figure 11: the tets that are bad before and after each step along a channel, no remeshing."""
+    """Count the bad tets before and after each step along a channel without remeshing, as in figure 11 of the
+    paper."""
     points, tets = build(*SIZES["A"], ahead=CHANNEL)
     sphere = np.flatnonzero(np.isclose(np.linalg.norm(points, axis=1), RADIUS, rtol=0, atol=1e-9))
     walls = np.setdiff1d(np.unique(boundary(tets)), sphere)

@@ -1,8 +1,8 @@
-"""One mesh motion step of OpenFOAM's displacementLaplacian or displacementSBRStress (solid-body rotation stress) on the same
-mesh: the case written, run, clocked.
+"""Measures a mesh motion step of OpenFOAM's displacementLaplacian or displacementSBRStress (solid-body
+rotation stress).
 
-`moveMesh` is the program that moves and checks nothing else. Its own clock is too coarse, so a step is the
-difference between a run of several steps and a run of one, divided by the steps between.
+`moveMesh` only moves the mesh. Its own timer is too coarse, so the time of a step is the difference between a
+run of several steps and a run of one, divided by the number of additional steps.
 """
 import os
 import shutil
@@ -16,7 +16,7 @@ LIMIT = 400.0
 
 HEADER = 'FoamFile {{ version 2.0; format ascii; class {kind}; location "{folder}"; object {name}; }}\n'
 
-# A loose tolerance: the usual choice, and the fastest that we found.
+# A loose tolerance in SOLUTION is the usual choice, and the fastest found.
 CONTROL = """application moveMesh; startFrom startTime; startTime 0; stopAt endTime; endTime {steps}; deltaT 1;
 writeControl timeStep; writeInterval 1000; writeFormat ascii; writePrecision 16; timeFormat general;
 runTimeModifiable no;
@@ -32,7 +32,8 @@ DYNAMIC = """dynamicFvMesh dynamicMotionSolverFvMesh; motionSolverLibs (fvMotion
 motionSolver {solver}; diffusivity {diffusivity};
 {solver}Coeffs {{ diffusivity {diffusivity}; }}
 """
-# And their diffusivities. With 1/volume the stress one divides by zero: its coupling of the coordinates is explicit.
+# Solvers and their diffusivities. displacementSBRStress divides by zero with 1/volume: its coupling of the
+# coordinates is explicit.
 SOLVERS = {"displacementLaplacian": "inverseVolume", "displacementSBRStress": "uniform"}
 DISPLACEMENT = """dimensions [0 1 0 0 0 0 0]; internalField uniform (0 0 0);
 boundaryField {{
@@ -57,7 +58,8 @@ def foam_list(rows):
 
 
 def faces_of(tets):
-    """OpenFOAM's faces: inner ones in upper-triangular order, then those of one cell; owners and neighbours."""
+    """Return OpenFOAM's faces with owners and neighbours: inner ones in upper-triangular order, then outer
+    ones."""
     corners = tets[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)  # outward
     cell = np.repeat(np.arange(len(tets)), 4)
     key = np.sort(corners, axis=1)
@@ -96,14 +98,17 @@ def seconds_of(case, steps, travel):
     start = time.perf_counter()
     done = subprocess.run(["moveMesh", "-case", str(case)], capture_output=True, text=True, timeout=LIMIT,
                           env=environment)
-    took = time.perf_counter() - start
+    seconds = time.perf_counter() - start
     if done.returncode != 0:
         raise RuntimeError((done.stdout + done.stderr)[-300:])
-    return took
+    return seconds
 
 
 def step_seconds(case, points, tets, ball, travel, rounds, solver="displacementLaplacian"):
-    """Seconds of one step (the smallest of `rounds` differences), the ball moving `travel` along x in all."""
+    """Return the seconds of one step, as the minimum over `rounds`.
+
+    The ball moves by `travel` along x in total.
+    """
     shutil.rmtree(case, ignore_errors=True)
     write_mesh(case, points, tets, ball)
     write(case, "system", "fvSchemes", "dictionary", SCHEMES)

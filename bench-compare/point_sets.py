@@ -1,4 +1,4 @@
-"""The point sets of the Delaunay bench, each a (n, 3) array of f64."""
+"""The point sets of the Delaunay benchmark, each an (n, 3) array of f64."""
 import numpy as np
 
 from meshes import HALF_EDGE, RADIUS, sphere_in_box
@@ -9,13 +9,14 @@ def cube(n):
 
 
 def surface(name, folder):
-    """Boundary vertices of a sphere in a box: cospherical and coplanar, the everyday input of mesh motion."""
+    """Return the boundary vertices of a sphere in a box: cospherical and coplanar, as usual in
+    mesh motion."""
     points, _, sphere, walls = sphere_in_box(name, folder)
     return points[np.concatenate([sphere, walls])]
 
 
 def spiral_sphere(n):
-    """Points spread evenly over the unit sphere along a golden spiral."""
+    """Return points on the unit sphere along a golden spiral, of uniform density."""
     turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(n)
     z = 1.0 - (2.0 * np.arange(n) + 1.0) / n
     r = np.sqrt(1.0 - z * z)
@@ -23,7 +24,8 @@ def spiral_sphere(n):
 
 
 def large_surface(n):
-    """A third of the points on the sphere, the rest scattered over the six walls, one to a square."""
+    """Return points of which a third are on the sphere, and the others random on the six walls, one in each
+    square."""
     random = np.random.default_rng(7)
     on_sphere = n // 3
     side = int(np.sqrt((n - on_sphere) / 6))
@@ -39,7 +41,7 @@ def large_surface(n):
 
 
 def turned(points):
-    """Rotated and shifted so that no wall is parallel to an axis, nor exactly flat any more."""
+    """Rotate and shift points such that no wall is parallel to an axis, or exactly planar."""
     axis = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
     angle = 0.7
     cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
@@ -48,7 +50,7 @@ def turned(points):
 
 
 def grid(n, step=0.1):
-    """A regular grid; `step` is no binary fraction, so that the grid is not exactly regular either."""
+    """Return a regular grid; it is regular only up to rounding, since `step` is not a binary fraction."""
     line = np.arange(n) * step
     return np.stack(np.meshgrid(line, line, line, indexing="ij"), -1).reshape(-1, 3)
 
@@ -66,20 +68,20 @@ def skew_lines(n):
 
 
 def duplicates(n):
-    """Each of n/200 places 200 times over, shuffled."""
+    """Return n/200 random points, each repeated 200 times, in random order."""
     random = np.random.default_rng(3)
     return random.permutation(np.repeat(random.random((n // 200, 3)), 200, axis=0))
 
 
 def scales(n):
-    """Clusters whose sizes run over 24 powers of ten round the origin."""
+    """Return points around the origin at distances over 24 orders of magnitude."""
     random = np.random.default_rng(5)
     direction = random.normal(size=(n, 3))
     return direction * 10.0 ** random.uniform(-12.0, 12.0, (n, 1))
 
 
 def point_sets(folder, largest):
-    """(group, name, points) of every set with at most `largest` points."""
+    """Yield (group, name, points) of every set with at most `largest` points."""
     sizes = (1_000, 10_000, 100_000, 1_000_000)
     makers = [("cube", f"cube {n:,}", lambda n=n: cube(n), n) for n in sizes]
     makers += [("surface", f"surface {name}", lambda name=name: surface(name, folder), 17_000) for name in "ABCD"]

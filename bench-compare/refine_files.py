@@ -1,4 +1,4 @@
-"""What is refined and where, in the form that each program reads, and what they made of it."""
+"""Cases of the refinement benchmark in the formats of all programs, and measures of the results."""
 import json
 import os
 import subprocess
@@ -10,13 +10,13 @@ from common import MOTET, TARGET
 from meshes import build, linear
 from tets import boundary, dot, eas, mean_ratio, volumes
 
-CHUNK = 200_000  # tets measured at a time
-PACKED = 2**21  # more vertices than `boundary` can tell apart
+CHUNK = 200_000  # number of tets measured at once
+PACKED = 2**21  # number of vertices from which on `boundary` cannot be used
 EVERYWHERE = {"near": None, "radii": [0.0], "longest": 0.0, "whole": False}
 
 
 def first_mesh(quick):
-    """The sphere in a box with 29,273 tets; a coarse one for a quick look."""
+    """Return the sphere in a box with 29,273 tets, or a coarse one if `quick`."""
     path = TARGET / f"refine_first{'_quick' if quick else ''}.npz"
     if not path.exists():
         points, tets = build(0.4, 1.6, 1.0, growth=linear) if quick else build(0.16, 0.8, 1.0, growth=linear)
@@ -26,7 +26,7 @@ def first_mesh(quick):
 
 
 class Case:
-    """A mesh, a rule of marks, and a folder with both."""
+    """A mesh, a rule that marks tets, and a folder with both."""
 
     def __init__(self, name, mesh, generations, limit, near=None, **rule):
         self.name, self.folder = name, TARGET / f"refine_{name}"
@@ -48,7 +48,7 @@ class Case:
         return self.folder / "".join(letter if letter.isalnum() else "_" for letter in program)
 
     def measure(self, program, result):
-        """Puts shapes and seconds into the rows of the generations, and takes the meshes away."""
+        """Add quality and seconds to the rows of the generations, and delete the meshes."""
         out = self.out(program)
         for generation, row in enumerate(result["generations"], 1):
             paths = [f"{out}_{generation}.{end}" for end in ("points", "tets")]
@@ -60,19 +60,19 @@ class Case:
                 os.unlink(path)
         stop = out.with_name(out.name + ".stop")
         if stop.exists():
-            generation, why = stop.read_text().split(maxsplit=1)
-            result["stopped"] = f"generation {generation}: {why}"
+            generation, reason = stop.read_text().split(maxsplit=1)
+            result["stopped"] = f"generation {generation}: {reason}"
 
 
 def coil():
-    """Points on the surface of a coil, as motet makes it."""
+    """Return the points on the surface of motet's coil."""
     path = TARGET / "refine_coil.f64"
     subprocess.run([MOTET / "examples" / "refine_rivals", "--coil", path], check=True)
     return np.fromfile(path).reshape(-1, 3)
 
 
 def in_chunks(work, points, tets):
-    """Numbers of all tets; what they need meanwhile does not grow with the mesh."""
+    """Evaluate a measure of all tets with memory that does not grow with the mesh."""
     parts = [tets[i:i + CHUNK] for i in range(0, len(tets), CHUNK)]
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         # A negative tet has the shape of its mirror image.
@@ -80,7 +80,8 @@ def in_chunks(work, points, tets):
 
 
 def measured(points, tets, first=None):
-    """Shapes, also beside those of the first mesh; whether boundary and volume are the same as before, as far as can be told."""
+    """Return the quality, also relative to the first mesh, and whether volume and conformity are preserved,
+    if known."""
     quality, ratio = in_chunks(eas, points, tets), in_chunks(mean_ratio, points, tets)
     found = {"tets": len(tets), "worst": float(quality.min()), "median": float(np.median(quality)), "worst_mean_ratio": float(ratio.min()),
              "volume": float(in_chunks(volumes, points, tets).sum())}
@@ -93,6 +94,6 @@ def measured(points, tets, first=None):
         found["mean_ratio_to_first"] = found["worst_mean_ratio"] / first["worst_mean_ratio"]
         close = lambda key: abs(found[key] / first[key] - 1) < 1e-9
         found["fills"] = close("volume")
-        # Where vertices hang, a facet and its four parts belong to one tet each, as those of the boundary do.
+        # At hanging vertices, a facet and its four parts belong to one tet each, as if on the boundary.
         found["conforming"] = close("area") if "area" in found else None
     return found

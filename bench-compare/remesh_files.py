@@ -1,4 +1,4 @@
-"""One mesh to remesh, in the form that each program reads, and what they made of it."""
+"""Meshes of the remeshing benchmark in the formats of all programs, and reading of the results."""
 import numpy as np
 
 from common import TARGET
@@ -7,7 +7,7 @@ from tets import BAD, boundary, eas, volumes
 
 
 class Case:
-    """A moved mesh and the files with it."""
+    """A moved mesh and its files."""
 
     def __init__(self, name):
         self.name, self.folder = name, TARGET / f"remesh_{name}"
@@ -17,7 +17,7 @@ class Case:
         self.vtu = TARGET / f"{name}.vtu"
 
     def numpy(self):
-        """Points, tets, boundary, and the tets that share no vertex with a bad one."""
+        """Write points, tets, boundary, and the tets that share no vertex with a bad one; return the path."""
         near = np.zeros(len(self.points), bool)
         near[self.tets[eas(self.points, self.tets) < BAD]] = True
         self.far = np.flatnonzero(~near[self.tets].any(axis=1))
@@ -26,7 +26,10 @@ class Case:
         return path
 
     def raw(self):
-        """Points with those of the boundary first, tets, triangles; the number of points on the boundary."""
+        """Write points (boundary first), tets and triangles.
+
+        Return the paths and the number of boundary points.
+        """
         outer = np.unique(self.triangles)
         order = np.r_[outer, np.setdiff1d(np.arange(len(self.points)), outer)]
         row = np.argsort(order)
@@ -37,7 +40,7 @@ class Case:
         return [*paths, len(outer)]
 
     def medit(self):
-        """The mesh as subdomain 1, its cavity filled by subdomain 2."""
+        """Write the mesh as subdomain 1, with its cavity filled as subdomain 2; return the path."""
         sphere = self.triangles[patches(self.points, self.triangles) == SPHERE]
         points, cavity = filled(self.points, sphere)
         tets = np.r_[self.tets, cavity] + 1
@@ -52,13 +55,16 @@ class Case:
         return path
 
     def length(self):
-        """The mean length of an edge, over tets."""
+        """Return the mean edge length over all tets."""
         corners = self.points[self.tets]
         return float(np.linalg.norm(corners[:, [0, 0, 0, 1, 1, 2]] - corners[:, [1, 2, 3, 2, 3, 3]], axis=2).mean())
 
 
 def filled(points, triangles):
-    """All points with some more inside a closed surface, and tets there that keep its triangles."""
+    """Fill a closed surface with tets that keep its triangles.
+
+    Return all points including new ones, and the tets.
+    """
     import gmsh
 
     ids, corners = np.unique(triangles, return_inverse=True)
@@ -83,7 +89,7 @@ def filled(points, triangles):
 
 
 def made(path):
-    """Points and tets that a program wrote: NAME.npz, NAME.vtu, or NAME.points and NAME.tets."""
+    """Read the points and tets written by a program: NAME.npz, NAME.vtu, or NAME.points and NAME.tets."""
     if path.suffix == ".npz":
         kept = np.load(path)
         return kept["points"], kept["tets"].astype(np.int64)

@@ -1,4 +1,5 @@
-"""What two tet meshes, or a surface and its filling, have in common: corners compared bit by bit, and to 1e-9."""
+"""Common cells of two tet meshes, or of a surface and its mesh, with coordinates compared exactly and to
+1e-9."""
 import numpy as np
 
 from tets import boundary
@@ -7,7 +8,7 @@ NEAR = 1e-9
 
 
 def matched(old, new):
-    """For each new point the old one at its place (-1: none within 1e-9), and whether they agree to the bit."""
+    """Return for each new point the old one within 1e-9 (-1 for none), and whether they are exactly equal."""
     from scipy.spatial import cKDTree
 
     distance, row = cKDTree(old).query(new, distance_upper_bound=NEAR)
@@ -18,19 +19,20 @@ def matched(old, new):
 
 
 def shared(old, new):
-    """How many rows of `new` are rows of `old`; the order within a row does not count."""
+    """Count the rows of `new` that are rows of `old`, regardless of the order within a row."""
     rows = np.sort(np.concatenate([np.unique(np.sort(part, axis=1), axis=0) for part in (old, new)]), axis=1)
     _, count = np.unique(rows, axis=0, return_counts=True)
     return int((count > 1).sum())
 
 
 def kept(old, new, row, to_the_bit):
-    """Of the old cells, how many are among the new ones to the bit, and how many to 1e-9."""
+    """Count the old cells that are among the new ones exactly, and to 1e-9."""
     return [shared(old, row[new[keep[new].all(axis=1)]]) for keep in (to_the_bit, row >= 0)]
 
 
 def compared(old_points, old_tets, points, tets):
-    """Shares of the old tets kept to the bit and to 1e-9, tets touched, and how exact the boundary is."""
+    """Return the shares of old tets kept exactly and to 1e-9, the number of changed tets, and the boundary's
+    accuracy."""
     row, to_the_bit = matched(old_points, np.ascontiguousarray(points, np.float64))
     bits, near = kept(old_tets, tets, row, to_the_bit)
     old_facets, facets = boundary(old_tets), boundary(tets)
@@ -41,7 +43,7 @@ def compared(old_points, old_tets, points, tets):
 
 
 def surface_kept(old_points, triangles, points, tets):
-    """How many of the triangles are facets of the boundary, to the bit, and how many facets it has beyond these."""
+    """Count the triangles that are exactly facets of the boundary, and the other facets of the boundary."""
     row, to_the_bit = matched(old_points, np.ascontiguousarray(points, np.float64) + 0.0)  # no negative zeros
     facets = boundary(tets)
     found, _ = kept(triangles, facets, row, to_the_bit)

@@ -1,4 +1,4 @@
-"""Tets in numpy: volumes, angles, EAS, the boundary."""
+"""Volumes, angles, quality and boundary of tets in numpy."""
 import numpy as np
 
 FACETS = np.array([(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)])  # opposite each corner; outward when the tet is positive
@@ -12,7 +12,7 @@ def dot(a, b):
 
 
 def angle(a, b):
-    """Degrees between vectors, row by row."""
+    """Return the angles between vectors, row by row, in degrees."""
     return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), dot(a, b)))
 
 
@@ -22,7 +22,7 @@ def volumes(points, tets):
 
 
 def dihedrals(points, tets):
-    """The least and the greatest dihedral angle of each tet, in degrees."""
+    """Return the smallest and largest dihedral angle of each tet, in degrees."""
     normals = []
     for facet in FACETS:
         a, b, c = (points[tets[:, i]] for i in facet)
@@ -32,7 +32,7 @@ def dihedrals(points, tets):
 
 
 def facet_angles(points, tets):
-    """The least and the greatest angle of the four facets of each tet, in degrees."""
+    """Return the smallest and largest angle of the four facets of each tet, in degrees."""
     angles = []
     for facet in FACETS:
         for turn in range(3):
@@ -42,15 +42,16 @@ def facet_angles(points, tets):
 
 
 def eas(points, tets):
-    """Equi-angle quality: the sign of the volume times 1 - skew, the skew as Verdict's `tet_equiangle_skew`."""
+    """Return the equi-angle quality: the sign of the volume times 1 - skew, with Verdict's
+    `tet_equiangle_skew`."""
     skews = []
     for (least, greatest), best in ((dihedrals(points, tets), REGULAR), (facet_angles(points, tets), 60)):
         skews += [(greatest - best) / (180 - best), (best - least) / best]
     return np.sign(volumes(points, tets)) * (1 - np.maximum.reduce(skews))
 
 
-def worth(points, tets):
-    """Counts of bad and inverted tets, quality, angles."""
+def measures(points, tets):
+    """Return the numbers of bad and inverted tets, quality and angles."""
     quality, (least, greatest) = eas(points, tets), dihedrals(points, tets)
     return {"tets": len(tets), "bad": int((quality < BAD).sum()), "inverted": int((quality <= 0).sum()),
             "worst": float(quality.min()), "fifth_percentile": float(np.percentile(quality, 5)),
@@ -59,14 +60,14 @@ def worth(points, tets):
 
 
 def mean_ratio(points, tets):
-    """12 (3 V)^(2/3) over the sum of squared edges, with the sign of V (Liu and Joe 1994)."""
+    """Return 12 (3 V)^(2/3) over the sum of squared edge lengths, with the sign of V (Liu and Joe 1994)."""
     volume = volumes(points, tets)
     squares = sum(dot(edge, edge) for edge in (points[tets[:, i]] - points[tets[:, j]] for i, j in EDGES))
     return np.sign(volume) * 12 * np.cbrt(3 * np.abs(volume)) ** 2 / squares
 
 
 def spread(points, tets):
-    """How quality is spread over the tets: EAS, and the mean of the mean ratio."""
+    """Return percentiles and mean of the EAS of all tets, and the mean of their mean ratios."""
     quality = eas(points, tets)
     p1, p5, median = np.percentile(quality, (1, 5, 50))
     return {"worst": float(quality.min()), "p1": float(p1), "p5": float(p5), "median": float(median),
@@ -74,7 +75,7 @@ def spread(points, tets):
 
 
 def boundary(tets):
-    """The facets that belong to one tet alone, turned outward."""
+    """Return the facets that belong to only one tet, facing outward."""
     facets = tets[:, FACETS].reshape(-1, 3)
     key = np.sort(facets, axis=1).astype(np.int64)
     key = (key[:, 0] << 42) | (key[:, 1] << 21) | key[:, 2]  # up to two million vertices

@@ -1,5 +1,8 @@
-"""Vessels whose walls move: one made here, and a ventricle whose wall was measured in 25 frames of a heartbeat (patient 1 of biv-me,
-see the README of the data folder)."""
+"""Vessels with moving walls: a branched vessel, and a ventricle with a wall measured in 25 frames of a
+heartbeat.
+
+The ventricle is that of patient 1 of biv-me; see the README of the data folder.
+"""
 import os
 import subprocess
 from pathlib import Path
@@ -10,12 +13,12 @@ from common import MOTET, ROOT, TARGET
 from meshes import meshed
 
 LENGTH, RADIUS, SIZE = 10.0, 1.0, 0.2
-# Branches of the vessel: where they leave it along z, into which direction (degrees in the x-y plane), radius, length.
+# Branches of the vessel: position along z, direction in the x-y plane in degrees, radius and length.
 BRANCHES = ((4.0, 90.0, 0.35, 3.0), (5.2, 70.0, 0.3, 3.0), (6.4, 110.0, 0.35, 3.0), (8.0, 270.0, 0.25, 2.5))
 
 
 def branched_vessel():
-    """A vessel of radius 1 along z, from 0 to 10, with four branches: points and tets."""
+    """Return points and tets of a vessel of radius 1 along z, from 0 to 10, with four branches."""
     import gmsh
 
     gmsh.initialize()
@@ -36,7 +39,7 @@ def branched_vessel():
 
 
 def frames_of(folder):
-    """Points of each frame, and the triangles that all have."""
+    """Return the points of each frame, and their common triangles."""
     import vtk
     from vtk.util.numpy_support import vtk_to_numpy
 
@@ -52,10 +55,10 @@ def frames_of(folder):
 
 
 def rims(triangles):
-    """Loops of open edges, in the direction of the triangles."""
+    """Yield the loops of open edges, in the direction of the triangles."""
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    there = set(map(tuple, edges))
-    after = {a: b for a, b in there if (b, a) not in there}
+    directed = set(map(tuple, edges))
+    after = {a: b for a, b in directed if (b, a) not in directed}
     while after:
         loop = [next(iter(after))]
         while loop[-1] in after:
@@ -64,8 +67,10 @@ def rims(triangles):
 
 
 def capped(frames, triangles):
-    """Closes each rim by rings that get smaller, each of half as many points; each point of a ring is a mean of points
-    of the rim, so it moves with them."""
+    """Close each rim by successively smaller rings, each with half as many points.
+
+    Each point of a ring is a mean of points of the rim, and therefore moves with them.
+    """
     triangles = [triangles]
     for rim in rims(triangles[0]):
         rows = np.eye(len(rim))
@@ -94,7 +99,7 @@ def capped(frames, triangles):
 
 
 def zipped(outer, inner):
-    """Triangles between two loops that go the same way round, facing the other way than those at the outer one."""
+    """Return triangles between two loops of equal direction, oriented opposite to those at the outer loop."""
     n, m, i, j, rows = len(outer), len(inner), 0, 0, []
     while i < n or (m > 1 and j < m):
         if m == 1 or j == m or (i < n and (i + 1) * m <= (j + 1) * n):
@@ -107,7 +112,10 @@ def zipped(outer, inner):
 
 
 def ventricle():
-    """The path of a mesh of the ventricle, an array of points for each frame; None where the data are not there."""
+    """Return the path of a mesh of the ventricle with an array of points per frame.
+
+    None if there are no data.
+    """
     data = Path(os.environ.get("MOTET_DATA") or ROOT.parent / "shared" / "data") / "moving_wall" / "bivme_lv"
     path, surface, volume = (TARGET / f"ventricle{end}" for end in ("_frames.vtu", ".vtp", ".vtu"))
     if not data.is_dir():
@@ -119,10 +127,10 @@ def ventricle():
     frames, triangles = capped(*frames_of(data))
     cells = np.column_stack([np.full(len(triangles), 3), triangles])
     pyvista.PolyData(frames[0], cells.ravel()).save(surface)
-    # It ends with 4, since some triangles of the wall force bad tets; the mesh is there.
+    # The exit status is 4, since some triangles of the wall force bad tets; the mesh is written.
     subprocess.run([MOTET / "motet", "mesh", surface, "-o", volume, "--size", "auto"], capture_output=True)
     grid = pyvista.read(volume)
-    # The mesher keeps the surface's points to the bit.
+    # The mesher keeps the points of the surface exactly.
     known = {tuple(p): i for i, p in enumerate(frames[0])}
     which = np.array([known.get(tuple(p), -1) for p in grid.points])
     for number, frame in enumerate(frames[1:], 1):

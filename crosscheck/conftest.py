@@ -1,4 +1,4 @@
-"""Where the programs and the real meshes are, and how to call them."""
+"""Fixtures that find and call the programs, and find the real meshes."""
 import json
 import os
 import subprocess
@@ -11,24 +11,24 @@ SUFFIX = ".exe" if os.name == "nt" else ""
 
 
 class Program:
-    """A built program of the project: `program("info", path, json=True)`."""
+    """A built program of the project, called as `program("info", path)`."""
 
     def __init__(self, path):
         self.path = Path(path)
 
-    def run(self, *words, code=0, timeout=300, **options):
-        """Runs it and asserts its exit status (`code=None`: any); the completed process, output as text."""
-        done = subprocess.run([str(self.path), *map(str, words)], capture_output=True, text=True,
+    def run(self, *arguments, code=0, timeout=300, **options):
+        """Run the program, assert its exit status (`code=None` for any) and return the completed process."""
+        done = subprocess.run([str(self.path), *map(str, arguments)], capture_output=True, text=True,
                               timeout=timeout, **options)
         if code is not None:
             assert done.returncode == code, (
-                f"{self.path.name} {' '.join(map(str, words))}: exit status {done.returncode}, expected {code}\n"
+                f"{self.path.name} {' '.join(map(str, arguments))}: exit status {done.returncode}, expected {code}\n"
                 f"{done.stdout}{done.stderr}")
         return done
 
-    def json(self, *words, **options):
-        """Runs it with `--json` and returns the one object that it prints."""
-        return json.loads(self.run(*words, "--json", **options).stdout)
+    def json(self, *arguments, **options):
+        """Run the program with `--json` and return the object that it prints."""
+        return json.loads(self.run(*arguments, "--json", **options).stdout)
 
     __call__ = run
 
@@ -42,7 +42,7 @@ def _built(name):
 
 
 def data_folder():
-    """The folder of real meshes, or None."""
+    """Return the folder of real meshes, or None if there is none."""
     folder = Path(os.environ.get("MOTET_DATA") or ROOT.parent / "shared" / "data")
     return folder if folder.is_dir() else None
 
@@ -61,7 +61,7 @@ def example():
 
 @pytest.fixture(scope="session")
 def data():
-    """The folder of real meshes; the test is skipped where there is none."""
+    """The folder of real meshes; the test is skipped if there is none."""
     folder = data_folder()
     if folder is None:
         pytest.skip("no real meshes: set MOTET_DATA")
@@ -70,10 +70,14 @@ def data():
 
 @pytest.fixture(scope="session")
 def sphere(motet, tmp_path_factory):
-    """A folder and a report: `box.vtu`, a sphere in a box of 184,320 tets, two patches; `moved.pvd`, the sphere moves to near a wall; `move.json`, the report."""
+    """A folder with a moving sphere, and the report of its motion.
+
+    The folder contains `box.vtu`, a sphere in a box of 184,320 tets with two patches; `moved.pvd`, in which
+    the sphere moves close to a wall; and `move.json`, the report.
+    """
     shapes = pytest.importorskip("motet", reason="the package is not installed: ./test does it").shapes
     folder = tmp_path_factory.mktemp("sphere")
     shapes.sphere_in_box(16, 20).save(folder / "box.vtu")
-    told = motet("move", folder / "box.vtu", "-o", folder / "moved.pvd", "--translate", "sphere=3,0,0", "--quality", "--json").stdout
-    (folder / "move.json").write_text(told)
-    return folder, json.loads(told)
+    report = motet("move", folder / "box.vtu", "-o", folder / "moved.pvd", "--translate", "sphere=3,0,0", "--quality", "--json").stdout
+    (folder / "move.json").write_text(report)
+    return folder, json.loads(report)

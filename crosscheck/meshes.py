@@ -1,9 +1,9 @@
-"""Comparing arrays bit for bit, meshes cell by cell, tetrahedralisations as sets."""
+"""Comparison of arrays bit by bit, of meshes cell by cell, and of tetrahedralisations as sets."""
 import numpy as np
 
 
 def assert_same_array(ours, theirs, what="array"):
-    """Equal shape and values, floats bit for bit (so that -0 and NaN count too); integers of any width."""
+    """Assert equal shapes and values: floats bit by bit, including -0 and NaN; integers of any width."""
     ours, theirs = np.asarray(ours), np.asarray(theirs)
     assert ours.shape == theirs.shape, f"{what}: shape {ours.shape}, expected {theirs.shape}"
     floats = ours.dtype.kind == "f", theirs.dtype.kind == "f"
@@ -20,7 +20,7 @@ def assert_same_array(ours, theirs, what="array"):
 
 
 def cells_of(mesh):
-    """The cells of a meshio mesh, kind by kind: {kind: (n, k) array}, blocks of one kind joined in order."""
+    """Return the cells of a meshio mesh as {kind: (n, k) array}, with blocks of one kind joined in order."""
     blocks = {}
     for block in mesh.cells:
         blocks.setdefault(block.type, []).append(np.asarray(block.data))
@@ -28,7 +28,7 @@ def cells_of(mesh):
 
 
 def cell_array_of(mesh, name):
-    """A cell array of a meshio mesh, kind by kind as in `cells_of`."""
+    """Return a cell array of a meshio mesh by kind, in the order of `cells_of`."""
     blocks = {}
     for block, values in zip(mesh.cells, mesh.cell_data[name]):
         blocks.setdefault(block.type, []).append(np.asarray(values))
@@ -36,8 +36,10 @@ def cell_array_of(mesh, name):
 
 
 def assert_same_mesh(ours, theirs, point_data=None, cell_data=None):
-    """Equal points, cells and arrays of two meshio meshes. `point_data`, `cell_data`: names to compare
-    (default: every name in `theirs`)."""
+    """Assert equal points, cells and arrays of two meshio meshes.
+
+    `point_data` and `cell_data` are the names of the arrays to compare, by default all those in `theirs`.
+    """
     assert_same_array(ours.points, theirs.points, "points")
     a, b = cells_of(ours), cells_of(theirs)
     assert sorted(a) == sorted(b), f"kinds of cells: {sorted(a)}, expected {sorted(b)}"
@@ -54,12 +56,12 @@ def assert_same_mesh(ours, theirs, point_data=None, cell_data=None):
 
 
 def tet_set(tets):
-    """Rows sorted within and among themselves: equal for equal sets of tets."""
+    """Sort the vertices of each tet, and the tets; the result is equal for equal sets of tets."""
     rows = np.sort(np.asarray(tets, dtype=np.int64).reshape(-1, 4), axis=1)
     return rows[np.lexsort(rows.T[::-1])]
 
 
 def volumes(points, tets):
-    """Signed volume of each tet, positive when (b-a)x(c-a).(d-a) > 0."""
+    """Return the signed volume of each tet, positive if (b-a)x(c-a).(d-a) > 0."""
     a, b, c, d = (np.asarray(points)[np.asarray(tets)[:, i]] for i in range(4))
     return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6.0

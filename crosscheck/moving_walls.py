@@ -1,12 +1,13 @@
-"""Three real walls in motion, end to end: a surface series in, a volume series out, read back by PyVista.
+"""Move three real meshes by series of surfaces, and read the resulting series of volumes with PyVista.
 
     cargo build --release && target/venv/bin/python crosscheck/moving_walls.py [OUT]
 
-(a) left heart: boundary values of another code's mesh displacement, scaled by 50, against its volume displacement;
-(b) vessel: the wall pulsates by 20 % of its radius, inlet and outlet slide in their planes;
-(c) vessel with thin cells at the wall: the same, the layers at the wall kept.
+(a) left heart: the boundary values of another program's mesh displacement, scaled by 50, compared with the
+    volume displacement of that program;
+(b) vessel: the radius of the wall changes by 20 %, inlet and outlet slide in their planes;
+(c) vessel with thin cells at the wall: motion as in (b), with and without a rigid layer.
 
-OUT (default: a temporary folder) keeps the series for ParaView. Needs the real meshes (MOTET_DATA).
+The series are written to OUT (default: a temporary folder) for ParaView. Needs the real meshes (MOTET_DATA).
 """
 import json
 import os
@@ -26,7 +27,8 @@ STEPS = 20
 
 
 def write_series(path, surface, steps, displacement):
-    """A PVD series of `surface` displaced by `displacement(k)`, its point arrays kept; the time of step k is k/STEPS."""
+    """Write a PVD series of `surface` displaced by `displacement(k)` at time k/STEPS, with its
+    point arrays."""
     path.parent.mkdir(parents=True, exist_ok=True)
     entries = []
     for k in steps:
@@ -38,10 +40,10 @@ def write_series(path, surface, steps, displacement):
     path.write_text(f'<VTKFile type="Collection" version="0.1"><Collection>{"".join(entries)}</Collection></VTKFile>')
 
 
-def move(mesh, wall, out, *words, code=0):
-    """Runs `motet move` and returns its report, with the seconds that the whole run took."""
+def move(mesh, wall, out, *options, code=0):
+    """Run `motet move`; return its report and the duration of the whole run in seconds."""
     out.parent.mkdir(parents=True, exist_ok=True)
-    call = [MOTET, "move", mesh, "-o", out, "--displacement", wall, *words, "--json"]
+    call = [MOTET, "move", mesh, "-o", out, "--displacement", wall, *options, "--json"]
     begin = time.perf_counter()
     done = subprocess.run(list(map(str, call)), capture_output=True, text=True)
     seconds = time.perf_counter() - begin
@@ -51,23 +53,24 @@ def move(mesh, wall, out, *words, code=0):
 
 
 def frames(pvd):
-    """The meshes of a series, as PyVista reads them."""
+    """Yield the times and meshes of a series as PyVista reads them."""
     reader = pv.get_reader(pvd)
     for t in reader.time_values:
         reader.set_active_time_value(t)
         yield t, reader.read()[0]
 
 
-def tell(report, seconds, pvd):
+def print_summary(report, seconds, pvd):
+    """Print quality and timings; return the times and meshes of the series."""
     worst = min(step["worst_eas"]["value"] for step in report["steps"])
     inverted = max(step["inverted"] for step in report["steps"])
     update = np.median([step["seconds"]["update"] for step in report["steps"]])
     print(f"  {report['points']} points, {report['cells']} cells, {len(report['steps'])} steps; "
-          f"worst EAS {report['before']['worst_eas']['value']:.4f} at first, {worst:.4f} over all steps; "
-          f"most inverted cells {inverted}")
+          f"worst EAS {report['before']['worst_eas']['value']:.4f} initially, {worst:.4f} over all steps; "
+          f"largest number of inverted cells {inverted}")
     print(f"  set-up {report['seconds']['setup']:.3f} s, median update {1e3 * update:.2f} ms, "
           f"update and certificate of all steps {report['seconds']['move']:.3f} s, "
-          f"the whole run {seconds:.2f} s")
+          f"whole run {seconds:.2f} s")
     read = list(frames(pvd))
     assert len(read) == len(report["steps"]) and all(m.n_points == report["points"] for _, m in read)
     print(f"  PyVista reads {len(read)} steps, t = {read[0][0]:g} to {read[-1][0]:g}, arrays {read[0][1].array_names}")
@@ -84,7 +87,7 @@ def left_heart(out):
     on_wall = np.asarray(surface["vtkOriginalPointIds"])
     write_series(out / "a/wall.pvd", surface, range(1, STEPS + 1), lambda k: given[on_wall] * k / STEPS)
     report, seconds = move(source, out / "a/wall.pvd", out / "a/moved.pvd")
-    last = tell(report, seconds, out / "a/moved.pvd")[-1][1]
+    last = print_summary(report, seconds, out / "a/moved.pvd")[-1][1]
     difference = np.linalg.norm(np.asarray(last["displacement"]) - given, axis=1)
     inside = np.setdiff1d(np.arange(mesh.n_points), on_wall)
     largest = np.linalg.norm(given, axis=1).max()
@@ -95,7 +98,7 @@ def left_heart(out):
 
 
 def beat(k):
-    """How much the radius has grown at step k: by up to 20 %, then down to -20 %, then back."""
+    """Return the relative growth of the radius at step k: a sine of amplitude 20 %."""
     return 0.2 * np.sin(2 * np.pi * k / STEPS) if k % STEPS else 0.0
 
 
@@ -103,21 +106,21 @@ def radially(points):
     return np.column_stack([points[:, 0], points[:, 1], np.zeros(len(points))])
 
 
-def pipe(folder, name, out, *words):
+def pipe(folder, name, out, *options):
     source = DATA / "tetmeshes" / folder
     wall = pv.read(source / "lumen_wall.vtp")
     radial = radially(np.asarray(wall.points, dtype=np.float64))
     write_series(out / "wall.pvd", wall, range(STEPS + 1), lambda k: beat(k) * radial)
-    caps = [w for cap in ("inlet", "outlet") for w in ("--patch", f"{cap}={source}/lumen_{cap}.vtp", "--slide", cap)]
-    report, seconds = move(source / "lumen.vtu", out / "wall.pvd", out / f"{name}.pvd", *caps, *words)
-    read = tell(report, seconds, out / f"{name}.pvd")
+    caps = [option for cap in ("inlet", "outlet") for option in ("--patch", f"{cap}={source}/lumen_{cap}.vtp", "--slide", cap)]
+    report, seconds = move(source / "lumen.vtu", out / "wall.pvd", out / f"{name}.pvd", *caps, *options)
+    read = print_summary(report, seconds, out / f"{name}.pvd")
     first, last = read[0][1].points, read[-1][1].points
-    print(f"  after the whole beat every point is where it was, to the bit: {np.array_equal(first, last)}")
+    print(f"  after the whole beat every point is exactly at its initial position: {np.array_equal(first, last)}")
     for cap in ("inlet", "outlet"):
         ids = np.asarray(pv.read(source / f"lumen_{cap}.vtp")["GlobalNodeID"]) - 1
         z = np.array([m.points[ids, 2] for _, m in read])
         radius = [np.linalg.norm(m.points[ids, :2], axis=1).max() for _, m in read]
-        print(f"  {cap}: out of its plane by {np.abs(z - z[0]).max():.1e}, radius {min(radius):.3f} to {max(radius):.3f}")
+        print(f"  {cap}: deviation from its plane {np.abs(z - z[0]).max():.1e}, radius {min(radius):.3f} to {max(radius):.3f}")
     return read, seconds
 
 
@@ -127,7 +130,10 @@ def vessel(out):
 
 
 def layer_thickness(mesh, wall_ids, reference=None):
-    """Distance from each wall vertex to its nearest neighbour off the wall (which one: as in `reference`)."""
+    """Return the distance from each wall vertex to its nearest neighbour off the wall, and these edges.
+
+    With `reference`, the edges of an earlier call are measured.
+    """
     if reference is None:
         tets = mesh.cells_dict[10]
         edges = np.unique(np.sort(np.vstack([tets[:, [i, j]] for i in range(4) for j in range(i)]), axis=1), axis=0)
@@ -145,20 +151,20 @@ def layer_thickness(mesh, wall_ids, reference=None):
 
 
 def boundary_layer(out):
-    print("(c) tetmeshes/sv_boundary_layer_pipe: the same, its wall layers kept")
+    print("(c) tetmeshes/sv_boundary_layer_pipe: radius +-20 % in 20 steps, with and without a rigid layer")
     ids = np.asarray(pv.read(DATA / "tetmeshes/sv_boundary_layer_pipe/lumen_wall.vtp")["GlobalNodeID"]) - 1
-    spent = 0.0
-    for name, words in (("free", []), ("layer", ["--rigid-layer", "0.35"])):
-        read, seconds = pipe("sv_boundary_layer_pipe", name, out / "c", *words)
+    total = 0.0
+    for name, options in (("free", []), ("layer", ["--rigid-layer", "0.35"])):
+        read, seconds = pipe("sv_boundary_layer_pipe", name, out / "c", *options)
         before, reference = layer_thickness(read[0][1], ids)
-        told = "with --rigid-layer 0.35" if words else "without a rigid layer"
-        print(f"  first layer {told}: thickness before {before.min():.4f} to {before.max():.4f}, mean {before.mean():.4f}")
+        variant = "with --rigid-layer 0.35" if options else "without a rigid layer"
+        print(f"  first layer {variant}: thickness before {before.min():.4f} to {before.max():.4f}, mean {before.mean():.4f}")
         for k in (STEPS // 4, 3 * STEPS // 4):
             after, _ = layer_thickness(read[k][1], ids, reference)
             print(f"    at radius {1 + beat(k):.2f}: {after.min():.4f} to {after.max():.4f}, mean {after.mean():.4f}; "
                   f"largest change {np.abs(after / before - 1).max():.2%}")
-        spent += seconds
-    return spent
+        total += seconds
+    return total
 
 
 def main():
@@ -167,7 +173,7 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         out = Path(sys.argv[1] if len(sys.argv) > 1 else temporary)
         seconds = [left_heart(out), vessel(out), boundary_layer(out)]
-        print(f"motet's total time: {sum(seconds):.2f} s ({', '.join(f'{s:.2f}' for s in seconds)})")
+        print(f"total time of motet: {sum(seconds):.2f} s ({', '.join(f'{s:.2f}' for s in seconds)})")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
-"""Bodies that are flat but for rounding, filled: every triangle a facet, every tet positive in exact arithmetic; TetGen -pY beside.
+"""Meshing of CAD bodies, which are planar up to rounding, compared with TetGen -pY.
 
-CAD_BODIES: how many bodies (default 28)."""
+Every triangle must be a facet, and every tet positive in exact arithmetic. CAD_BODIES is the number of bodies
+(default 28).
+"""
 import os
 import subprocess
 import sys
@@ -12,7 +14,8 @@ import numpy as np
 
 COUNT = int(os.environ.get("CAD_BODIES", "28"))
 
-# TetGen in a process of its own, body after body: some end that process, and the next one goes on behind them.
+# TetGen runs in a separate process, body by body. Some bodies crash it; the next process continues after
+# these.
 TETGEN = """
 import sys, meshio, numpy, tetgen
 for seed in range(int(sys.argv[2]), int(sys.argv[3])):
@@ -27,7 +30,7 @@ for seed in range(int(sys.argv[2]), int(sys.argv[3])):
 
 
 def is_positive(corners):
-    """Whether the volume is above 0, exactly."""
+    """Return whether the volume is above 0, in exact arithmetic."""
     a, b, c, d = ([Fraction(float(x)) for x in p] for p in corners)
     u, v, w = ([x - y for x, y in zip(p, a)] for p in (b, c, d))
     return u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0]) > 0
@@ -39,14 +42,14 @@ def volumes(points, tets):
 
 
 def all_positive(points, tets):
-    """Floating point decides what it can, exact arithmetic the rest."""
+    """Return whether all volumes are above 0; exact arithmetic decides where floating point cannot."""
     extent = np.abs(points - points[0]).max()
     doubtful = np.flatnonzero(volumes(points, tets) < 1e-9 * extent**3)
     return all(is_positive(points[tet]) for tet in tets[doubtful])
 
 
 def kept(body, points, tets):
-    """How many triangles of the body are facets of tets, by the bits of their corners."""
+    """Count the triangles of the body that are facets of tets, by exact coordinates."""
     key = lambda p: tuple(np.asarray(p, float) + 0.0)
     facets = {frozenset(three) for tet in tets for three in combinations(map(int, tet), 3)}
     place = {key(p): i for i, p in enumerate(points)}
@@ -55,25 +58,25 @@ def kept(body, points, tets):
 
 
 def fill_by_tetgen(folder, count):
-    """Writes SEED.npz for each body that TetGen fills."""
+    """Write SEED.npz for each body that TetGen fills."""
     seed = 0
     while seed < count:
-        # TetGen writes what it skips where it runs.
-        words = [sys.executable, "-c", TETGEN, folder, str(seed), str(count)]
-        done = subprocess.run(words, capture_output=True, text=True, cwd=folder)
-        begun = [int(line) for line in done.stdout.split("\n") if line.isdigit()]
-        assert begun, done.stderr
-        seed = begun[-1] + 1
+        # TetGen writes skipped facets to its working directory.
+        command = [sys.executable, "-c", TETGEN, folder, str(seed), str(count)]
+        done = subprocess.run(command, capture_output=True, text=True, cwd=folder)
+        started = [int(line) for line in done.stdout.split("\n") if line.isdigit()]
+        assert started, done.stderr
+        seed = started[-1] + 1
 
 
 def test_each_triangle_is_a_facet_and_each_tet_positive(motet, example, tmp_path):
     example("cad_bodies").run(COUNT, 0, tmp_path)
     fill_by_tetgen(tmp_path, COUNT)
-    counts = {"bodies": 0, "motet": 0, "TetGen: none": 0, "TetGen: triangles lost": 0, "TetGen: tets not positive": 0, "TetGen: right": 0}
+    counts = {"bodies": 0, "motet": 0, "TetGen: none": 0, "TetGen: triangles lost": 0, "TetGen: tets not positive": 0, "TetGen: correct": 0}
     for seed in range(COUNT):
         read = meshio.read(tmp_path / f"{seed}.off")
         body = {"points": read.points, "triangles": read.cells_dict["triangle"].astype(np.int32)}
-        # As text: meshio (5.3.5) takes one array of packed raw data for another where offsets happen to be alike.
+        # As text: meshio 5.3.5 confuses arrays of appended raw data that happen to have equal offsets.
         motet("mesh", tmp_path / f"{seed}.off", "-o", tmp_path / "mesh.vtu", "-q", "--ascii")
         mesh = meshio.read(tmp_path / "mesh.vtu")
         tets = mesh.cells_dict["tetra"]
@@ -91,8 +94,8 @@ def test_each_triangle_is_a_facet_and_each_tet_positive(motet, example, tmp_path
         counts["TetGen: triangles lost"] += is_lost
         counts["TetGen: tets not positive"] += is_off
         if not is_lost and not is_off:
-            counts["TetGen: right"] += 1
-            # Two fillings of one body.
+            counts["TetGen: correct"] += 1
+            # Both meshes fill the same body.
             ours, other = volumes(mesh.points, tets).sum(), volumes(*theirs).sum()
             assert abs(ours - other) <= 1e-9 * abs(other), seed
     print(counts)

@@ -1,4 +1,4 @@
-"""Gaps of real surfaces as VTK measures them: valve leaflets, a braided stent in its vessel, a coil against itself."""
+"""Gaps between real surfaces compared with VTK: valve leaflets, a stent in its vessel, a coil with itself."""
 import numpy as np
 import pytest
 
@@ -7,12 +7,12 @@ from scipy.sparse import csr_matrix  # noqa: E402
 from scipy.sparse.csgraph import dijkstra  # noqa: E402
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy  # noqa: E402
 
-# Factors to metres, as they are, to something large: known libraries fail in one of them.
+# Scale factors: to metres, unchanged, and large. Some known libraries fail at one of these.
 UNITS = (1e-3, 1.0, 1e3)
 
 
 def read_surface(path):
-    """Points and triangles of a VTP file."""
+    """Read a VTP file; return VTK's data set, its points and its triangles."""
     reader = vtk.vtkXMLPolyDataReader()
     reader.SetFileName(str(path))
     reader.Update()
@@ -25,7 +25,7 @@ def triangles_of(data):
 
 
 def surface(points, triangles):
-    """Points and triangles as VTK has them."""
+    """Return a VTK data set of points and triangles."""
     data, places, cells = vtk.vtkPolyData(), vtk.vtkPoints(), vtk.vtkCellArray()
     places.SetData(numpy_to_vtk(np.ascontiguousarray(points, float), deep=True))
     starts = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int64)
@@ -44,12 +44,12 @@ def write(path, points, triangles):
 
 
 def distances(queries, points, triangles):
-    """From each point to the nearest triangle, by VTK."""
+    """Return the distance from each point to the nearest triangle, by VTK."""
     return nearest(queries, points, triangles)[0]
 
 
 def nearest(queries, points, triangles):
-    """From each point to the nearest triangle, by VTK, and the places there."""
+    """Return the distance from each point to the nearest triangle, and the nearest points, by VTK."""
     data = surface(points, triangles)
     locator = vtk.vtkStaticCellLocator()
     locator.SetDataSet(data)
@@ -63,7 +63,8 @@ def nearest(queries, points, triangles):
 
 
 def bodies(path):
-    """What `motet contact` wrote: for each body its points, triangles over them, gaps, and where they lie in their file."""
+    """Read the output of `motet contact`: for each body its points, triangles, gaps and original
+    point ids."""
     data, points, triangles = read_surface(path)
     body = vtk_to_numpy(data.GetCellData().GetArray("body"))
     gap = vtk_to_numpy(data.GetPointData().GetArray("gap"))
@@ -76,7 +77,7 @@ def bodies(path):
 
 
 def assert_same_gaps(out):
-    """The gap of each body's vertices is VTK's distance to the nearest of the others."""
+    """Assert that gaps equal VTK's distances to the nearest other body; return the largest relative error."""
     all_bodies = bodies(out)
     size = max(np.abs(points).max() for points, *_ in all_bodies)
     worst = 0.0
@@ -88,7 +89,7 @@ def assert_same_gaps(out):
 
 
 def scaled(motet, source, target, factor):
-    """A surface of any format as VTP in other units; its points and triangles."""
+    """Convert a surface to VTP and scale it; return its points and triangles."""
     motet("convert", source, target)
     data, points, triangles = read_surface(target)
     points = points.astype(float) * factor
@@ -97,7 +98,7 @@ def scaled(motet, source, target, factor):
 
 
 @pytest.mark.parametrize("unit", UNITS)
-def test_leaflets_of_a_valve(motet, data, tmp_path, unit):
+def test_gaps_between_leaflets_of_a_valve_agree_with_vtk(motet, data, tmp_path, unit):
     names = []
     for name in ("LCC", "NCC", "RCC"):
         source = tmp_path / f"{name}.vtp"
@@ -107,14 +108,14 @@ def test_leaflets_of_a_valve(motet, data, tmp_path, unit):
     report = motet.json("contact", *names, "-o", tmp_path / "gaps.vtp", "--warn", 0.05 * unit)
     worst = assert_same_gaps(tmp_path / "gaps.vtp")
     least = report["steps"][0]["least"]
-    print(f"leaflets x {unit:g}: off by {worst:.1e} of the size, least gap {least / unit:.6f}")
-    # The surfaces come as near as their vertices, or nearer by edges.
+    print(f"leaflets x {unit:g}: error {worst:.1e} of the size, least gap {least / unit:.6f}")
+    # The least distance is at a vertex, or smaller if it is between edges.
     assert least <= min(gap.min() for *_, gap, _ in bodies(tmp_path / "gaps.vtp")) * (1 + 1e-12)
     assert report["warning"] is True
 
 
 def read_leaflet(motet, source, folder):
-    """The triangles of a VTU file."""
+    """Read the points and the boundary triangles of a VTU file."""
     reader = vtk.vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(source))
     reader.Update()
@@ -127,19 +128,19 @@ def read_leaflet(motet, source, folder):
 
 
 def braided_stent(folder):
-    """The stent in its place: nodes, and segments between them."""
+    """Read the positioned stent: its nodes, and the segments between them."""
     nodes, u_crimp, u_place = (np.loadtxt(folder / f"{name}.txt", delimiter=None) for name in
                                ("pos_stent", "u_crimping", "u_positioning"))
     return nodes + u_crimp + u_place, np.loadtxt(folder / "conn_stent.txt").astype(int) - 1
 
 
 @pytest.mark.parametrize("unit", UNITS)
-def test_a_braided_stent_in_its_vessel(motet, data, tmp_path, unit):
+def test_gaps_between_a_braided_stent_and_its_vessel_agree_with_vtk(motet, data, tmp_path, unit):
     folder, radius = data / "devices" / "endobeams_braided_stent", 0.065
     nodes, segments = braided_stent(folder)
     points, triangles = [], []
     for a, b in nodes[segments]:
-        # A tube round each segment, open at its ends: twelve sides.
+        # A tube with twelve sides around each segment, open at its ends.
         along = (b - a) / np.linalg.norm(b - a)
         u = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
         u /= np.linalg.norm(u)
@@ -159,40 +160,41 @@ def test_a_braided_stent_in_its_vessel(motet, data, tmp_path, unit):
     of_tubes = np.empty(len(tubes))
     of_tubes[origin] = gap / unit
     least = of_tubes.reshape(-1, 2, 12).min(axis=2)
-    print(f"braided stent x {unit:g}: off by {worst:.1e} of the size; wire to wall {least.min():.4f} to {least.max():.4f}")
-    # The table of the data: 1.92 to 1.95 from the centre line; the wire is half its thickness nearer, and a
-    # vertex of a twelve-sided tube may look away from the wall by 15 degrees.
+    print(f"braided stent x {unit:g}: error {worst:.1e} of the size; wire to wall {least.min():.4f} to {least.max():.4f}")
+    # According to the data, centre lines are 1.92 to 1.95 from the wall. The wire's surface is closer by its
+    # radius; the nearest vertex of a twelve-sided tube may be up to 15 degrees off the direction to the wall.
     assert 1.92 - radius - 0.01 < least.min() and least.max() < 1.95 - radius * np.cos(np.pi / 12) + 0.01
     pair = report["steps"][0]["pairs"][0]
     assert pair["wrong"] == [0, 0] and pair["crossings"] == []
 
 
 @pytest.mark.parametrize("unit", UNITS)
-def test_a_coil_against_itself(motet, data, tmp_path, unit):
+def test_gaps_of_a_coil_with_itself_agree_with_vtk(motet, data, tmp_path, unit):
     points, triangles = scaled(motet, data / "devices" / "sphinxsys_coil.stl", tmp_path / "coil.vtp", unit)
     motet("contact", tmp_path / "coil.vtp", "--self", "-o", tmp_path / "gaps.vtp", "--within", 12 * unit, timeout=600)
     [(places, _, gap, origin)] = bodies(tmp_path / "gaps.vtp")
     found = np.full(len(points), np.nan)
     found[origin] = gap
-    # What is farther along the surface than half round the wire and less than a turn is another turn, or the wire's end.
+    # Triangles at a path along the surface of more than half the wire's perimeter and less than a turn belong
+    # to another turn, or to the end of the wire.
     edges = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
     graph = csr_matrix((lengths, edges.T), shape=(len(points),) * 2)
-    asked = np.flatnonzero(np.isfinite(found))[:: max(1, np.isfinite(found).sum() // 200)]
-    along = dijkstra(graph, directed=False, indices=asked, limit=40 * unit)
+    sampled = np.flatnonzero(np.isfinite(found))[:: max(1, np.isfinite(found).sum() // 200)]
+    along = dijkstra(graph, directed=False, indices=sampled, limit=40 * unit)
     corners = points[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     compared, through = 0, 0
-    for vertex, reached in zip(asked, along):
+    for vertex, reached in zip(sampled, along):
         far = triangles[np.isinf(reached[triangles]).all(axis=1)]
         [expected], [place] = nearest(points[[vertex]], points, far)
         if abs(found[vertex] - expected) <= 1e-12 * np.abs(points).max():
             compared += 1
             continue
-        # What VTK finds is nearer, but the way there goes into the wire itself.
+        # VTK finds a nearer point, but the straight line to it passes through the wire itself.
         assert found[vertex] > expected
         star = normals[(triangles == vertex).any(axis=1)]
         assert (star @ (place - points[vertex])).max() <= 0
         through += 1
-    print(f"coil x {unit:g}: {compared} vertices alike, {through} see through the wire, least gap {np.nanmin(found) / unit:.4f}")
+    print(f"coil x {unit:g}: {compared} vertices agree, {through} measure through the wire, least gap {np.nanmin(found) / unit:.4f}")
     assert compared > 150

@@ -1,4 +1,4 @@
-"""Quadratic cells against Gmsh: the least determinant of the Jacobian and the scaled one, on a mesh that it made and motet moved; and each kind of cell."""
+"""Jacobians of quadratic cells compared with Gmsh, for a moved mesh and for each kind of cell."""
 import numpy as np
 import pytest
 
@@ -15,14 +15,17 @@ def model():
 
 
 def qualities(path):
-    """`minDetJac` and `minSJ` of the volume cells of a file."""
+    """Return `minDetJac` and `minSJ` of the volume cells of a file, by Gmsh."""
     gmsh.open(str(path))
     tags = np.concatenate(gmsh.model.mesh.getElements(3)[1])
     return [np.array(gmsh.model.mesh.getElementQualities(tags, name)) for name in ("minDetJac", "minSJ")]
 
 
 def sampled(points, cells, n=12):
-    """The least `det J` over that of the straight tet, of all quadratic tets, at the places of a grid: by the definition."""
+    """Return the least scaled Jacobian of all quadratic tets, by its definition, at the points of a grid.
+
+    The scaled Jacobian is `det J` over that of the tet with straight edges.
+    """
     edges = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]
     slopes = np.array([[-1, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     nodes = points[cells]
@@ -37,7 +40,7 @@ def sampled(points, cells, n=12):
 
 
 def sphere_in_box(path):
-    """A ball cut out of a box, quadratic tets, curved at the ball."""
+    """Write a box with a spherical hole, of quadratic tets that are curved at the sphere."""
     occ = gmsh.model.occ
     box, ball = occ.addBox(-2, -2, -2, 4, 4, 4), occ.addSphere(0, 0, 0, 0.8)
     occ.cut([(3, box)], [(3, ball)])
@@ -55,21 +58,21 @@ def sphere_in_box(path):
     gmsh.write(str(path))
 
 
-def test_a_curved_mesh_that_was_moved_is_as_good_as_gmsh_says(motet, tmp_path, model):
+def test_scaled_jacobians_of_a_moved_curved_mesh_agree_with_gmsh(motet, tmp_path, model):
     first, moved = tmp_path / "first.msh", tmp_path / "moved.msh"
     sphere_in_box(first)
     for options in ([], ["--method", "elastic"], ["--method", "bodies"]):
         report = motet.json("move", first, "-o", moved, "--translate", "ball=0.2,0.05,0", "--steps", 3, *options)
         determinants, scaled = qualities(moved)
-        told = report["after"]["worst_curved_jacobian"]
-        print(options, told["value"], "Gmsh:", scaled.min(), determinants.min())
+        worst = report["after"]["worst_curved_jacobian"]
+        print(options, worst["value"], "Gmsh:", scaled.min(), determinants.min())
         assert report["complete"] and report["after"]["inverted"] == (determinants <= 0).sum() == 0
         mesh = meshio.read(moved)
         least = sampled(mesh.points, mesh.cells_dict["tetra10"])
-        # Gmsh's is a lower bound; a grid has no place below the least one.
-        assert scaled.min() - 1e-5 <= told["value"] <= least + 1e-9 and least - told["value"] < 0.05
+        # Gmsh gives a lower bound; values at grid points are upper bounds of the minimum.
+        assert scaled.min() - 1e-5 <= worst["value"] <= least + 1e-9 and least - worst["value"] < 0.05
         nodes = mesh.points[mesh.cells_dict["tetra10"]]
-        # Each edge on no surface is straight.
+        # Edges that are not on a surface are straight.
         surface = np.unique(mesh.cells_dict["triangle6"])
         edges = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
         off = np.stack([nodes[:, 4 + m] - nodes[:, list(e)].mean(1) for m, e in enumerate(edges)], 1)
@@ -77,7 +80,7 @@ def test_a_curved_mesh_that_was_moved_is_as_good_as_gmsh_says(motet, tmp_path, m
         assert np.abs(off[inner]).max() < 1e-6
 
 
-def test_cells_that_are_folded_inside_are_those_that_gmsh_names(motet, tmp_path, model):
+def test_cells_folded_in_their_interior_are_those_of_gmsh(motet, tmp_path, model):
     first = tmp_path / "first.msh"
     sphere_in_box(first)
     mesh = meshio.read(first)
@@ -102,8 +105,9 @@ def test_cells_that_are_folded_inside_are_those_that_gmsh_names(motet, tmp_path,
     ("tetra10", 11),
     ("hexahedron20", 17), ("hexahedron27", 12), ("wedge15", 18), ("wedge18", 13), ("pyramid13", 19),
 ])
-def test_each_kind_is_folded_where_samples_of_gmsh_s_functions_say_so(motet, tmp_path, model, kind, number):
-    """The determinant by Gmsh's shape functions at many places: negative in each cell that is told folded, positive in all others."""
+def test_folded_cells_of_each_kind_have_negative_samples_of_gmsh_s_jacobian(motet, tmp_path, model, kind, number):
+    """Samples of the determinant by Gmsh's shape functions: negative in reported cells, positive in the
+    others."""
     gmsh_model = model
     name, _, _, n, local, _ = gmsh_model.mesh.getElementProperties(number)
     local = np.array(local).reshape(n, 3)
@@ -124,7 +128,7 @@ def test_each_kind_is_folded_where_samples_of_gmsh_s_functions_say_so(motet, tmp
     nodes = local + rng.uniform(-1, 1, (60, n, 3)) * np.repeat([0.02, 0.12, 0.25], 20)[:, None, None]
     determinants = np.linalg.det(np.einsum("pnk,cnx->cpxk", gradients, nodes))
     low = determinants.min(1)
-    # One cell after the other in a mesh of Gmsh's, which motet reads with its own order of nodes.
+    # All cells in one mesh of Gmsh; motet converts the order of nodes.
     gmsh_model.add("cells")
     gmsh_model.addDiscreteEntity(3, 1)
     far = nodes + 10.0 * np.arange(60)[:, None, None] * [1, 0, 0]
@@ -133,8 +137,8 @@ def test_each_kind_is_folded_where_samples_of_gmsh_s_functions_say_so(motet, tmp
     path = tmp_path / "cells.msh"
     gmsh.write(str(path))
     report = motet.json("info", path)
-    told = report["inverted"]
-    print(f"\n{kind}: {told} of 60 told, {(low <= 0).sum()} by samples; least scaled Jacobian {report['curved']['min_scaled_jacobian']}")
-    # A determinant that is hardly negative can lie between the samples.
-    assert (low <= 0).sum() <= told <= (low <= 0.02 * determinants.max(1)).sum()
-    assert 0 < told < 60
+    inverted = report["inverted"]
+    print(f"\n{kind}: {inverted} of 60 reported, {(low <= 0).sum()} by samples; least scaled Jacobian {report['curved']['min_scaled_jacobian']}")
+    # Slightly negative determinants can lie between the samples.
+    assert (low <= 0).sum() <= inverted <= (low <= 0.02 * determinants.max(1)).sum()
+    assert 0 < inverted < 60

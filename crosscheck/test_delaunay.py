@@ -1,5 +1,8 @@
-"""Our triangulation against other programs', and against the definition in whole-number arithmetic: equal sets
-of tets where the answer is unique; equal volume, closed neighbourhoods and empty spheres where it is not."""
+"""Delaunay triangulation compared with other programs, and with the definition in integer arithmetic.
+
+Where the triangulation is unique, sets of tets are equal. Elsewhere the volume is that of the hull, facets
+match, and spheres are empty.
+"""
 import shutil
 import subprocess
 from collections import Counter
@@ -13,7 +16,8 @@ from scipy.spatial import ConvexHull, Delaunay
 
 @pytest.fixture
 def triangulate(example, tmp_path):
-    """Points in, (tets, the program's report) out."""
+    """A function that triangulates points and returns the tets, or the completed process if
+    `code` is not 0."""
     program = example("delaunay")
 
     def call(points, threads=1, code=0):
@@ -30,14 +34,14 @@ def grid(*counts):
 
 
 def lattice_sphere(radius_squared):
-    """All whole-number points at one distance from the origin: cospherical exactly."""
+    """Return all integer points at one distance from the origin, which are exactly cospherical."""
     reach = int(radius_squared**0.5) + 1
     points = grid(*[2 * reach + 1] * 3) - reach
     return points[(points**2).sum(axis=1) == radius_squared]
 
 
 def in_sphere(tet, point):
-    """The exact sign for whole-number points: positive inside the sphere of a positive tet."""
+    """Return an exact value for integer points: positive inside the sphere of a positive tet."""
     rows = [[int(v) for v in corner - point] for corner in tet]
     rows = [[*r, sum(v * v for v in r)] for r in rows]
 
@@ -51,7 +55,7 @@ def in_sphere(tet, point):
 
 
 def assert_triangulates(points, tets):
-    """Positive tets that meet in whole facets, each point used, the hull filled: any triangulation's duty."""
+    """Assert that tets are positive, meet in whole facets, use every point and fill the convex hull."""
     sizes = volumes(points, tets)
     assert (sizes > 0).all()
     facets = Counter(tuple(sorted(f)) for t in tets.tolist()
@@ -72,7 +76,7 @@ def clouds():
 
 
 @pytest.mark.parametrize("points", [pytest.param(p, id=name) for name, p in clouds()])
-def test_generic_points_have_the_tets_of_qhull(triangulate, points):
+def test_tets_of_generic_points_are_those_of_qhull(triangulate, points):
     tets = triangulate(points)
     assert_triangulates(points, tets)
     assert np.array_equal(tet_set(tets), tet_set(Delaunay(points).simplices))
@@ -80,7 +84,7 @@ def test_generic_points_have_the_tets_of_qhull(triangulate, points):
 
 @pytest.mark.skipif(not shutil.which("tetgen"), reason="tetgen is not installed")
 @pytest.mark.parametrize("n", [100, 20_000])
-def test_generic_points_have_the_tets_of_tetgen(triangulate, tmp_path, n):
+def test_tets_of_generic_points_are_those_of_tetgen(triangulate, tmp_path, n):
     points = np.random.default_rng(n).random((n, 3))
     rows = [f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in enumerate(points.tolist())]
     (tmp_path / "cloud.node").write_text("\n".join([f"{n} 3 0 0", *rows, ""]))
@@ -93,7 +97,7 @@ CGAL = ROOT / "bench-compare" / "target" / "delaunay_cgal"
 
 
 @pytest.mark.skipif(not CGAL.exists(), reason="CGAL's driver is not built (bench-compare/run builds it)")
-def test_as_many_tets_as_cgal(triangulate, tmp_path):
+def test_the_number_of_tets_is_that_of_cgal(triangulate, tmp_path):
     import json
 
     points = np.random.default_rng(2).random((50_000, 3))
@@ -110,7 +114,7 @@ def test_as_many_tets_as_cgal(triangulate, tmp_path):
     pytest.param(lattice_sphere(101), id="sphere 101"),
     pytest.param(np.vstack([lattice_sphere(26), (grid(3, 3, 3) - 1) * 9]), id="sphere in a box"),
 ])
-def test_degenerate_points_keep_the_definition_exactly(triangulate, points):
+def test_spheres_of_degenerate_points_are_exactly_empty(triangulate, points):
     tets = triangulate(points)
     assert_triangulates(points.astype(float), tets)
     for tet in tets:
@@ -118,7 +122,7 @@ def test_degenerate_points_keep_the_definition_exactly(triangulate, points):
         assert all(in_sphere(corners, p) <= 0 for p in points), f"the sphere of {tet} is not empty"
 
 
-def test_the_sign_of_the_definition_is_right():
+def test_the_in_sphere_test_has_the_right_sign():
     corner = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]])
     assert volumes(corner, [[0, 1, 2, 3]])[0] > 0
     assert in_sphere(corner, np.array([1, 1, 1])) > 0
@@ -134,21 +138,21 @@ def test_two_threads_give_the_same_tets(triangulate, points):
     assert np.array_equal(triangulate(points, threads=1), triangulate(points, threads=2))
 
 
-def test_turning_the_points_keeps_the_tets(triangulate):
+def test_rotated_points_have_the_same_tets(triangulate):
     points = np.random.default_rng(4).random((2000, 3))
     turn, _ = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))
     turn *= np.sign(np.linalg.det(turn))
     assert np.array_equal(tet_set(triangulate(points)), tet_set(triangulate(points @ turn.T * 3.0 + 1.0)))
 
 
-@pytest.mark.parametrize("points, word", [
+@pytest.mark.parametrize("points, reason", [
     pytest.param(np.zeros((0, 3)), "", id="none"),
     pytest.param(np.eye(3), "", id="three"),
     pytest.param(np.outer(np.arange(10.0), [1.0, 2.0, 3.0]), "line", id="collinear"),
     pytest.param(grid(4, 4, 1), "plan", id="coplanar"),
     pytest.param(np.ones((50, 3)), "", id="one place"),
 ])
-def test_points_without_a_tet_are_refused_by_name(triangulate, points, word):
+def test_points_that_span_no_volume_are_refused_with_the_reason(triangulate, points, reason):
     done = triangulate(points, code=None)
     assert done.returncode not in (0, 101, -6)
-    assert word in done.stderr
+    assert reason in done.stderr

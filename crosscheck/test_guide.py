@@ -1,16 +1,17 @@
-"""The guide as a reader follows it: every command of docs/guide, run as it stands there, prints what stands there.
+"""The commands of docs/guide print what the pages show.
 
     target/venv/bin/python -m pytest crosscheck/test_guide.py
-    target/venv/bin/python crosscheck/test_guide.py --write           put what the commands print now into the pages
+    target/venv/bin/python crosscheck/test_guide.py --write           update the output in the pages
 
-A page is read from top to bottom, in a folder of its own:
+Each page is processed from top to bottom, in a separate folder:
 
-- a block of code that begins with a comment that is a file's name is that file;
-- a block `console` has commands, after `$ `, and what they print, errors too. A line `...` stands for lines that were left out, and so does `...` at the end of one for
-  the rest of it. Without any line it is not looked at what is printed. `$ echo $?` asks for the exit status of the command before it; without that it is 0;
-- a command with `pkg-config` runs where the C library is installed, in target/capi/install.
+- A block of code that begins with a comment with a file name is written to that file.
+- A block `console` contains commands, after `$ `, and their output including errors. A line `...` stands for
+  omitted lines, and `...` at the end of a line for the rest of it. If no output is shown, none is compared.
+  `$ echo $?` is followed by the exit status of the command before it; the default is 0.
+- A command with `pkg-config` runs only if the C library is installed, in target/capi/install.
 
-Words have to be the same, and what is 0; other numbers may differ: these are for `--write`.
+Text and zeros must be equal. Other numbers may differ; `--write` updates them.
 """
 import os
 import re
@@ -32,14 +33,14 @@ CAPI = ROOT / "target" / "capi" / "install"
 
 
 class Command:
-    """A command of a page, where what it prints stands there, and its exit status."""
+    """A command of a page, the position and the lines of its output there, and its exit status."""
 
-    def __init__(self, words, start, end, printed):
-        self.words, self.start, self.end, self.printed, self.code = words, start, end, printed, 0
+    def __init__(self, text, start, end, printed):
+        self.text, self.start, self.end, self.printed, self.code = text, start, end, printed, 0
 
 
 def steps(text):
-    """The files and commands of a page in their order: (name, contents) or Command."""
+    """Yield the files and commands of a page in order: (name, contents) or Command."""
     for block in BLOCK.finditer(text):
         kind, body = block.groups()
         name = FILE.match(body.split("\n", 1)[0])
@@ -57,18 +58,18 @@ def commands(body, offset):
         offset += len(line)
         if not line.startswith("$ "):
             continue
-        words = line[2:]
-        while words.endswith("\\\n") and lines:
-            words += lines[0]
+        command = line[2:]
+        while command.endswith("\\\n") and lines:
+            command += lines[0]
             offset += len(lines.pop(0))
         start, printed = offset, []
         while lines and not lines[0].startswith("$ "):
             printed.append(lines[0].rstrip("\n"))
             offset += len(lines.pop(0))
-        if words.strip() == "echo $?":
+        if command.strip() == "echo $?":
             found[-1].code = int(printed[0])
         else:
-            found.append(Command(words.strip(), start, offset, printed))
+            found.append(Command(command.strip(), start, offset, printed))
     return found
 
 
@@ -77,7 +78,7 @@ def timeless(line):
 
 
 def masked(line):
-    """Without what differs from machine to machine: times, and numbers but for 0."""
+    """Replace times and all numbers except 0, which may differ between machines."""
     return NUMBER.sub(lambda number: "0" if number.group() == "0" else "N", timeless(line))
 
 
@@ -88,11 +89,11 @@ def fits(expected, line):
 
 
 def matched(expected, lines):
-    """`expected` with the lines that were printed in place of those that stood there, or None."""
+    """Return `expected` with its lines replaced by those that were printed, or None if they do not match."""
     if not expected:
         return [] if not lines else None
     if expected[0] == "...":
-        # Where several lines would do, the one that begins with the same words.
+        # If several lines match, the one that begins with the same words is preferred.
         named = expected[1].split()[:2] if expected[1:] else []
         for k in sorted(range(len(lines) + 1), key=lambda k: k == len(lines) or lines[k].split()[:2] != named):
             rest = matched(expected[1:], lines[k:])
@@ -109,64 +110,67 @@ def matched(expected, lines):
 
 
 def environment(motet, folder):
-    """Where the page's words `motet`, `python` and `pkg-config` find what they ask for."""
+    """Return an environment in which `motet`, `python` and `pkg-config` use this build."""
     programs = folder / ".bin"
     programs.mkdir()
     (programs / "motet").symlink_to(motet)
     (programs / "python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
     (programs / "python").chmod(0o755)
-    # The loader's path stands for an installation where the system looks.
+    # The library path replaces an installation in a system folder.
     return dict(os.environ, PATH=f"{programs}:{os.environ['PATH']}", PKG_CONFIG_PATH=str(CAPI / "lib" / "pkgconfig"), LD_LIBRARY_PATH=str(CAPI / "lib"))
 
 
 def follow(page, motet, folder):
-    """Does all that a page says; yields each command that was run, its exit status and what it printed, by lines."""
-    surroundings = environment(motet, folder)
+    """Write the files and run the commands of a page.
+
+    Yield each command, its exit status and printed lines.
+    """
+    variables = environment(motet, folder)
     with_library = (CAPI / "lib" / "pkgconfig" / "motet.pc").exists() and shutil.which("pkg-config") and shutil.which("gcc") and shutil.which("gfortran")
-    left_out = set()
+    not_built = set()
     for step in steps(page.read_text()):
         if isinstance(step, tuple):
             (folder / step[0]).write_text(step[1])
             continue
-        if "pkg-config" in step.words and not with_library:
-            left_out.add("./" + step.words.split("-o ")[1].split()[0])
-        elif step.words.split()[0] not in left_out:
-            done = subprocess.run(["bash", "-c", step.words], cwd=folder, env=surroundings, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+        if "pkg-config" in step.text and not with_library:
+            not_built.add("./" + step.text.split("-o ")[1].split()[0])
+        elif step.text.split()[0] not in not_built:
+            done = subprocess.run(["bash", "-c", step.text], cwd=folder, env=variables, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
             lines = [line.rstrip() for line in done.stdout.strip("\n").splitlines()]
             yield step, done.returncode, lines
 
 
-@pytest.mark.skipif(os.name == "nt", reason="the commands are those of a shell")
+@pytest.mark.skipif(os.name == "nt", reason="the commands need a POSIX shell")
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_commands_do_what_the_page_says(page, motet, tmp_path):
+def test_commands_print_what_the_page_shows(page, motet, tmp_path):
     pytest.importorskip("motet", reason="the package is not installed: ./test does it")
     wrong = []
     for command, code, lines in follow(page, motet.path.resolve(), tmp_path):
-        told = "\n".join(lines)
-        assert code == command.code, f"$ {command.words}\nexit status {code}, the page says {command.code}\n{told}"
+        output = "\n".join(lines)
+        assert code == command.code, f"$ {command.text}\nexit status {code}, the page shows {command.code}\n{output}"
         if command.printed and matched(command.printed, lines) is None:
-            wrong.append(f"$ {command.words}\n{told}\n--- the page says\n" + "\n".join(command.printed))
+            wrong.append(f"$ {command.text}\n{output}\n--- the page shows\n" + "\n".join(command.printed))
     assert not wrong, "\n\n".join(wrong)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_links_lead_somewhere(page):
+def test_linked_files_exist(page):
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text()):
         assert target.startswith("https://") or (page.parent / target).exists(), f"{page.name}: {target}"
 
 
 def write(motet, pages):
-    """Puts what the commands print now into the pages; where other lines are printed than stood there, all of them."""
+    """Update the output in the pages; where lines do not match, replace the whole output of the command."""
     for page in pages:
         text = page.read_text()
         changes = []
         with tempfile.TemporaryDirectory() as folder:
             for command, code, lines in follow(page, motet, Path(folder)):
                 if code != command.code:
-                    print(f"{page.name}: $ {command.words}\n  exit status {code}, the page says {command.code}\n  " + "\n  ".join(lines))
+                    print(f"{page.name}: $ {command.text}\n  exit status {code}, the page shows {command.code}\n  " + "\n  ".join(lines))
                 if command.printed and (now := matched(command.printed, lines)) != command.printed:
                     if now is None:
-                        print(f"{page.name}: $ {command.words}: other lines than stood there")
+                        print(f"{page.name}: $ {command.text}: lines differ, replaced")
                     changes.append((command, lines if now is None else now))
         for command, lines in reversed(changes):
             text = text[: command.start] + "".join(f"{line}\n" for line in lines) + text[command.end :]

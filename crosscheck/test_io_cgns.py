@@ -1,4 +1,4 @@
-"""CGNS against VTK's reader, Gmsh, meshio, and the library and programs of CGNS itself."""
+"""CGNS files compared with VTK's reader, Gmsh, meshio, and the library and programs of CGNS."""
 import shutil
 import subprocess
 
@@ -12,7 +12,7 @@ cells = pyvista.examples.cells
 
 
 def read_cgns(path, patches=False):
-    """What VTK reads: the zone, and with `patches` its boundary conditions by name."""
+    """Read a zone with VTK; with `patches` also its boundary conditions by name."""
     reader = vtkCGNSReader()
     reader.SetFileName(str(path))
     reader.UpdateInformation()
@@ -65,7 +65,7 @@ DATA = {
 }
 
 
-# VTK does not know PYRA_13.
+# VTK does not support PYRA_13.
 ALL_DATA = DATA | {"pyramid": lambda: side_by_side(cells.QuadraticPyramid())}
 
 
@@ -80,18 +80,18 @@ def assert_same_grid(ours, theirs):
 
 
 @pytest.mark.parametrize("name", DATA)
-def test_vtk_reads_what_motet_writes(motet, tmp_path, name):
+def test_vtk_reads_files_of_motet(motet, tmp_path, name):
     data = DATA[name]()
     data.save(tmp_path / "in.vtu")
-    said = motet("convert", tmp_path / "in.vtu", tmp_path / "out.cgns")
-    assert "warning" not in said.stderr
+    done = motet("convert", tmp_path / "in.vtu", tmp_path / "out.cgns")
+    assert "warning" not in done.stderr
     assert_same_grid(read_cgns(tmp_path / "out.cgns"), data)
     motet("convert", tmp_path / "out.cgns", tmp_path / "back.vtu")
     assert_same_grid(pyvista.read(tmp_path / "back.vtu"), data)
 
 
 def faces_of(grid):
-    """Each cell as the set of its faces."""
+    """Return each cell as the set of its faces."""
     return [frozenset(frozenset(face.point_ids) for face in cell.faces) for cell in grid.cell]
 
 
@@ -100,7 +100,7 @@ def polyhedra():
                   cells.Hexahedron().translate((9, 0, 0)))
 
 
-def test_vtk_reads_polyhedra(motet, tmp_path):
+def test_vtk_reads_polyhedra_of_motet(motet, tmp_path):
     data = polyhedra()
     data.clear_data()
     data.cell_data["index"] = np.arange(data.n_cells) * 1.5
@@ -112,13 +112,16 @@ def test_vtk_reads_polyhedra(motet, tmp_path):
     assert faces_of(read) == faces_of(data)
     motet("convert", tmp_path / "out.cgns", tmp_path / "back.vtu")
     back = pyvista.read(tmp_path / "back.vtu")
-    # The first is a tet, and known to be one by its faces.
+    # The first polyhedron has the faces of a tet, and is read as one.
     assert faces_of(back) == faces_of(data) and back.celltypes.tolist() == [10, 10, 10, 10, 12]
     assert np.allclose(back.compute_cell_sizes()["Volume"], data.compute_cell_sizes()["Volume"])
 
 
 def labelled():
-    """Tets in two regions, their hull in three patches of which one has no name; values on all cells."""
+    """Tets in two regions and their boundary in three patches, one of them without a name.
+
+    Values on all cells.
+    """
     volume = tets()
     grid = joined(volume, volume.extract_surface(algorithm=None).cast_to_unstructured_grid())
     grid.clear_data()
@@ -139,7 +142,7 @@ def labelled_file(motet, tmp_path):
     return tmp_path / "out.cgns"
 
 
-def test_patches_are_boundary_conditions(motet, labelled_file):
+def test_patches_are_written_as_boundary_conditions(motet, labelled_file):
     data = labelled()
     inner, patches = read_cgns(labelled_file, patches=True)
     assert inner.n_cells == (data.celltypes == 10).sum()
@@ -155,7 +158,7 @@ def test_patches_are_boundary_conditions(motet, labelled_file):
     assert {name for name in back.field_data.keys()} == set(data.field_data.keys())
 
 
-def test_gmsh_reads_what_motet_writes(labelled_file):
+def test_gmsh_reads_files_of_motet(labelled_file):
     gmsh = pytest.importorskip("gmsh")
     gmsh.initialize()
     try:
@@ -173,7 +176,7 @@ def test_gmsh_reads_what_motet_writes(labelled_file):
 
 
 @pytest.mark.parametrize("order", [1, 2])
-def test_motet_reads_what_gmsh_writes(motet, tmp_path, order):
+def test_motet_reads_files_of_gmsh(motet, tmp_path, order):
     gmsh = pytest.importorskip("gmsh")
     gmsh.initialize()
     try:
@@ -203,7 +206,7 @@ def test_motet_reads_what_gmsh_writes(motet, tmp_path, order):
             assert ours[what][name][measure] == pytest.approx(theirs[what][name][measure])
 
 
-def test_meshio_tets(motet, tmp_path):
+def test_motet_reads_tets_of_meshio(motet, tmp_path):
     pytest.importorskip("h5py")
     meshio = pytest.importorskip("meshio")
     data = tets()
@@ -218,11 +221,11 @@ def test_meshio_tets(motet, tmp_path):
 def program(name):
     found = shutil.which(name)
     if found is None:
-        pytest.skip(f"{name} is not here")
+        pytest.skip(f"{name} is not installed")
     return found
 
 
-def test_its_own_checker_finds_no_errors(motet, tmp_path, labelled_file):
+def test_cgnscheck_finds_no_errors(motet, tmp_path, labelled_file):
     check = program("cgnscheck")
     files = [labelled_file]
     for name in ALL_DATA:
@@ -235,12 +238,12 @@ def test_its_own_checker_finds_no_errors(motet, tmp_path, labelled_file):
         assert "ERROR" not in done.stdout + done.stderr, done.stdout
 
 
-def test_the_older_form_is_refused_with_a_remedy(motet, tmp_path, labelled_file):
+def test_adf_files_are_refused_with_a_remedy(motet, tmp_path, labelled_file):
     done = subprocess.run([program("cgnsconvert"), "-a", str(labelled_file), str(tmp_path / "old.cgns")],
                           capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stdout + done.stderr
-    said = motet("info", tmp_path / "old.cgns", code=3).stderr
-    assert "ADF" in said and "cgnsconvert -h" in said
+    error = motet("info", tmp_path / "old.cgns", code=3).stderr
+    assert "ADF" in error and "cgnsconvert -h" in error
     subprocess.run([program("cgnsconvert"), "-h", str(tmp_path / "old.cgns"), str(tmp_path / "new.cgns")], check=True,
                    capture_output=True, timeout=60)
     ours, theirs = motet.json("info", tmp_path / "new.cgns"), motet.json("info", labelled_file)
@@ -301,26 +304,26 @@ int main(void) {
 
 @pytest.fixture
 def from_library(tmp_path):
-    """A folder with what a program on the library of CGNS has written."""
+    """A folder with files written by a program that uses the CGNS library."""
     compiler = program("cc")
     (tmp_path / "lib.c").write_text(WITH_LIBRARY)
     built = subprocess.run([compiler, "lib.c", "-o", "lib", "-lcgns"], cwd=tmp_path, capture_output=True, text=True)
     if built.returncode:
-        pytest.skip("the library of CGNS is not here, or of another version")
+        pytest.skip("the CGNS library is not installed, or has another version")
     subprocess.run([str(tmp_path / "lib")], cwd=tmp_path, check=True, timeout=60)
     return tmp_path
 
 
 def test_links_are_refused_with_a_remedy(motet, from_library):
-    said = motet("info", from_library / "linked.cgns", code=3).stderr
-    assert "/Base/Zone/GridCoordinates" in said and "is a link" in said
-    remedy = said[said.index("cgnsconvert"):].split()[1:4]
+    error = motet("info", from_library / "linked.cgns", code=3).stderr
+    assert "/Base/Zone/GridCoordinates" in error and "is a link" in error
+    remedy = error[error.index("cgnsconvert"):].split()[1:4]
     subprocess.run([program("cgnsconvert"), *remedy, "linked.cgns", "whole.cgns"], cwd=from_library, check=True,
                    capture_output=True, timeout=60)
     assert motet.json("info", from_library / "whole.cgns")["cells"] == {"tetra": 2}
 
 
-def test_motet_reads_what_the_library_writes(motet, from_library):
+def test_motet_reads_files_of_the_cgns_library(motet, from_library):
     motet("convert", from_library / "lib.cgns", from_library / "out.vtu")
     mesh = pyvista.read(from_library / "out.vtu")
     assert mesh.n_points == 12 and mesh.celltypes.tolist() == [10, 10, 5, 5] * 2

@@ -1,4 +1,5 @@
-"""MSH, STL, OBJ, Medit, Abaqus, TetGen, DOLFIN XML and SimVascular folders against Gmsh, meshio and VTK."""
+"""MSH, STL, OBJ, Medit, Abaqus, TetGen, DOLFIN XML and SimVascular folders compared with Gmsh, meshio and
+VTK."""
 import gzip
 import itertools
 import os
@@ -36,7 +37,7 @@ def gmsh_write(path, version, encoding):
 
 
 def tet_box(order):
-    """A box cut in two regions, its faces in named patches, one curve and one point named."""
+    """Mesh a box of two regions, with named patches, one named curve and one named point."""
     gmsh.model.add("box")
     a = gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
     b = gmsh.model.occ.addBox(1, 0, 0, 1, 1, 1)
@@ -56,7 +57,7 @@ def tet_box(order):
 
 
 def layered_box(kind, order):
-    """A box of hexahedra or of prisms, in two groups."""
+    """Mesh a box with hexahedra or prisms, in two groups."""
     gmsh.model.add(kind)
     base = gmsh.model.occ.addRectangle(0, 0, 0, 1, 1)
     gmsh.model.occ.extrude([(2, base)], 0, 0, 1, numElements=[2], recombine=True)
@@ -72,7 +73,7 @@ def layered_box(kind, order):
 
 
 def one_element(element_type):
-    """One element of a type, its nodes where Gmsh says that they lie."""
+    """Create one element of a type with the node positions of Gmsh; return these."""
     _, dim, _, n, local, _ = gmsh.model.mesh.getElementProperties(element_type)
     local = np.reshape(local, (n, -1))
     points = np.zeros((n, 3))
@@ -94,7 +95,7 @@ def vtk_grid(path):
 
 
 def gmsh_content():
-    """What Gmsh has open: nodes, elements of each type by their numbers, groups, each element's group and entity."""
+    """Return the nodes, the elements by type with entity and groups, and the group names of Gmsh's model."""
     tags, points, _ = gmsh.model.mesh.getNodes()
     order = np.argsort(tags)
     points = points.reshape(-1, 3)[order]
@@ -129,7 +130,7 @@ BUILDS = {
 
 @pytest.mark.parametrize("version, encoding", MSH_FORMS)
 @pytest.mark.parametrize("build", BUILDS)
-def test_gmsh_finds_its_own_mesh_in_what_motet_writes(motet, gmsh_session, tmp_path, build, version, encoding):
+def test_gmsh_reads_its_own_mesh_from_files_of_motet(motet, gmsh_session, tmp_path, build, version, encoding):
     BUILDS[build]()
     source = tmp_path / "source.msh"
     gmsh_write(source, version, encoding)
@@ -138,13 +139,14 @@ def test_gmsh_finds_its_own_mesh_in_what_motet_writes(motet, gmsh_session, tmp_p
         copy = tmp_path / f"{out_version}-{out_encoding}.msh"
         motet("convert", source, copy, "--version", out_version, "--encoding", out_encoding)
         copy_points, copy_elements, copy_names = opened(copy)
-        # In the order of the file here, by number in the original: compare as sets of located elements.
+        # The order of nodes differs, so elements are compared as sets by the coordinates of their nodes.
         assert_same_located(copy_points, copy_elements, points, elements)
         assert copy_names == names
 
 
 def assert_same_located(points, elements, other_points, other_elements):
-    """Equal elements, nodes told by where they lie and in which order, with entity and group."""
+    """Assert equal elements, with nodes identified by their coordinates, in order, and with entity and
+    groups."""
     assert len(points) == len(other_points)
     assert set(elements) == set(other_elements)
 
@@ -157,7 +159,7 @@ def assert_same_located(points, elements, other_points, other_elements):
 
 @pytest.mark.parametrize("version, encoding", MSH_FORMS)
 @pytest.mark.parametrize("build", BUILDS)
-def test_meshio_reads_the_same_from_the_copy(motet, gmsh_session, tmp_path, build, version, encoding):
+def test_meshio_reads_the_same_mesh_from_a_copy(motet, gmsh_session, tmp_path, build, version, encoding):
     BUILDS[build]()
     source, copy = tmp_path / "source.msh", tmp_path / "copy.msh"
     gmsh_write(source, version, encoding)
@@ -170,7 +172,7 @@ def test_meshio_reads_the_same_from_the_copy(motet, gmsh_session, tmp_path, buil
 
 @pytest.mark.parametrize("version, encoding", MSH_FORMS)
 @pytest.mark.parametrize("element_type", TYPES)
-def test_nodes_of_every_element_stand_in_the_order_of_vtk(motet, gmsh_session, tmp_path, element_type, version, encoding):
+def test_nodes_of_every_element_are_in_the_order_of_vtk(motet, gmsh_session, tmp_path, element_type, version, encoding):
     points = one_element(element_type)
     source, target, back = tmp_path / "one.msh", tmp_path / "one.vtu", tmp_path / "back.msh"
     gmsh_write(source, version, encoding)
@@ -179,9 +181,9 @@ def test_nodes_of_every_element_stand_in_the_order_of_vtk(motet, gmsh_session, t
     assert grid.GetCellType(0) == TYPES[element_type]
     cell = grid.GetCell(0)
     found = vtk_to_numpy(cell.GetPoints().GetData())
-    # The same points in another order...
+    # The same points, possibly in another order.
     assert sorted(map(tuple, found)) == sorted(map(tuple, points))
-    # ...so that a node between corners lies between them, on each edge and each face, and the volume is positive.
+    # Middle nodes lie between the corners of their edge or face, and the volume is positive.
     for part, n_corners in parts_of(cell):
         middle = vtk_to_numpy(part.GetPoints().GetData())
         corners, further = middle[:n_corners], middle[n_corners:]
@@ -201,7 +203,7 @@ def test_nodes_of_every_element_stand_in_the_order_of_vtk(motet, gmsh_session, t
 
 
 def parts_of(cell):
-    """The edges and faces of a cell, with their number of corners."""
+    """Return the edges and faces of a cell, with their number of corners."""
     result = [(deep(cell.GetEdge(i)), 2) for i in range(cell.GetNumberOfEdges())]
     for i in range(cell.GetNumberOfFaces()):
         face = cell.GetFace(i)
@@ -210,14 +212,14 @@ def parts_of(cell):
 
 
 def deep(cell):
-    """A copy: VTK gives out the same object for the next edge."""
+    """Return a copy: VTK reuses the object for the next edge."""
     copy = cell.NewInstance()
     copy.DeepCopy(cell)
     return copy
 
 
 @pytest.mark.parametrize("version, encoding", MSH_FORMS)
-def test_a_pyramid_of_fourteen_nodes_comes_back(motet, gmsh_session, tmp_path, version, encoding):
+def test_a_pyramid_of_fourteen_nodes_is_preserved(motet, gmsh_session, tmp_path, version, encoding):
     points = one_element(14)
     source, copy = tmp_path / "one.msh", tmp_path / "copy.msh"
     gmsh_write(source, version, encoding)
@@ -228,7 +230,7 @@ def test_a_pyramid_of_fourteen_nodes_comes_back(motet, gmsh_session, tmp_path, v
 
 
 @pytest.mark.parametrize("version, encoding", MSH_FORMS)
-def test_gmsh_reads_our_arrays(motet, gmsh_session, tmp_path, version, encoding):
+def test_gmsh_reads_arrays_of_motet(motet, gmsh_session, tmp_path, version, encoding):
     tet_box(1)
     source, with_data, copy = (tmp_path / name for name in ("source.msh", "data.vtu", "copy.msh"))
     gmsh_write(source, "4.1", "binary")
@@ -252,7 +254,7 @@ def test_gmsh_reads_our_arrays(motet, gmsh_session, tmp_path, version, encoding)
 
 
 @pytest.mark.parametrize("version, encoding", MSH_FORMS)
-def test_sparse_numbers_parameters_and_unknown_sections(motet, gmsh_session, tmp_path, version, encoding):
+def test_sparse_node_numbers_parameters_and_unknown_sections_are_read(motet, gmsh_session, tmp_path, version, encoding):
     gmsh.model.add("periodic")
     gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
     gmsh.model.occ.synchronize()
@@ -271,7 +273,7 @@ def test_sparse_numbers_parameters_and_unknown_sections(motet, gmsh_session, tmp
 
 
 @pytest.mark.parametrize("version, encoding", MSH_FORMS)
-def test_a_partitioned_mesh(motet, gmsh_session, tmp_path, version, encoding):
+def test_partitions_are_read(motet, gmsh_session, tmp_path, version, encoding):
     tet_box(1)
     n_tets = len(gmsh.model.mesh.getElementsByType(4)[0])
     gmsh.model.mesh.partition(3)
@@ -285,7 +287,7 @@ def test_a_partitioned_mesh(motet, gmsh_session, tmp_path, version, encoding):
 
 
 def swap_bytes(path):
-    """Turns a binary MSH 4.1 file of Gmsh's around, as a machine of the other byte order would have written it."""
+    """Convert a binary MSH 4.1 file of Gmsh to the other byte order."""
     data = path.read_bytes()
 
     def section(name):
@@ -332,7 +334,7 @@ def swap_bytes(path):
     path.write_bytes(bytes(out))
 
 
-def test_the_other_byte_order_of_msh(motet, gmsh_session, tmp_path):
+def test_msh_files_of_either_byte_order_are_read_alike(motet, gmsh_session, tmp_path):
     tet_box(1)
     source, straight, turned = (tmp_path / name for name in ("source.msh", "straight.msh", "turned.msh"))
     gmsh_write(source, "4.1", "binary")
@@ -346,7 +348,7 @@ def test_the_other_byte_order_of_msh(motet, gmsh_session, tmp_path):
 
 
 def mixed_mesh(kinds, seed=0):
-    """Random points and ids: files do not care about shapes. Arrays on points and cells."""
+    """Return a mesh of random points and ids; the shapes of cells do not matter for files."""
     rng = np.random.default_rng(seed)
     counts = meshio._mesh.num_nodes_per_cell
     points = rng.normal(size=(60, 3)) * 10.0 ** rng.integers(-9, 9, size=(60, 1))
@@ -356,7 +358,7 @@ def mixed_mesh(kinds, seed=0):
 
 @pytest.mark.parametrize("form", ["gmsh22", "gmsh"])
 @pytest.mark.parametrize("binary", [False, True])
-def test_msh_of_meshio(motet, tmp_path, form, binary):
+def test_meshio_reads_its_own_msh_mesh_from_a_copy(motet, tmp_path, form, binary):
     mesh = mixed_mesh(["vertex", "line", "triangle", "quad", "tetra", "hexahedron", "wedge", "pyramid", "tetra10",
                        "hexahedron20", "triangle6", "quad8", "line3", "hexahedron27", "quad9"])
     rng = np.random.default_rng(2)
@@ -367,13 +369,13 @@ def test_msh_of_meshio(motet, tmp_path, form, binary):
     mesh.field_data = {"a wall": np.array([3, 2]), "blood": np.array([5, 3])}
     if form == "gmsh":
         entities = [(meshio._mesh.topological_dimension[block.type], 1 + i) for i, block in enumerate(mesh.cells)]
-        # In rising order: meshio writes nodes by entity, and reads arrays as if they still stood in their order.
+        # In ascending order: meshio writes nodes by entity, but reads arrays as if nodes kept their order.
         mesh.point_data["gmsh:dim_tags"] = np.array(sorted(map(tuple, np.resize(entities, (60, 2)))))
     else:
-        # meshio cannot read arrays on cells of several kinds in version 2.2.
+        # In version 2.2, meshio cannot read arrays on cells of several kinds.
         del mesh.cell_data["q"]
     if not binary:
-        # meshio writes them as text that it cannot read (numpy 2 puts its type around each number).
+        # meshio writes arrays as text that it cannot read (numpy 2 adds its type to each number).
         mesh.point_data = {name: values for name, values in mesh.point_data.items() if name not in ("u", "p")}
         mesh.cell_data.pop("q", None)
     source = tmp_path / "source.msh"
@@ -390,7 +392,7 @@ def test_msh_of_meshio(motet, tmp_path, form, binary):
 
 @pytest.mark.parametrize("ending", ["mesh", "meshb"])
 @pytest.mark.parametrize("source_ending", ["mesh", "meshb"])
-def test_medit_of_meshio(motet, tmp_path, source_ending, ending):
+def test_meshio_reads_its_own_medit_mesh_from_a_copy(motet, tmp_path, source_ending, ending):
     mesh = mixed_mesh(["line", "triangle", "quad", "tetra", "hexahedron", "wedge", "pyramid"])
     mesh.point_data = {"medit:ref": np.arange(60)}
     mesh.cell_data = {"medit:ref": [np.arange(4) + 10 * i for i in range(len(mesh.cells))]}
@@ -401,8 +403,8 @@ def test_medit_of_meshio(motet, tmp_path, source_ending, ending):
 
 
 @pytest.mark.parametrize("type_", [np.int32, np.int64])
-def test_medit_binary_of_meshio_in_versions_3_and_4(motet, tmp_path, type_):
-    """meshio writes version 3 for ids of 32 bits, 4 for others."""
+def test_meshio_reads_its_own_binary_medit_meshes_of_versions_3_and_4(motet, tmp_path, type_):
+    """meshio writes version 3 for ids of 32 bits, and version 4 for others."""
     mesh = mixed_mesh(["tetra"])
     for block in mesh.cells:
         block.data = block.data.astype(type_)
@@ -414,8 +416,8 @@ def test_medit_binary_of_meshio_in_versions_3_and_4(motet, tmp_path, type_):
 
 
 @pytest.mark.parametrize("build", ["tets", "tets of second order", "hexahedra", "prisms"])
-def test_medit_of_gmsh_and_back(motet, gmsh_session, tmp_path, build):
-    """Gmsh writes the text form; what motet makes of it in binary and again in text is the same mesh to Gmsh."""
+def test_gmsh_reads_its_own_medit_mesh_from_a_copy(motet, gmsh_session, tmp_path, build):
+    """Gmsh writes text, which motet converts to binary and back to text."""
     BUILDS[build]()
     source, binary, copy = (tmp_path / name for name in ("source.mesh", "binary.meshb", "copy.mesh"))
     gmsh.write(str(source))
@@ -427,21 +429,21 @@ def test_medit_of_gmsh_and_back(motet, gmsh_session, tmp_path, build):
 
 
 @pytest.mark.parametrize("ending", ["sol", "solb"])
-def test_a_solution_of_medit_as_the_manual_lays_it_out(motet, tmp_path, ending):
-    """What motet writes, read with numpy by the layout of RT-422: a scalar, a vector and a symmetric tensor."""
+def test_medit_solutions_have_the_layout_of_the_manual(motet, tmp_path, ending):
+    """A scalar, a vector and a symmetric tensor, read with numpy by the layout of RT-422."""
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
     names = {"a": np.arange(4) / 3, "b": np.arange(12).reshape(4, 3) / 7, "c": np.arange(24).reshape(4, 6) / 11}
     source = tmp_path / "source.vtu"
     meshio.Mesh(points, [("tetra", [[0, 1, 2, 3]])], point_data=names).write(source)
     out = tmp_path / f"out.{ending}"
     motet("convert", source, out)
-    # VTK has xx yy zz xy yz xz, Medit the lower half row by row.
+    # The order of components is xx yy zz xy yz xz in VTK, and the lower triangle row by row in Medit.
     rows = np.hstack([names["a"][:, None], names["b"], names["c"][:, [0, 3, 1, 5, 4, 2]]])
     if ending == "sol":
-        words = out.read_text().split()
-        assert words[:10] == ["MeshVersionFormatted", "2", "Dimension", "3", "SolAtVertices", "4", "3", "1", "2", "3"]
-        assert words[-1] == "End"
-        found = np.array(words[10:-1], float).reshape(4, 10)
+        tokens = out.read_text().split()
+        assert tokens[:10] == ["MeshVersionFormatted", "2", "Dimension", "3", "SolAtVertices", "4", "3", "1", "2", "3"]
+        assert tokens[-1] == "End"
+        found = np.array(tokens[10:-1], float).reshape(4, 10)
     else:
         data = out.read_bytes()
         head = np.frombuffer(data, "<i4", 12).tolist()
@@ -456,8 +458,9 @@ def test_a_solution_of_medit_as_the_manual_lays_it_out(motet, tmp_path, ending):
         assert_same_array(arrays[ours], names[name])
 
 
-def test_abaqus_of_meshio(motet, tmp_path):
-    """Of what meshio knows, without curves of three nodes, which it leaves in the order of VTK."""
+def test_meshio_reads_its_own_abaqus_mesh_from_a_copy(motet, tmp_path):
+    """All kinds of cells that meshio supports, except lines of three nodes, which it leaves in
+    VTK's order."""
     mesh = mixed_mesh(["line", "triangle", "quad", "tetra", "hexahedron", "wedge", "triangle6", "quad8", "quad9", "tetra10",
                        "hexahedron20"])
     n = len(mesh.cells)
@@ -473,7 +476,7 @@ def test_abaqus_of_meshio(motet, tmp_path):
     for name, places in theirs.point_sets.items():
         assert_same_array(ours.point_sets[name], places)
     for name, blocks in mesh.cell_sets.items():
-        # meshio leaves out blocks without members.
+        # meshio omits blocks without members.
         blocks = [block for block in blocks if len(block)]
         found = [block for block in ours.cell_sets[name] if len(block)]
         assert len(found) == len(blocks)
@@ -482,12 +485,12 @@ def test_abaqus_of_meshio(motet, tmp_path):
 
 
 @pytest.mark.parametrize("build", BUILDS)
-def test_abaqus_of_gmsh(motet, gmsh_session, tmp_path, build):
-    """Gmsh writes, motet reads; what motet makes of it is the same mesh to Gmsh, with the groups as labels."""
+def test_gmsh_reads_its_own_abaqus_mesh_from_a_copy(motet, gmsh_session, tmp_path, build):
+    """The copy has the same cells, with groups as labels."""
     # Gmsh writes prisms of 18 nodes as if they had 6.
     gmsh.option.setNumber("Mesh.SecondOrderIncomplete", int(build.startswith("prisms")))
     BUILDS[build]()
-    # It writes fewer digits than there are.
+    # Gmsh does not write all digits.
     for tag, x in zip(*(part.reshape(-1, n) for part, n in zip(gmsh.model.mesh.getNodes()[:2], (1, 3)))):
         gmsh.model.mesh.setNode(int(tag[0]), (x.round(9) + 0.0).tolist(), [])
     points, elements, names = gmsh_content()
@@ -503,7 +506,7 @@ def test_abaqus_of_gmsh(motet, gmsh_session, tmp_path, build):
         for kind in set(elements) & set(dims):
             for nodes, _, groups in elements[kind]:
                 name = [names[dims[kind], group].replace(" ", "_") for group in groups]
-                # Gmsh writes no others.
+                # Gmsh writes only elements in groups.
                 if name:
                     found.append((kind, tuple(map(tuple, points[list(nodes)])), name))
         return sorted(found)
@@ -514,7 +517,7 @@ def test_abaqus_of_gmsh(motet, gmsh_session, tmp_path, build):
 
 
 @pytest.mark.parametrize("element_type", [2, 3, 4, 5, 6, 7, 8, 9, 16, 10, 11, 17, 12, 18, 19])
-def test_nodes_of_abaqus_stand_in_the_order_of_vtk(motet, gmsh_session, tmp_path, element_type):
+def test_nodes_of_abaqus_elements_are_in_the_order_of_vtk(motet, gmsh_session, tmp_path, element_type):
     gmsh.option.setNumber("Mesh.SaveAll", 1)
     points = one_element(element_type)
     source, target, back, again = (tmp_path / name for name in ("one.inp", "one.vtu", "back.inp", "again.vtu"))
@@ -538,7 +541,7 @@ def test_nodes_of_abaqus_stand_in_the_order_of_vtk(motet, gmsh_session, tmp_path
         size.Update()
         assert size.GetOutput().GetCellData().GetArray("Volume").GetValue(0) > 0
     if element_type == 19:
-        return  # Abaqus has no pyramids of second order: motet writes none.
+        return  # Abaqus has no quadratic pyramids, so motet cannot write them.
     motet("convert", target, back)
     numbers = [[int(x) for line in lines.split(",\n") for x in line.split(",") if x.strip()]
                for lines in (path.read_text().split("*ELEMENT")[1].split("\n", 1)[1].split("*")[0].replace(" ", "").strip()
@@ -550,14 +553,15 @@ def test_nodes_of_abaqus_stand_in_the_order_of_vtk(motet, gmsh_session, tmp_path
     np.testing.assert_allclose(ours, theirs, atol=1e-14)
 
 
-# Corners of the faces S1, S2, ... as the CalculiX manual lists them (*SURFACE).
+# Corners of the faces S1, S2, ... by the CalculiX manual (*SURFACE).
 FACES_OF_ABAQUS = {"C3D4": ["123", "142", "243", "341"], "C3D10": ["123", "142", "243", "341"],
                    "C3D8": ["1234", "5876", "1562", "2673", "3784", "4851"], "C3D6": ["123", "456", "1254", "2365", "3146"]}
 
 
 @pytest.mark.parametrize("build", ["tets", "tets of second order", "hexahedra", "prisms"])
 def test_surfaces_of_abaqus_are_the_patches(motet, gmsh_session, tmp_path, build):
-    """Surfaces that motet writes lie where the patches lie; without the surface cells they alone bring these back."""
+    """Surfaces that motet writes coincide with the patches, and restore these if surface cells
+    are missing."""
     BUILDS[build]()
     source, out, bare, back = (tmp_path / name for name in ("source.msh", "out.inp", "bare.inp", "back.msh"))
     gmsh_write(source, "4.1", "binary")
@@ -598,7 +602,7 @@ def test_surfaces_of_abaqus_are_the_patches(motet, gmsh_session, tmp_path, build
         assert found == expected
 
 
-def test_tetgen_of_meshio(motet, tmp_path):
+def test_meshio_reads_its_own_tetgen_mesh_from_a_copy(motet, tmp_path):
     mesh = mixed_mesh(["tetra"])
     mesh.point_data = {"tetgen:attr1": np.random.default_rng(3).normal(size=60), "tetgen:ref": np.arange(60)}
     mesh.cell_data = {"tetgen:ref": [np.arange(1, 5)]}
@@ -613,7 +617,7 @@ def test_tetgen_of_meshio(motet, tmp_path):
 
 @pytest.mark.parametrize("ending", ["stl", "obj", "ply", "off"])
 @pytest.mark.parametrize("binary", [False, True])
-def test_surfaces_of_meshio(motet, tmp_path, ending, binary):
+def test_meshio_reads_its_own_surfaces_from_a_copy(motet, tmp_path, ending, binary):
     mesh = mixed_mesh(["triangle"])
     mesh.points = mesh.points.astype(np.float32).astype(float)
     source, copy = tmp_path / f"source.{ending}", tmp_path / f"copy.{ending}"
@@ -624,7 +628,7 @@ def test_surfaces_of_meshio(motet, tmp_path, ending, binary):
 
 
 @pytest.mark.parametrize("binary", [False, True])
-def test_ply_of_meshio_with_arrays(motet, tmp_path, binary):
+def test_meshio_reads_its_own_ply_arrays_from_a_copy(motet, tmp_path, binary):
     mesh = mixed_mesh(["triangle", "quad"])
     random = np.random.default_rng(5)
     mesh.point_data = {"p": random.normal(size=len(mesh.points)), "q": random.integers(-9, 9, len(mesh.points)).astype(np.int32)}
@@ -642,7 +646,7 @@ def corners(mesh):
 # ---- VTK
 
 
-def test_vtk_reads_our_surfaces(motet, gmsh_session, tmp_path):
+def test_vtk_reads_surfaces_of_motet(motet, gmsh_session, tmp_path):
     tet_box(1)
     source = tmp_path / "source.msh"
     gmsh_write(source, "4.1", "binary")
@@ -675,7 +679,7 @@ REFUSED = {"trimesh_empty.stl", "trimesh_stl_empty_bin.stl", "nvidia_aneurysm_cl
 
 
 @pytest.mark.parametrize("name", real_files())
-def test_real_files(motet, data, tmp_path, name):
+def test_real_files_are_converted_without_changes(motet, data, tmp_path, name):
     source = data / name
     if source.name in REFUSED:
         done = motet("convert", source, tmp_path / "out.vtu", code=3)
@@ -693,8 +697,11 @@ def test_real_files(motet, data, tmp_path, name):
 
 
 def for_meshio(source, folder):
-    """The file, or a copy that meshio reads in full: it unpacks nothing, takes Medit's version 1 in single
-    precision, and wants as many normals as vertices."""
+    """Return the file, or a copy that meshio can read completely.
+
+    meshio does not decompress files, reads Medit's version 1 in single precision, and requires as many
+    normals as vertices.
+    """
     text = source.read_bytes() if source.suffix in (".gz", ".mesh", ".obj") else None
     if source.suffix == ".gz":
         text = gzip.decompress(text)
@@ -710,9 +717,12 @@ def for_meshio(source, folder):
 
 
 def compare(found, expected, source, ending):
-    """Equal points, cells and labels; STL files have no vertices of their own, DOLFIN's no sense of cells."""
+    """Assert equal points, cells and labels.
+
+    STL files have no shared vertices, and DOLFIN files no orientation of cells.
+    """
     if source.suffix.lower() == ".stl" or ending == ".stl":
-        # meshio merges no points of text files.
+        # meshio does not merge the points of text files.
         assert_same_array(corners(found), corners(expected).astype(float), "corners of triangles")
         return
     assert_same_array(np.asarray(found.points), np.asarray(expected.points, float), "points")
@@ -736,7 +746,7 @@ def compare(found, expected, source, ending):
 def vtk_files():
     folder = data_folder()
     names = [] if folder is None else [p.relative_to(folder) for p in folder.rglob("*") if p.suffix in (".vtu", ".vtp", ".vtk")]
-    # Of the frames of one cycle, one.
+    # Only one frame of each cycle.
     return sorted(str(p) for p in names if "ENDOCARDIAL" not in p.name or "_000" in p.name)
 
 
@@ -744,8 +754,9 @@ MSH_HOLDS = {1: "vertex", 3: "line", 5: "triangle", 9: "quad", 10: "tetra", 12: 
 
 
 @pytest.mark.parametrize("name", vtk_files())
-def test_real_vtk_files_in_other_formats(motet, data, tmp_path, name):
-    """Points, cells and numeric arrays as VTK reads them, in what meshio reads from our MSH, Medit and TetGen files."""
+def test_real_vtk_files_are_converted_to_other_formats_without_changes(motet, data, tmp_path, name):
+    """meshio reads from MSH, Medit and TetGen files the points, cells and numbers that VTK reads from the
+    source."""
     source = data / name
     expected = pyvista.read(source).cast_to_unstructured_grid()
     points = np.asarray(expected.points, float)
@@ -760,7 +771,7 @@ def test_real_vtk_files_in_other_formats(motet, data, tmp_path, name):
         for kind in held:
             at = expected.offset[:-1][types == kind]
             if len(at):
-                # Some lines there name a third point, for the sense of a beam.
+                # Some lines have a third point, for the orientation of a beam.
                 n = meshio._mesh.num_nodes_per_cell[MSH_HOLDS[kind]]
                 ids = expected.cell_connectivity[at[:, None] + np.arange(n)]
                 assert_same_array(cells[MSH_HOLDS[kind]], ids, f"{MSH_HOLDS[kind]} cells")
@@ -778,7 +789,7 @@ def test_real_vtk_files_in_other_formats(motet, data, tmp_path, name):
 
 
 def test_dolfin_markers_are_the_triangles_opposite_a_vertex(motet, data, tmp_path):
-    """The definition itself, with numpy: facet i of a cell has its sorted vertices but the i-th."""
+    """By the definition: facet i of a cell has its sorted vertices except the i-th."""
     source = data / "copyleft" / "dolfin_aneurysm.xml.gz"
     import xml.etree.ElementTree as tree
     root = tree.fromstring(gzip.decompress(source.read_bytes()))
@@ -796,7 +807,7 @@ def test_dolfin_markers_are_the_triangles_opposite_a_vertex(motet, data, tmp_pat
     labels = np.concatenate([v for b, v in zip(mesh.cells, mesh.cell_data["patch"]) if b.type == "triangle"])
     found = {tuple(map(int, np.sort(t))): int(label) - 1 for t, label in zip(triangles, labels)}
     assert found == expected
-    # Each looks outward: the tet behind it lies on the other side.
+    # Each triangle faces outward, away from its tet.
     center = {}
     for tet in cells:
         for facet in itertools.combinations(sorted(map(int, tet)), 3):
@@ -808,8 +819,8 @@ def test_dolfin_markers_are_the_triangles_opposite_a_vertex(motet, data, tmp_pat
         assert np.dot(np.cross(b - a, c - a), behind - a) < 0
 
 
-def test_a_simvascular_folder(motet, data, tmp_path):
-    """Each face's triangles by their coordinates, against what VTK reads from its file."""
+def test_patches_of_a_simvascular_folder_are_its_faces(motet, data, tmp_path):
+    """The triangles of each patch, by coordinates, are those that VTK reads from the file of the face."""
     pipe = data / "tetmeshes" / "sv_ale_pipe"
     folder = tmp_path / "mesh-complete"
     (folder / "mesh-surfaces").mkdir(parents=True)
@@ -835,7 +846,7 @@ def test_a_simvascular_folder(motet, data, tmp_path):
         assert_same_array(np.asarray(mesh.points, float)[triangles[labels == label]], expected, face)
 
 
-def test_the_face_files_of_a_pipe_beside_its_volume(motet, data, tmp_path):
+def test_face_files_beside_a_volume_are_read_as_patches(motet, data, tmp_path):
     out = tmp_path / "out.msh"
     motet("convert", data / "tetmeshes" / "sv_boundary_layer_pipe", out)
     mesh = meshio.read(out)
@@ -844,8 +855,8 @@ def test_the_face_files_of_a_pipe_beside_its_volume(motet, data, tmp_path):
     assert "holds 2 volumes: lumen, wall" in done.stderr
 
 
-def test_a_written_simvascular_folder_has_the_ids_of_the_program_that_made_the_mesh(motet, data, tmp_path):
-    """Our own search for the element behind each facet finds what SimVascular wrote."""
+def test_a_written_simvascular_folder_has_the_ids_of_simvascular(motet, data, tmp_path):
+    """The element that motet finds behind each facet is the one that SimVascular wrote."""
     pipe = data / "tetmeshes" / "sv_boundary_layer_pipe"
     motet("convert", pipe, tmp_path / "one.vtu")
     folder = tmp_path / "mesh-complete"
@@ -858,7 +869,7 @@ def test_a_written_simvascular_folder_has_the_ids_of_the_program_that_made_the_m
         assert_same_array(ours.cell_data[name], volume.cell_data[name], name)
 
     def elements(face):
-        """{the three GlobalNodeIDs of a triangle: its GlobalElementID}"""
+        """Return {the three GlobalNodeIDs of a triangle: its GlobalElementID}."""
         triangles = np.sort(face.point_data["GlobalNodeID"][face.regular_faces], axis=1)
         return dict(zip(map(tuple, triangles.tolist()), face.cell_data["GlobalElementID"].tolist()))
 

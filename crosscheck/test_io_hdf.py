@@ -1,4 +1,4 @@
-"""VTKHDF against VTK's own reader and writer."""
+"""VTKHDF files compared with VTK's reader and writer."""
 import numpy as np
 import pytest
 import pyvista
@@ -22,7 +22,7 @@ def write_hdf(data, path, compression=0):
 
 
 def read_hdf(path, step=None):
-    """What VTK reads: of a step, or as it stands."""
+    """Read a file with VTK, or one step of it."""
     reader = vtkHDFReader()
     reader.SetFileName(str(path))
     if step is not None:
@@ -37,7 +37,7 @@ def read_xml(path):
 
 
 def cells_of(data):
-    """Kinds, where the cells begin, and their points."""
+    """Return the kinds, offsets and points of the cells, and the faces of polyhedra."""
     if isinstance(data, pyvista.PolyData):
         parts = [(data.GetVerts(), 1), (data.GetLines(), 3), (data.GetPolys(), 7), (data.GetStrips(), 6)]
         lists = [(kind, vtk_to_numpy(p.GetOffsetsArray()), vtk_to_numpy(p.GetConnectivityArray())) for p, kind in parts]
@@ -133,7 +133,7 @@ DATA = {"tets": tets, "mixed": mixed, "polyhedra": polyhedra, "surface": surface
 
 @pytest.mark.parametrize("compression", [0, 5])
 @pytest.mark.parametrize("name", DATA)
-def test_motet_reads_what_vtk_writes(motet, tmp_path, name, compression):
+def test_motet_reads_files_of_vtk(motet, tmp_path, name, compression):
     data = DATA[name]()
     write_hdf(data, tmp_path / "in.vtkhdf", compression)
     out = tmp_path / ("out.vtp" if isinstance(data, pyvista.PolyData) else "out.vtu")
@@ -143,7 +143,7 @@ def test_motet_reads_what_vtk_writes(motet, tmp_path, name, compression):
 
 @pytest.mark.parametrize("compression", ["none", "zlib"])
 @pytest.mark.parametrize("name", DATA)
-def test_vtk_reads_what_motet_writes(motet, tmp_path, name, compression):
+def test_vtk_reads_files_of_motet(motet, tmp_path, name, compression):
     data = DATA[name]()
     source = tmp_path / ("in.vtp" if isinstance(data, pyvista.PolyData) else "in.vtu")
     data.save(source)
@@ -159,14 +159,15 @@ def partitioned(parts):
 
 
 @pytest.mark.parametrize("name", ["tets", "polyhedra", "sections"])
-def test_parts_are_joined(motet, tmp_path, name):
+def test_partitions_are_joined(motet, tmp_path, name):
     one = DATA[name]()
     two = one.translate((10.0, 0, 0))
     for array in ("label", "c"):
         if array in two.cell_data:
             two.cell_data[array] = two.cell_data[array] + two.cell_data[array].dtype.type(100)
     write_hdf(partitioned([one, two]), tmp_path / "in.vtkhdf")
-    # Polygonal data of several parts are in the order of the parts: only a grid holds that.
+    # Only an unstructured grid can store the cells of several parts of polygonal data in the order of the
+    # parts.
     motet("convert", tmp_path / "in.vtkhdf", tmp_path / "out.vtu")
     joined = read_xml(tmp_path / "out.vtu")
     assert joined.n_cells == 2 * one.n_cells and joined.n_points == 2 * one.n_points
@@ -184,12 +185,12 @@ def test_parts_are_joined(motet, tmp_path, name):
 
 def test_blocks_are_refused_with_a_remedy(motet, tmp_path):
     write_hdf(pyvista.MultiBlock({"a": tets(2), "b": surface()}), tmp_path / "in.vtkhdf")
-    said = motet("info", tmp_path / "in.vtkhdf", code=3).stderr
-    assert "MultiBlockDataSet" in said and "Merge Blocks" in said
+    error = motet("info", tmp_path / "in.vtkhdf", code=3).stderr
+    assert "MultiBlockDataSet" in error and "Merge Blocks" in error
 
 
 class Moving(VTKPythonAlgorithmBase):
-    """A mesh that moves in steps of half a second; with `growing`, its cells become fewer, too."""
+    """A mesh that moves in steps of half a second; with `growing`, its number of cells changes as well."""
 
     def __init__(self, data, growing):
         kind = "vtkPolyData" if isinstance(data, pyvista.PolyData) else "vtkUnstructuredGrid"
@@ -226,11 +227,11 @@ class Moving(VTKPythonAlgorithmBase):
 
 @pytest.mark.parametrize("growing", [False, True])
 @pytest.mark.parametrize("name", ["tets", "polyhedra", "sections"])
-def test_every_step_is_what_vtk_reads(motet, tmp_path, name, growing):
+def test_motet_and_vtk_read_the_same_steps(motet, tmp_path, name, growing):
     source = Moving(DATA[name](), growing)
     path = write_hdf(source, tmp_path / "flow.vtkhdf", compression=3)
-    said = motet.json("info", path)["series"]
-    assert [frame["time"] for frame in said] == source.times
+    frames = motet.json("info", path)["series"]
+    assert [frame["time"] for frame in frames] == source.times
     ending = "vtp" if name == "sections" else "vtu"
     for step, time in enumerate(source.times):
         motet("convert", f"{path}#{step}", tmp_path / f"{step}.{ending}")
@@ -242,7 +243,7 @@ def test_every_step_is_what_vtk_reads(motet, tmp_path, name, growing):
 
 
 @pytest.mark.parametrize("topology", ["kept", "changing"])
-def test_vtk_plays_what_motet_writes_over_time(motet, tmp_path, topology):
+def test_vtk_reads_series_of_motet(motet, tmp_path, topology):
     files = []
     for k in range(3):
         n = 3 + (k if topology == "changing" else 0)

@@ -1,4 +1,4 @@
-"""OpenFOAM's polyMesh against VTK's reader, and against OpenFOAM itself where it is installed."""
+"""OpenFOAM's polyMesh compared with VTK's reader, and with OpenFOAM if it is installed."""
 import os
 import shutil
 import subprocess
@@ -33,14 +33,14 @@ def new_case(folder, form="ascii", packed="off"):
     return folder
 
 
-def foam(case, *words):
-    done = subprocess.run(words, cwd=case, capture_output=True, text=True, timeout=300, env=os.environ | {"WM_PROJECT_DIR": "/usr/share/openfoam"})
+def foam(case, *command):
+    done = subprocess.run(command, cwd=case, capture_output=True, text=True, timeout=300, env=os.environ | {"WM_PROJECT_DIR": "/usr/share/openfoam"})
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr
     return done.stdout
 
 
 def by_vtk(case):
-    """The mesh, and the faces of each patch."""
+    """Read a case with VTK; return the mesh, and the number of faces of each patch."""
     reader = pyvista.POpenFOAMReader(str(case / "case.foam"))
     reader.case_type = "reconstructed"
     reader.enable_all_patch_arrays()
@@ -54,13 +54,13 @@ def volumes(grid):
 
 
 def same(motet, case, tmp_path, given=None):
-    """Reads the case by motet and by VTK."""
+    """Read a case with motet and with VTK, and assert that the meshes are equal."""
     motet("convert", given or case, tmp_path / "read.vtu")
     ours = pyvista.read(tmp_path / "read.vtu")
     solid = ours.extract_cells(ours.celltypes >= 10)
     theirs, patches = by_vtk(case)
     assert solid.n_cells == theirs.n_cells
-    # VTK's reader numbers wedges so that VTK's own volume of them is negative.
+    # VTK's reader orders the vertices of wedges so that their volume is negative.
     np.testing.assert_allclose(volumes(solid), np.abs(volumes(theirs)), rtol=1e-6)
     np.testing.assert_allclose(np.array(ours.bounds), theirs.bounds, rtol=1e-6)
     named = {key.split(":")[1]: int(ours.field_data[key][0]) for key in ours.field_data.keys() if key.startswith("patch:")}
@@ -77,25 +77,25 @@ MESHES = {
 
 @pytest.mark.parametrize("encoding", ["ascii", "binary"])
 @pytest.mark.parametrize("name", MESHES)
-def test_vtk_reads_what_motet_writes_and_motet_gets_it_back(motet, tmp_path, name, encoding):
+def test_vtk_and_motet_read_cases_of_motet(motet, tmp_path, name, encoding):
     MESHES[name](tmp_path / "mesh.vtu")
     case = new_case(tmp_path / "case", encoding)
     motet("convert", tmp_path / "mesh.vtu", case / "constant" / "polyMesh", "--encoding", encoding)
     ours = same(motet, case, tmp_path)
     first = pyvista.read(tmp_path / "mesh.vtu")
-    # Cells keep their order and their kinds, points their bits.
+    # The order and kinds of cells, and the coordinates, are exactly the same.
     assert np.array_equal(first.celltypes[first.celltypes >= 10], ours.celltypes[ours.celltypes >= 10])
     np.testing.assert_array_equal(first.points, ours.points)
     np.testing.assert_allclose(volumes(first), volumes(ours), rtol=1e-12, atol=1e-300)
     if shutil.which("checkMesh"):
-        said = foam(case, "checkMesh", "-allTopology")
-        assert "Boundary definition OK" in said and "Upper triangular ordering OK" in said and "Point usage OK" in said
-        assert "Mesh OK" in said or name == "mixed", said
+        output = foam(case, "checkMesh", "-allTopology")
+        assert "Boundary definition OK" in output and "Upper triangular ordering OK" in output and "Point usage OK" in output
+        assert "Mesh OK" in output or name == "mixed", output
 
 
 @has_openfoam
 @pytest.mark.parametrize("form, packed", [("ascii", "off"), ("binary", "off"), ("ascii", "on"), ("binary", "on")])
-def test_what_openfoam_makes_is_read_as_vtk_reads_it(motet, tmp_path, form, packed):
+def test_motet_and_vtk_read_cases_of_openfoam_alike(motet, tmp_path, form, packed):
     case = new_case(tmp_path / "case", form, packed)
     (case / "system" / "blockMeshDict").write_text(BLOCK)
     foam(case, "blockMesh")
@@ -106,7 +106,7 @@ def test_what_openfoam_makes_is_read_as_vtk_reads_it(motet, tmp_path, form, pack
 
 @has_openfoam
 @pytest.mark.parametrize("form", ["ascii", "binary"])
-def test_polyhedra_of_openfoam_come_and_go(motet, tmp_path, form):
+def test_polyhedra_of_openfoam_are_read_and_written(motet, tmp_path, form):
     case = new_case(tmp_path / "case", form)
     shapes.ball().save(tmp_path / "ball.vtu")
     motet("convert", tmp_path / "ball.vtu", case / "constant" / "polyMesh")
@@ -121,7 +121,7 @@ def test_polyhedra_of_openfoam_come_and_go(motet, tmp_path, form):
 
 
 @has_openfoam
-def test_zones_are_regions(motet, tmp_path):
+def test_cell_zones_are_read_as_regions(motet, tmp_path):
     for form in ("ascii", "binary"):
         case = new_case(tmp_path / form, form)
         (case / "system" / "blockMeshDict").write_text(BLOCK)

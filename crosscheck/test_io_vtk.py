@@ -1,6 +1,6 @@
-"""VTU, VTP and legacy VTK files: what VTK, PyVista and meshio write, motet reads, and the other way round.
+"""VTU, VTP and legacy VTK files, exchanged between motet and VTK, PyVista and meshio.
 
-The measure is always what VTK itself (or meshio) reads from the file in question, compared bit for bit.
+What VTK (or meshio) reads from the files is compared bit by bit.
 """
 import itertools
 
@@ -14,13 +14,13 @@ from meshes import assert_same_array, assert_same_mesh
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 REAL = sorted(p for p in (data_folder() or ()) and data_folder().rglob("*") if p.suffix in (".vtu", ".vtp", ".vtk"))
-# Every way in which motet writes the XML formats.
+# All encodings and compressions in which motet writes the XML formats.
 XML_WAYS = [("ascii", "none"), *itertools.product(("base64", "binary"), ("none", "zlib", "lz4", "lzma"))]
 VALUE_TYPES = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64")
 
 
 def vtk_read(path):
-    """What VTK reads; PyVista would skip string arrays and rename what it knows better."""
+    """Read a file with VTK; PyVista would skip string arrays and rename others."""
     readers = {".vtu": vtk.vtkXMLUnstructuredGridReader, ".vtp": vtk.vtkXMLPolyDataReader, ".vtk": vtk.vtkDataSetReader}
     reader = readers[path.suffix]()
     reader.SetFileName(str(path))
@@ -33,7 +33,7 @@ def vtk_read(path):
 
 
 def arrays_of(data):
-    """All arrays of a vtkFieldData: {name: values}, texts as lists, bits as bytes."""
+    """Return all arrays of a vtkFieldData as {name: values}, with strings as lists and bits as bytes."""
     arrays = {}
     for i in range(data.GetNumberOfArrays()):
         array = data.GetAbstractArray(i)
@@ -48,7 +48,7 @@ def arrays_of(data):
 
 
 def faces_of(grid):
-    """The faces of each polyhedron, as lists."""
+    """Return the faces of each polyhedron as lists."""
     faces = {}
     for cell in np.flatnonzero(grid.celltypes == vtk.VTK_POLYHEDRON):
         polyhedron = grid.GetCell(int(cell))
@@ -58,7 +58,7 @@ def faces_of(grid):
 
 
 def without_surplus(grid):
-    """Offsets and connectivity without the points that lines and quads name beyond those that they have."""
+    """Return offsets and connectivity without surplus points of lines and quads."""
     starts, ends = grid.cell_offsets[:-1], grid.cell_offsets[1:]
     most = np.full(256, np.iinfo(np.int64).max)
     most[[vtk.VTK_LINE, vtk.VTK_QUAD]] = 2, 4
@@ -68,7 +68,7 @@ def without_surplus(grid):
 
 
 def assert_same_data_set(ours, theirs):
-    """Equal points, cells and arrays of two VTK data sets."""
+    """Assert equal points, cells and arrays of two VTK data sets."""
     assert_same_array(ours.points.astype(np.float64), theirs.points.astype(np.float64), "points")
     for which in ("GetPointData", "GetCellData", "GetFieldData"):
         a, b = arrays_of(getattr(ours, which)()), arrays_of(getattr(theirs, which)())
@@ -91,16 +91,16 @@ def assert_same_data_set(ours, theirs):
     assert faces_of(ours) == faces_of(theirs)
 
 
-def assert_converts(motet, source, target, *words):
-    """motet turns `source` into `target`, and VTK reads the same from both."""
-    motet("convert", source, target, *words)
+def assert_converts(motet, source, target, *options):
+    """Convert `source` to `target` with motet, and assert that VTK reads the same data from both."""
+    motet("convert", source, target, *options)
     assert_same_data_set(vtk_read(target), vtk_read(source))
 
 
-# Data that the tests make.
+# Data created by the tests.
 
 def points_and_arrays(data_set, rng, texts=True, extreme=True):
-    """Puts arrays of every type on `data_set`, with values that are easily lost (`extreme`)."""
+    """Add arrays of every type to `data_set`, with extreme values if `extreme`."""
     for holder, n in ((data_set.GetPointData(), data_set.GetNumberOfPoints()),
                       (data_set.GetCellData(), data_set.GetNumberOfCells())):
         for components, kind in itertools.product((1, 3), VALUE_TYPES):
@@ -131,7 +131,7 @@ def points_and_arrays(data_set, rng, texts=True, extreme=True):
 
 
 def mixed_grid(polyhedra=True, **options):
-    """Cells of every fixed kind, on points without a meaning; polygons, and two polyhedra."""
+    """Return cells of every fixed kind on random points, polygons, and two polyhedra."""
     rng = np.random.default_rng(5)
     grid = vtk.vtkUnstructuredGrid()
     points = vtk.vtkPoints()
@@ -159,7 +159,7 @@ def mixed_grid(polyhedra=True, **options):
 
 
 def polygons(**options):
-    """Vertices, lines, polygons and strips."""
+    """Return polygonal data with vertices, lines, polygons and strips."""
     rng = np.random.default_rng(6)
     data = vtk.vtkPolyData()
     points = vtk.vtkPoints()
@@ -189,7 +189,7 @@ def vtk_write_xml(data, path, mode, compressor, header=64, big=False, base64=Fal
     writer.SetEncodeAppendedData(base64)
     writer.SetHeaderType(header)
     writer.SetByteOrder(0 if big else 1)
-    # Small, so that arrays have several blocks, and a last one that is not full.
+    # Small, so that arrays have several blocks, of which the last is not full.
     writer.SetBlockSize(64)
     assert writer.Write() == 1
 
@@ -200,7 +200,7 @@ MADE = {"grid.vtu": mixed_grid, "polygons.vtp": polygons}
 # The tests.
 
 @pytest.mark.parametrize("path", REAL, ids=lambda p: p.name)
-def test_real_files_are_the_same_in_every_way_of_writing(motet, tmp_path, path):
+def test_real_files_are_preserved_in_every_encoding(motet, tmp_path, path):
     ending = ".vtp" if path.suffix == ".vtp" else ".vtu"
     for encoding, compression in XML_WAYS:
         if compression == "lzma" and path.stat().st_size > 500_000:
@@ -215,7 +215,7 @@ def test_real_files_are_the_same_in_every_way_of_writing(motet, tmp_path, path):
 @pytest.mark.parametrize("compressor", ["None", "ZLib", "LZ4", "LZMA"])
 @pytest.mark.parametrize("header", [32, 64])
 @pytest.mark.parametrize("big", [False, True], ids=["little", "big"])
-def test_what_vtk_writes_as_xml_is_read(motet, tmp_path, name, mode, base64, compressor, header, big):
+def test_motet_reads_xml_files_of_vtk(motet, tmp_path, name, mode, base64, compressor, header, big):
     source = tmp_path / name
     vtk_write_xml(MADE[name](), source, mode, compressor, header, big, base64)
     assert_converts(motet, source, tmp_path / f"out{source.suffix}")
@@ -223,7 +223,7 @@ def test_what_vtk_writes_as_xml_is_read(motet, tmp_path, name, mode, base64, com
 
 @pytest.mark.parametrize("name", MADE)
 @pytest.mark.parametrize("encoding, compression", XML_WAYS)
-def test_what_motet_writes_as_xml_is_read_by_vtk(motet, tmp_path, name, encoding, compression):
+def test_vtk_reads_xml_files_of_motet(motet, tmp_path, name, encoding, compression):
     source = tmp_path / name
     vtk_write_xml(MADE[name](), source, "Appended", "ZLib")
     assert_converts(motet, source, tmp_path / f"out{source.suffix}", "--encoding", encoding, "--compression", compression)
@@ -232,8 +232,8 @@ def test_what_motet_writes_as_xml_is_read_by_vtk(motet, tmp_path, name, encoding
 @pytest.mark.parametrize("name", MADE)
 @pytest.mark.parametrize("version", [42, 51])
 @pytest.mark.parametrize("binary", [False, True], ids=["ascii", "binary"])
-def test_what_vtk_writes_as_legacy_is_read(motet, tmp_path, name, version, binary):
-    data = MADE[name](extreme=binary)  # VTK does not read back the smallest numbers that it writes as text
+def test_motet_reads_legacy_files_of_vtk(motet, tmp_path, name, version, binary):
+    data = MADE[name](extreme=binary)  # VTK cannot read the smallest numbers that it writes as text
     writer = vtk.vtkUnstructuredGridWriter() if name.endswith("vtu") else vtk.vtkPolyDataWriter()
     source = tmp_path / "source.vtk"
     writer.SetInputData(data)
@@ -247,7 +247,7 @@ def test_what_vtk_writes_as_legacy_is_read(motet, tmp_path, name, version, binar
 @pytest.mark.parametrize("name", MADE)
 @pytest.mark.parametrize("version", ["4.2", "5.1"])
 @pytest.mark.parametrize("encoding", ["ascii", "binary"])
-def test_what_motet_writes_as_legacy_is_read_by_vtk(motet, tmp_path, name, version, encoding):
+def test_vtk_reads_legacy_files_of_motet(motet, tmp_path, name, version, encoding):
     source = tmp_path / name
     vtk_write_xml(MADE[name](), source, "Appended", "ZLib")
     assert_converts(motet, source, tmp_path / "out.vtk", "--encoding", encoding, "--version", version)
@@ -278,8 +278,8 @@ def test_attributes_of_legacy_files_are_read(motet, tmp_path):
 def test_pieces_become_one_mesh(motet, tmp_path):
     parts = []
     for i in (1, 2):
-        grid = mixed_grid(polyhedra=False)  # VTK does not raise the ids of faces by the points of earlier pieces
-        vtk_to_numpy(grid.GetPoints().GetData())[:] += 100 * i  # points at one place would be one point
+        grid = mixed_grid(polyhedra=False)  # VTK does not shift the ids of faces by the points of earlier pieces
+        vtk_to_numpy(grid.GetPoints().GetData())[:] += 100 * i  # coincident points would be merged
         vtk_write_xml(grid, tmp_path / f"part{i}.vtu", "Ascii", "None")
         parts.append((tmp_path / f"part{i}.vtu").read_text())
     start, end = parts[1].index("<Piece"), parts[1].index("</Piece>") + len("</Piece>")
@@ -291,7 +291,7 @@ def test_pieces_become_one_mesh(motet, tmp_path):
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "base64", "binary"])
-def test_numbers_that_are_not_finite_survive(motet, tmp_path, encoding):
+def test_non_finite_numbers_are_preserved(motet, tmp_path, encoding):
     grid = mixed_grid()
     values = np.ones(grid.GetNumberOfPoints())
     values[:3] = np.nan, np.inf, -np.inf
@@ -299,7 +299,7 @@ def test_numbers_that_are_not_finite_survive(motet, tmp_path, encoding):
     array.SetName("odd")
     grid.GetPointData().AddArray(array)
     vtk_write_xml(grid, tmp_path / "source.vtu", "Appended", "None")
-    # Read back by motet: VTK takes -inf for inf in text, also where it wrote it itself.
+    # Read by motet, because VTK reads -inf as inf from text, even from its own files.
     motet("convert", tmp_path / "source.vtu", tmp_path / "text.vtu", "--encoding", encoding)
     motet("convert", tmp_path / "text.vtu", tmp_path / "out.vtu")
     odd = arrays_of(vtk_read(tmp_path / "out.vtu").GetPointData())["odd"]
@@ -326,17 +326,17 @@ def meshio_mesh():
 @pytest.mark.parametrize("options", [dict(binary=False), dict(binary=True, compression=None),
                                      dict(binary=True, compression="zlib"), dict(binary=True, compression="lzma"),
                                      dict(binary=True, compression="zlib", header_type="UInt64")], ids=str)
-def test_what_meshio_writes_as_vtu_is_read(motet, tmp_path, options):
+def test_motet_reads_vtu_files_of_meshio(motet, tmp_path, options):
     meshio.vtu.write(tmp_path / "source.vtu", meshio_mesh(), **options)
     motet("convert", tmp_path / "source.vtu", tmp_path / "out.vtu")
     assert_same_mesh(meshio.read(tmp_path / "out.vtu"), meshio.read(tmp_path / "source.vtu"))
 
 
-def test_names_may_have_any_characters(motet, tmp_path):
+def test_names_may_contain_any_characters(motet, tmp_path):
     grid = pv.UnstructuredGrid({vtk.VTK_TETRA: np.array([[0, 1, 2, 3]])}, np.eye(4, 3))
     name = "a <b> & \"c\" 'd' % é"
     grid.point_data[name] = np.arange(4.0)
-    writer = vtk.vtkUnstructuredGridWriter()  # its XML writer does not escape names
+    writer = vtk.vtkUnstructuredGridWriter()  # VTK's XML writer does not escape names
     writer.SetInputData(grid)
     writer.SetFileName(str(tmp_path / "source.vtk"))
     assert writer.Write() == 1
@@ -347,18 +347,18 @@ def test_names_may_have_any_characters(motet, tmp_path):
 
 @pytest.mark.parametrize("version", ["4.2", "5.1"])
 @pytest.mark.parametrize("binary", [False, True], ids=["ascii", "binary"])
-def test_what_meshio_writes_as_legacy_is_read(motet, tmp_path, version, binary):
+def test_motet_reads_legacy_files_of_meshio(motet, tmp_path, version, binary):
     meshio.vtk.write(tmp_path / "source.vtk", meshio_mesh(), fmt_version=version, binary=binary)
     motet("convert", tmp_path / "source.vtk", tmp_path / "out.vtu")
     theirs = meshio.read(tmp_path / "source.vtk")
-    theirs.points = theirs.points.astype(np.float64)  # big-endian as it stood in the file
+    theirs.points = theirs.points.astype(np.float64)  # big-endian, as in the file
     theirs.point_data = {name: values.astype(name) for name, values in theirs.point_data.items()}
     theirs.cell_data = {name: [v.astype(name) for v in blocks] for name, blocks in theirs.cell_data.items()}
     assert_same_mesh(meshio.read(tmp_path / "out.vtu"), theirs)
 
 
-@pytest.mark.parametrize("encoding, compression", [w for w in XML_WAYS if w[1] != "lz4"])  # which meshio does not know
-def test_what_motet_writes_as_vtu_is_read_by_meshio(motet, tmp_path, encoding, compression):
+@pytest.mark.parametrize("encoding, compression", [w for w in XML_WAYS if w[1] != "lz4"])  # meshio does not support LZ4
+def test_meshio_reads_vtu_files_of_motet(motet, tmp_path, encoding, compression):
     meshio.vtu.write(tmp_path / "source.vtu", meshio_mesh())
     motet("convert", tmp_path / "source.vtu", tmp_path / "out.vtu", "--encoding", encoding, "--compression", compression)
     assert_same_mesh(meshio.read(tmp_path / "out.vtu"), meshio.read(tmp_path / "source.vtu"))
@@ -366,15 +366,15 @@ def test_what_motet_writes_as_vtu_is_read_by_meshio(motet, tmp_path, encoding, c
 
 @pytest.mark.parametrize("version", ["4.2", "5.1"])
 @pytest.mark.parametrize("encoding", ["ascii", "binary"])
-def test_what_motet_writes_as_legacy_is_read_by_meshio(motet, tmp_path, version, encoding):
+def test_meshio_reads_legacy_files_of_motet(motet, tmp_path, version, encoding):
     mesh = meshio_mesh()
-    if version == "5.1":  # where meshio takes int for 64 bits, and knows no words for the other types, VTK's own included
+    if version == "5.1":  # meshio reads int as 64 bits, and does not know VTK's names of the other types
         mesh.point_data = {k: v for k, v in mesh.point_data.items() if k in MESHIO_LEGACY_TYPES}
         mesh.cell_data = {k: v for k, v in mesh.cell_data.items() if k in MESHIO_LEGACY_TYPES}
     meshio.vtu.write(tmp_path / "source.vtu", mesh)
     motet("convert", tmp_path / "source.vtu", tmp_path / "out.vtk", "--encoding", encoding, "--version", version)
     ours = meshio.read(tmp_path / "out.vtk")
-    ours.points = ours.points.astype(np.float64)  # big-endian as it stood in the file
+    ours.points = ours.points.astype(np.float64)  # big-endian, as in the file
     ours.point_data = {name: values.astype(name) for name, values in ours.point_data.items()}
     ours.cell_data = {name: [v.astype(name) for v in blocks] for name, blocks in ours.cell_data.items()}
     assert_same_mesh(ours, meshio.read(tmp_path / "source.vtu"))

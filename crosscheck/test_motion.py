@@ -1,4 +1,4 @@
-"""Mesh motion against what is known: affine maps, and a plain implementation of the method in SciPy.
+"""Mesh motion compared with affine maps, and with a simple implementation of the method in SciPy.
 
 `pytest -s` prints the tables.
 """
@@ -12,9 +12,9 @@ from conftest import ROOT
 from meshes import volumes
 from scipy.spatial import Delaunay
 
-# Every file with tetrahedra among the real meshes; the tests of the crate read the same list.
+# All real meshes with tetrahedra; the tests of the crate read the same list.
 TET_MESHES = (ROOT / "crates" / "motet" / "tests" / "real_tet_meshes.txt").read_text().split()
-GARBAGE = 1e6  # the displacement array's value at interior vertices, which must not matter
+GARBAGE = 1e6  # displacement of interior vertices, which must be ignored
 
 
 def tets_of(mesh):
@@ -22,21 +22,22 @@ def tets_of(mesh):
 
 
 def boundary_vertices(tets):
-    """Ids of the vertices of every facet that belongs to one tet only."""
+    """Return the ids of the vertices of all facets that belong to only one tet."""
     facets = np.sort(np.vstack([tets[:, [1, 2, 3]], tets[:, [0, 2, 3]], tets[:, [0, 1, 3]], tets[:, [0, 1, 2]]]), axis=1)
     unique, counts = np.unique(facets, axis=0, return_counts=True)
     return np.unique(unique[counts == 1])
 
 
 def write_with_displacement(path, points, tets, displacement, boundary):
-    """A mesh file whose array `u` holds the displacement on the boundary and garbage inside."""
+    """Write a mesh with an array `u`: the displacement on the boundary, and garbage inside."""
     u = np.full_like(points, GARBAGE)
     u[boundary] = displacement[boundary]
     meshio.Mesh(points, [("tetra", tets)], point_data={"u": u}).write(path)
 
 
 def near_identity(rng):
-    """A 3x4 matrix: a rotation, stretch and shear of up to 20 % of everything, and a shift."""
+    """Return a 3x4 matrix: the identity with a random change of up to 20 % in each entry, and a
+    translation."""
     return np.hstack([np.eye(3) + rng.uniform(-0.2, 0.2, (3, 3)), rng.uniform(-1, 1, (3, 1))])
 
 
@@ -61,8 +62,8 @@ def test_an_affine_boundary_motion_moves_every_vertex_affinely(name, motet, data
     assert worst < 1e-10
 
 
-def test_every_tetrahedral_mesh_is_in_the_list_above(data):
-    """A mesh that joins the data must join the list."""
+def test_the_list_contains_all_tetrahedral_meshes(data):
+    """A new mesh in the data must be added to the list."""
     holds_tets = {str(path.relative_to(data)) for path in data.rglob("*")
                   if path.suffix in (".msh", ".mesh", ".node", ".vtu", ".gz") and "boundary.vtu" not in path.name
                   and "devices" not in path.parts}
@@ -70,7 +71,7 @@ def test_every_tetrahedral_mesh_is_in_the_list_above(data):
 
 
 def gmsh_meshes():
-    """The module that makes the benches' meshes with Gmsh."""
+    """Import the module of the benchmarks that creates meshes with Gmsh."""
     spec = importlib.util.spec_from_file_location("gmsh_meshes", ROOT / "bench-compare" / "meshes.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -78,7 +79,10 @@ def gmsh_meshes():
 
 
 def plain_mapping(points, boundary):
-    """The method at its plainest: Qhull, find_simplex, barycentric weights. A function of the boundary's positions."""
+    """Set up the method with Qhull, find_simplex and barycentric weights.
+
+    Return the map of boundary positions.
+    """
     graph = Delaunay(points[boundary])
     inner = np.setdiff1d(np.arange(len(points)), boundary)
     tet = np.maximum(graph.find_simplex(points[inner], tol=1e-12), 0)
@@ -94,8 +98,8 @@ def plain_mapping(points, boundary):
     return moved
 
 
-def test_the_sphere_in_the_box_goes_as_far_as_it_can(motet, tmp_path):
-    """0.5, 1 and 2 radii in one step without an inverted tet; 3 radii by sub-steps, or exit status 4."""
+def test_a_sphere_moves_in_a_box_without_inverted_tets(motet, tmp_path):
+    """By 0.5, 1 and 2 radii in one step; by 3 radii in sub-steps, possibly with exit status 4."""
     made = gmsh_meshes()
     points, tets, sphere, wall = made.sphere_in_box("B", str(tmp_path))
     boundary = np.union1d(sphere, wall)

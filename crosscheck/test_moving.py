@@ -1,4 +1,4 @@
-"""Walls and volumes in motion, between motet and PyVista, as users of both do it."""
+"""Moving walls and volumes, exchanged between motet and PyVista."""
 import numpy as np
 import pytest
 
@@ -14,7 +14,7 @@ def image(points, part):
     return points + part * (moved - points)
 
 
-def test_a_series_plays(sphere):
+def test_pyvista_reads_a_series_with_the_reported_quality(sphere):
     folder, report = sphere
     reader = pv.get_reader(folder / "moved.pvd")
     assert list(reader.time_values) == [step["time"] for step in report["steps"]]
@@ -31,7 +31,7 @@ def test_a_series_plays(sphere):
 
 
 @pytest.mark.parametrize("keep_ids", [True, False])
-def test_a_surface_that_pyvista_cut_out_and_displaced_moves_the_mesh(motet, sphere, tmp_path, keep_ids):
+def test_a_surface_extracted_and_displaced_by_pyvista_moves_the_mesh(motet, sphere, tmp_path, keep_ids):
     source = sphere[0] / "box.vtu"
     mesh = pv.read(source)
     mesh = mesh.extract_cells(mesh.celltypes == pv.CellType.TETRA)
@@ -50,7 +50,7 @@ def test_a_surface_that_pyvista_cut_out_and_displaced_moves_the_mesh(motet, sphe
 
 
 def dihedral_angles(p):
-    """The six dihedral angles in degrees of tets with corners `p[:, 0..3]`, from their definition."""
+    """Return the six dihedral angles, in degrees, of tets with corners `p[:, 0..3]`, by their definition."""
     angles = []
     for a, b, c, d in [(0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2), (1, 2, 0, 3), (1, 3, 0, 2), (2, 3, 0, 1)]:
         edge = p[:, b] - p[:, a]
@@ -61,11 +61,11 @@ def dihedral_angles(p):
     return np.degrees(angles).T
 
 
-def test_measures_are_written_for_every_tet(motet, sphere, tmp_path):
+def test_quality_measures_of_every_tet_are_written(motet, sphere, tmp_path):
     motet("info", sphere[0] / "moved_0010.vtu", "-o", tmp_path / "quality.vtu")
     mesh = pv.read(tmp_path / "quality.vtu")
     tets = mesh.extract_cells(mesh.celltypes == pv.CellType.TETRA)
-    # By definition, not Verdict's minimum angle, which is larger than that on some of these tets.
+    # By definition: Verdict's minimum angle is too large on some of these tets.
     angles = dihedral_angles(np.asarray(tets.points)[tets.cells_dict[pv.CellType.TETRA]])
     assert np.allclose(tets["min_dihedral_deg"], angles.min(axis=1), rtol=0, atol=1e-9)
     assert np.allclose(tets["max_dihedral_deg"], angles.max(axis=1), rtol=0, atol=1e-9)
@@ -73,12 +73,12 @@ def test_measures_are_written_for_every_tet(motet, sphere, tmp_path):
     assert np.isnan(mesh["eas"][mesh.celltypes != pv.CellType.TETRA]).all()
 
 
-def test_three_real_walls(motet, data, tmp_path, monkeypatch, capsys):
+def test_three_real_walls_move_without_inverted_cells(motet, data, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(moving_walls, "MOTET", motet.path)
     monkeypatch.setattr(moving_walls, "DATA", data)
     moving_walls.left_heart(tmp_path)
     moving_walls.vessel(tmp_path)
     moving_walls.boundary_layer(tmp_path)
-    told = capsys.readouterr().out
-    assert told.count("most inverted cells 0") == 4
-    assert told.count("to the bit: True") == 3
+    printed = capsys.readouterr().out
+    assert printed.count("largest number of inverted cells 0\n") == 4
+    assert printed.count("exactly at its initial position: True") == 3

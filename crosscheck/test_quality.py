@@ -1,9 +1,8 @@
-"""Quality measures against Verdict's, and where Verdict rounds too much against rational arithmetic.
+"""Quality measures compared with Verdict, and with rational arithmetic where Verdict is inaccurate.
 
-Verdict takes arc cosines of normalised vectors. Near 0 and 180 degrees an arc cosine
-turns a rounding of 1e-16 into 1e-8, and where the cosine rounds beyond 1 it is no
-number, which Verdict's maximum then passes over. So on flat tets Verdict cannot be
-the judge; the definition, evaluated in rational numbers, is.
+Verdict uses arc cosines of normalised vectors. Near 0 and 180 degrees an arc cosine turns a rounding error of
+1e-16 into 1e-8, and where the cosine is rounded beyond 1 the result is NaN, which Verdict's maximum ignores.
+For flat tets the reference is therefore the definition, evaluated in rational numbers.
 """
 import math
 from fractions import Fraction
@@ -20,7 +19,7 @@ TOLERANCE = 1e-12
 
 
 def tets():
-    """10,000 tets in groups: random (half of them inverted), flat, nearly flat, collapsed, thin."""
+    """Return 10,000 tets in groups: random (half of them inverted), flat, nearly flat, collapsed, thin."""
     rng = np.random.default_rng(20240917)
     normal = lambda n: rng.standard_normal((n, 4, 3))
     in_plane = normal(1500)
@@ -44,7 +43,7 @@ def tets():
 
 
 def verdict(points):
-    """Volume, edge ratio, mean ratio, equi-angle skew of each tet by VTK's Verdict."""
+    """Return the volume, edge ratio, mean ratio and equi-angle skew of each tet by VTK's Verdict."""
     grid = vtk.vtkUnstructuredGrid()
     vtk_points = vtk.vtkPoints()
     vtk_points.SetDataTypeToDouble()
@@ -66,13 +65,13 @@ def dot(a, b):
 
 
 def angle(u, v):
-    """Between two rational vectors; 0 where one has no length. Rational up to the last step."""
+    """Return the angle between two rational vectors, 0 if one is zero; only the last step rounds."""
     n = cross(u, v)
     return math.atan2(math.sqrt(dot(n, n)), float(dot(u, v)))
 
 
 def exact_angles(tet):
-    """The 6 dihedral and the 12 face angles."""
+    """Return the 6 dihedral and the 12 face angles of a tet."""
     p = [[Fraction(float(x)) for x in point] for point in tet]
     to = lambda i, j: [b - a for a, b in zip(p[i], p[j])]
     dihedral = []
@@ -91,7 +90,7 @@ def exact_skew(dihedral, face):
 
 @pytest.fixture(scope="module", params=list(tets()))
 def group(request, example, tmp_path_factory):
-    """Points, our eight measures a tet, Verdict's four."""
+    """Points of tets, eight measures of each by motet, and four by Verdict."""
     points = tets()[request.param]
     folder = tmp_path_factory.mktemp("quality")
     points.astype("<f8").tofile(folder / "in")
@@ -106,13 +105,13 @@ def test_every_measure_is_finite(group):
     assert np.isfinite(ours).all()
 
 
-def test_volume_edge_ratio_and_mean_ratio_are_verdicts(group):
+def test_volume_edge_ratio_and_mean_ratio_agree_with_verdict(group):
     _, ours, theirs = group
     for row, expected in zip((7, 6, 5), theirs):
         assert (np.abs(ours[row] - expected) <= TOLERANCE * np.maximum(1, np.abs(expected))).all()
 
 
-def test_skew_is_verdicts_or_verdict_is_the_worse(group, request):
+def test_skew_agrees_with_verdict_or_is_more_accurate(group, request):
     points, ours, theirs = group
     off = np.flatnonzero(~(np.abs(ours[1] - theirs[3]) <= TOLERANCE))
     worst = 0.0
@@ -120,14 +119,14 @@ def test_skew_is_verdicts_or_verdict_is_the_worse(group, request):
         exact = exact_skew(*exact_angles(points[i]))
         assert abs(ours[1, i] - exact) <= TOLERANCE, (points[i].tolist(), ours[1, i], theirs[3, i], exact)
         assert not abs(theirs[3, i] - exact) < abs(ours[1, i] - exact)
-        # Verdict errs only where an arc cosine is bad: in tets that are nearly flat.
+        # Verdict is inaccurate only in nearly flat tets, where arc cosines are.
         assert exact > 1 - 1e-3
         worst = max(worst, abs(theirs[3, i] - exact))
     print(f"{request.node.callspec.id}: {len(points) - len(off)} of {len(points)} within {TOLERANCE} of Verdict; "
           f"Verdict's largest error on the others {worst:.1e}")
 
 
-def test_angles_skew_and_eas_are_those_of_the_definition(group):
+def test_angles_skew_and_eas_agree_with_the_definition(group):
     points, ours, _ = group
     for i in range(0, len(points), 5):
         dihedral, face = exact_angles(points[i])

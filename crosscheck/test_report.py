@@ -1,4 +1,4 @@
-"""`motet report` in a browser: the page opens without a network, and each act changes the picture."""
+"""Pages of `motet report` in a browser: they need no network, and each control changes the picture."""
 import base64
 import json
 import re
@@ -17,14 +17,14 @@ DRIVER = shutil.which("chromedriver")
 pytestmark = pytest.mark.skipif(not (CHROMIUM and DRIVER),
                                 reason="no Chromium: apt-get install chromium chromium-driver")
 
-# Software drawing where there is no graphics card; nothing that calls home.
+# Software rendering where there is no graphics card, and no background network traffic of the browser.
 FLAGS = """--headless=new --no-sandbox --disable-gpu-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader
 --ignore-gpu-blocklist --disable-background-networking --disable-component-update --disable-sync --no-first-run
 --window-size=1400,900""".split()
 
 
 class Page:
-    """A report in a browser of its own, with a log of what it asks for and complains of."""
+    """A page in a separate browser, with a log of its requests and errors."""
 
     def __init__(self, *flags):
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
@@ -36,28 +36,28 @@ class Page:
         self.driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
 
     def open(self, path):
-        """Opens the page; the seconds until the first picture."""
+        """Open a page; return the seconds until the first picture."""
         start = time.monotonic()
         self.driver.get(path.as_uri())
         self.settle()
         return time.monotonic() - start
 
     def settle(self, seconds=60):
-        """Waits until nothing is unpacked any more and the picture is drawn."""
+        """Wait until the data are unpacked and the picture is drawn."""
         end = time.monotonic() + seconds
         while self.js("return document.documentElement.dataset.busy") != "0":
             assert time.monotonic() < end, "the page is not ready"
             time.sleep(0.02)
         self.driver.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]))")
 
-    def js(self, script, *words):
-        return self.driver.execute_script(script, *words)
+    def js(self, script, *arguments):
+        return self.driver.execute_script(script, *arguments)
 
     def element(self, name):
         return self.driver.find_element("id", name)
 
     def put(self, name, value, event="change"):
-        """Gives an input a value, as a hand does."""
+        """Set the value of an input element, with the event that a user would cause."""
         self.js("const e = document.getElementById(arguments[0]); e.value = arguments[1];"
                 "e.dispatchEvent(new Event(arguments[2], { bubbles: true }))", name, str(value), event)
         self.settle()
@@ -67,11 +67,12 @@ class Page:
         self.settle()
 
     def picture(self):
-        """The bytes of the picture as PNG."""
+        """Return the picture as the bytes of a PNG file."""
         return base64.b64decode(self.js("return document.getElementById('view').toDataURL().split(',')[1]"))
 
     def colours(self):
-        """How many different colours the picture has, coarsely, and the part that is not the ground."""
+        """Return the approximate number of colours of the picture, and the fraction that is not
+        background."""
         return self.js("""
             const view = document.getElementById("view"), copy = document.createElement("canvas");
             [copy.width, copy.height] = [200, 120];
@@ -85,7 +86,7 @@ class Page:
             return [seen.size, 1 - Math.max(...seen.values()) / (200 * 120)];""")
 
     def red(self):
-        """How many pixels of a smaller copy are of the red of bad tets."""
+        """Count the pixels of a smaller copy that have the red of bad tets."""
         return self.js("""
             const view = document.getElementById("view"), copy = document.createElement("canvas");
             [copy.width, copy.height] = [400, 240];
@@ -97,17 +98,17 @@ class Page:
             return n;""")
 
     def requests(self):
-        """What was asked for, the page itself left out."""
-        asked = []
+        """Return the URLs that were requested, except the page itself."""
+        urls = []
         for entry in self.driver.get_log("performance"):
             message = json.loads(entry["message"])["message"]
-            # The browser's own first tab asks for things too.
+            # The first tab of the browser makes requests as well.
             if message["method"] == "Network.requestWillBeSent" and message["params"]["documentURL"].startswith("file:"):
-                asked.append(message["params"]["request"]["url"])
-        assert asked, "the page itself is a request"
-        return [url for url in asked if not url.startswith(("file:", "data:"))]
+                urls.append(message["params"]["request"]["url"])
+        assert urls, "not even the page was requested"
+        return [url for url in urls if not url.startswith(("file:", "data:"))]
 
-    def complaints(self):
+    def errors(self):
         return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] != "INFO"]
 
     def close(self):
@@ -124,13 +125,13 @@ def page():
 
 @pytest.fixture(scope="module")
 def moved(motet, sphere):
-    """The page of a series, with the report of the motion."""
+    """The path of a page of a series, with the report of the motion."""
     folder = sphere[0]
     motet("report", folder / "moved.pvd", folder / "move.json", "-o", folder / "moved.html", "--title", "A sphere moves")
     return folder / "moved.html"
 
 
-def test_each_act_changes_the_picture_and_nothing_is_asked_of_a_network(page, moved):
+def test_each_control_changes_the_picture_without_network_requests(page, moved):
     page.open(moved)
     assert "A sphere moves" in page.driver.title
     n_colours, drawn = page.colours()
@@ -175,15 +176,15 @@ def test_each_act_changes_the_picture_and_nothing_is_asked_of_a_network(page, mo
     changed("turning by a key")
     page.element("view").send_keys("+")
     page.settle()
-    changed("going nearer by a key")
+    changed("zooming by a key")
     page.js("document.querySelector('[data-look=\"+x\"]').click()")
     page.settle()
     changed("looking along x")
-    assert page.complaints() == []
+    assert page.errors() == []
     assert page.requests() == []
 
 
-def test_a_series_plays_and_its_charts_follow(page, moved):
+def test_charts_follow_a_series_that_plays(page, moved):
     page.open(moved)
     first = page.picture()
     cursor = "return document.querySelector('[data-view] .chart .cursor').getAttribute('x1')"
@@ -191,31 +192,31 @@ def test_a_series_plays_and_its_charts_follow(page, moved):
     page.click("play")
     end = time.monotonic() + 30
     while page.js("return document.getElementById('frame').value") in ("0", "1"):
-        assert time.monotonic() < end, "it does not play"
+        assert time.monotonic() < end, "the series does not play"
         time.sleep(0.05)
     page.click("play")
     frame = page.js("return document.getElementById('frame').value")
     time.sleep(0.6)
-    assert page.js("return document.getElementById('frame').value") in (frame, str(int(frame) + 1)), "it is paused"
+    assert page.js("return document.getElementById('frame').value") in (frame, str(int(frame) + 1)), "the series is not paused"
     page.settle()
     assert page.picture() != first
     assert page.js(cursor) != place
     assert page.js("return document.getElementById('eas-0').innerHTML") != bars
-    assert page.complaints() == []
+    assert page.errors() == []
 
 
-def test_the_page_says_what_motet_info_says(page, moved, motet):
+def test_the_page_agrees_with_motet_info(page, moved, motet):
     page.open(moved)
-    told = motet.json("info", moved.parent / "moved_0010.vtu")["quality"]["eas"]
+    eas = motet.json("info", moved.parent / "moved_0010.vtu")["quality"]["eas"]
     rows = page.js("return [...document.querySelectorAll('tbody')[0].rows].map(r => [...r.cells].map(c => c.textContent))")
     head = page.js("return [...document.querySelectorAll('thead')[0].rows[0].cells].map(c => c.textContent)")
     last = dict(zip(head, rows[-1]))
-    assert int(last["bad"].replace("\u202f", "")) == told["bad"]
-    assert float(last["worst EAS"]) == pytest.approx(told["min"], rel=1e-3)
-    assert int(last["at cell"]) == told["worst_cell"]
+    assert int(last["bad"].replace("\u202f", "")) == eas["bad"]
+    assert float(last["worst EAS"]) == pytest.approx(eas["min"], rel=1e-3)
+    assert int(last["at cell"]) == eas["worst_cell"]
 
 
-def test_cells_of_other_kinds_surfaces_and_logs_share_a_page(page, motet, example, tmp_path):
+def test_one_page_shows_a_volume_a_surface_and_a_log(page, motet, example, tmp_path):
     example("shapes").run(tmp_path)
     (tmp_path / "run.jsonl").write_text("".join(
         json.dumps({"step": k, "least_gap": 1 / (k + 1), "seconds": {"graph": 0.1, "check": 0.2 + k}, "odd": [{}, 1]}) + "\n"
@@ -227,10 +228,11 @@ def test_cells_of_other_kinds_surfaces_and_logs_share_a_page(page, motet, exampl
     assert page.picture() != first and page.colours()[1] > 0.02
     text = page.js("return document.body.innerText")
     assert "least_gap" in text and "seconds by stage" in text
-    assert page.complaints() == [] and page.requests() == []
+    assert page.errors() == [] and page.requests() == []
 
 
-# What the page's own script makes of a frame that is cut: the area and the box of the slice, and the box of the whole cells at the cut.
+# Cuts each frame with the script of the page: the area and bounds of the slice, and the bounds of the whole
+# cells.
 CUT = """
 const done = arguments[arguments.length - 1], [name, axis, part] = arguments;
 (async () => {
@@ -251,7 +253,7 @@ const done = arguments[arguments.length - 1], [name, axis, part] = arguments;
     }
     return [...low, ...high];
   };
-  const told = [], none = { skin: null, inside: null, isOnPoints: false };
+  const results = [], none = { skin: null, inside: null, isOnPoints: false };
   for (const frame of window.parts.manifest.inputs.find((input) => input.name === name).frames) {
     const loaded = await window.parts.loadFrame(frame), { low, step } = frame.skin;
     const wanted = low[axis] + part * 1048575 * step[axis], planes = loaded.inside.planes[axis];
@@ -259,24 +261,24 @@ const done = arguments[arguments.length - 1], [name, axis, part] = arguments;
     const at = planes.length ? planes.reduce(nearer) : wanted, cut = { axis, at, sign: 1, mode: "slice" };
     const cells = window.parts.crinkle(loaded, none, { ...cut, mode: "cells" });
     const slice = window.parts.slice(loaded, none, cut);
-    told.push({ frame: frame.frame, at, slice: area(slice), box: box(slice), cells: box(cells) });
+    results.push({ frame: frame.frame, at, slice: area(slice), box: box(slice), cells: box(cells) });
   }
-  done(told);
+  done(results);
 })().catch((error) => done(String(error)));"""
 
 
 @pytest.fixture(scope="module")
 def demo(motet, tmp_path_factory):
-    """The folder that `motet demo` writes."""
+    """The folder written by `motet demo`."""
     folder = tmp_path_factory.mktemp("demo")
     motet("demo", folder, timeout=900)
     return folder
 
 
 @pytest.mark.parametrize("name", ["aneurysm", "dissection"])
-def test_each_frame_of_the_demo_that_is_cut_is_what_vtk_cuts(page, demo, tmp_path, name):
+def test_cuts_of_each_frame_of_the_demo_agree_with_vtk(page, demo, tmp_path, name):
     pyvista = pytest.importorskip("pyvista")
-    # The page's own functions, where the test can call them.
+    # Make the functions of the page accessible to the test.
     text, end = (demo / "report.html").read_text(), "\n})();\n</script>"
     assert text.count(end) == 1
     opened = text.replace(end, "\nwindow.parts = { manifest, loadFrame, slice, crinkle };" + end)
@@ -285,9 +287,9 @@ def test_each_frame_of_the_demo_that_is_cut_is_what_vtk_cuts(page, demo, tmp_pat
     page.driver.set_script_timeout(300)
     files = [demo / reader for reader in _files(demo / f"{name}.pvd")]
     for axis in (0, 2):
-        told = page.driver.execute_async_script(CUT, f"{name}.pvd", axis, 0.47)
-        assert isinstance(told, list) and len(told) == len(files), told
-        for frame in told:
+        results = page.driver.execute_async_script(CUT, f"{name}.pvd", axis, 0.47)
+        assert isinstance(results, list) and len(results) == len(files), results
+        for frame in results:
             grid = pyvista.read(files[frame["frame"]])
             volume = grid.extract_cells(grid.celltypes == pyvista.CellType.TETRA)
             normal, origin = [0.0, 0.0, 0.0], list(volume.center)
@@ -297,23 +299,23 @@ def test_each_frame_of_the_demo_that_is_cut_is_what_vtk_cuts(page, demo, tmp_pat
             size = volume.length
             bounds = [cut.bounds[i] for i in (0, 2, 4, 1, 3, 5)]
             assert frame["box"] == pytest.approx(bounds, abs=1e-4 * size), where
-            # Whole cells at the cut stay within the mesh: no spikes.
+            # Whole cells at the cut lie within the bounds of the mesh.
             outside = [volume.bounds[i] for i in (0, 2, 4, 1, 3, 5)]
             assert all(a >= b - 1e-4 * size for a, b in zip(frame["cells"][:3], outside[:3])), where
             assert all(a <= b + 1e-4 * size for a, b in zip(frame["cells"][3:], outside[3:])), where
-    assert page.complaints() == []
+    assert page.errors() == []
 
 
 def _files(series):
     return re.findall(r'file="([^"]+)"', series.read_text())
 
 
-def test_a_million_tets_open_within_seconds_and_stay_below_the_budget(page, motet, sphere, tmp_path):
+def test_a_page_of_a_million_tets_opens_within_seconds_and_its_budget(page, motet, sphere, tmp_path):
     motet("refine", sphere[0] / "box.vtu", "-o", tmp_path / "fine.vtu", "--all", timeout=900)
-    told = motet.json("report", tmp_path / "fine.vtu", "-o", tmp_path / "fine.html", timeout=900)
+    report = motet.json("report", tmp_path / "fine.vtu", "-o", tmp_path / "fine.html", timeout=900)
     size = (tmp_path / "fine.html").stat().st_size
-    assert told["payload_bytes"] <= told["budget_bytes"] and size == told["bytes"] < 25e6
-    assert told["inputs"][0]["whole"] == 1
+    assert report["payload_bytes"] <= report["budget_bytes"] and size == report["bytes"] < 25e6
+    assert report["inputs"][0]["whole"] == 1
     assert page.open(tmp_path / "fine.html") < 30
     assert page.colours()[1] > 0.1
     before = page.picture()
@@ -324,17 +326,17 @@ def test_a_million_tets_open_within_seconds_and_stay_below_the_budget(page, mote
         assert time.monotonic() - start < 15
         assert page.picture() != before
         before = page.picture()
-    # A fifth of the room: planes in place of all cells, and the page says so.
-    told = motet.json("report", tmp_path / "fine.vtu", "-o", tmp_path / "small.html", "--budget", 6, timeout=900)
-    assert told["payload_bytes"] <= 6e6 and told["inputs"][0]["cut"] == 1
+    # With a fifth of the budget the page contains planes instead of all cells, and says so.
+    report = motet.json("report", tmp_path / "fine.vtu", "-o", tmp_path / "small.html", "--budget", 6, timeout=900)
+    assert report["payload_bytes"] <= 6e6 and report["inputs"][0]["cut"] == 1
     page.open(tmp_path / "small.html")
     page.put("cut", 0)
     assert "planes along each axis" in page.element("note").text
     assert page.colours()[1] > 0.1
-    assert page.complaints() == []
+    assert page.errors() == []
 
 
-def test_without_webgl_tables_and_charts_are_left(moved):
+def test_without_webgl_the_page_shows_tables_and_charts(moved):
     page = Page("--disable-3d-apis")
     try:
         page.open(moved)
@@ -345,7 +347,7 @@ def test_without_webgl_tables_and_charts_are_left(moved):
         page.close()
 
 
-def test_without_a_script_tables_and_charts_are_left(moved):
+def test_without_scripts_the_page_shows_tables_and_charts(moved):
     page = Page("--blink-settings=scriptEnabled=false")
     try:
         page.driver.get(moved.as_uri())

@@ -1,4 +1,4 @@
-"""The demo as a user makes it, and its series as VTK reads them: frames with other cells than the ones before."""
+"""`motet demo`, and its series of changing meshes read by VTK."""
 import json
 
 import numpy as np
@@ -19,15 +19,15 @@ def has_positive_tets(mesh):
 
 
 def test_the_demo_keeps_both_meshes_good(demo):
-    folder, told = demo
-    for cycle, steps in zip(told["cycles"], (16, 24)):
+    folder, report = demo
+    for cycle, steps in zip(report["cycles"], (16, 24)):
         assert cycle["steps"] == steps and cycle["complete"] and cycle["most_bad"] == cycle["most_inverted"] == 0
         assert cycle["changed_steps"] > 0 and cycle["warned_steps"] > 0 and cycle["worst"]["eas"] >= 0.2
     assert (folder / "report.html").stat().st_size < 25e6
 
 
 @pytest.mark.parametrize("name", ["aneurysm", "dissection"])
-def test_frames_are_what_the_log_says(demo, name):
+def test_frames_agree_with_the_log(demo, name):
     folder, _ = demo
     lines = [json.loads(line) for line in (folder / f"{name}.jsonl").read_text().splitlines()]
     reader = pv.get_reader(folder / f"{name}.pvd")
@@ -41,5 +41,5 @@ def test_frames_are_what_the_log_says(demo, name):
         assert mesh["eas"][tets].min() == pytest.approx(line["worst"]["eas"], rel=1e-12)
         assert has_positive_tets(mesh)
         counts.add(line["tets"])
-    # The mesh about the coil is refined before the first step, and stays good.
-    assert len(counts) > 1 or name == "aneurysm", "the mesh changes on the way"
+    # The mesh around the coil is refined before the first step, and then stays good without changes.
+    assert len(counts) > 1 or name == "aneurysm", "the mesh never changes"

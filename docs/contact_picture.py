@@ -1,11 +1,12 @@
-"""Draws the stent that opens in an artery, its gaps in colour (writes docs/contact.png).
+"""Draws a stent that expands in an artery, coloured by its gaps (writes docs/contact.png).
 
     ./test --setup                                        (once: the Python packages)
     cargo run --release -p motet --example contact_stent target/contact/stent.pvd
     cargo run --release -- contact target/contact/stent.pvd VESSEL -o target/contact/gaps.pvd --warn 0.15
     target/venv/bin/python docs/contact_picture.py target/contact
 
-VESSEL is `id1_model.vtp` of the VMTK tutorials (BSD-3; github.com/vmtk/vmtk.github.com, resources/img/tutorials).
+VESSEL is `id1_model.vtp` of the VMTK tutorials (BSD-3; github.com/vmtk/vmtk.github.com,
+resources/img/tutorials).
 """
 import sys
 from pathlib import Path
@@ -21,13 +22,13 @@ PANEL = (420, 330)
 RANGE = (0.0, 0.6)
 WARN = 0.15
 STEPS = (0, 12, 15)
-# Red warns (below a quarter of the range), pale is far.
+# Red: warning (below a quarter of the range); blue: far.
 GAP = LinearSegmentedColormap.from_list("gap", [
     (0.0, "#8c0f2d"), (0.249, "#e0583f"), (0.251, "#f0c36a"), (0.6, "#8fc7b4"), (1.0, "#2b6c8a")])
 
 
 def panel(mesh):
-    """Stent and wall; the wall's warned places shine through."""
+    """Return an image of the stent and the transparent wall, with warnings on the wall highlighted."""
     body = mesh.cell_data["body"]
     stent = mesh.extract_cells(body == 1).extract_surface(algorithm="dataset_surface")
     wall = mesh.extract_cells(body == 2).extract_surface(algorithm="dataset_surface")

@@ -1,10 +1,11 @@
-"""Draws two meshes through a cycle of their walls (docs/run.png).
+"""Draws two meshes at extreme positions of their walls (writes docs/run.png).
 
     ./test --setup                                        (once: the Python packages)
     cargo run --release -- demo motet-demo
     target/venv/bin/python docs/demo_picture.py motet-demo
 
-Tets behind a plane, coloured by their equi-angle quality: the coiled aneurysm as its wall is widest and narrowest, the dissection as its flap is up and down.
+Shows the tets behind a plane, coloured by equi-angle quality: the aneurysm with a coil when its wall is
+widest and narrowest, and the dissection when its flap is up and down.
 """
 import sys
 from pathlib import Path
@@ -25,7 +26,7 @@ def behind(mesh, axis, at):
 
 
 def panel(mesh, axis, at, focus, height, offset, up, sheet=None):
-    """The tets behind a plane, and in front of them a rim of a sheet in copper."""
+    """Return an image of the tets behind a plane, with the line in which a sheet cuts the plane in copper."""
     plotter = lit(mesh, PANEL)
     if sheet is not None:
         label = int(mesh.field_data[f"patch:{sheet}"][0])

@@ -1,12 +1,14 @@
-"""Counts and mean quality over long motions: draws docs/drift.png from the logs of `bench-compare/run drift`.
+"""Draws numbers of vertices and mean quality over long motions (writes docs/drift.png).
 
     bench-compare/run drift --cases flap,ventricle,cube --cycles 50
-    bench-compare/run drift --cases paddle      and in its folder, bench-compare/target/drift/paddle, with steps = 7200 and degrees = 36000 in job.toml:
-    motet run job.toml --threads 1
+    bench-compare/run drift --cases paddle
+    motet run job.toml --threads 1              in bench-compare/target/drift/paddle, with steps = 7200 and
+                                                degrees = 36000 in job.toml
     target/venv/bin/python docs/drift_picture.py
 
-Each line is a case of that benchmark, as far as its run went: how many vertices, as a part of those at first, and the mean EAS, at the end of each turn or cycle. Bands: least and most of all
-steps on the way.
+Reads the logs of `bench-compare/run drift`. Each line is a case of that benchmark: the number of vertices
+relative to the initial number, and the mean EAS, at the end of each turn or cycle. Bands show the minimum and
+maximum of all steps within a turn or cycle.
 """
 import json
 from pathlib import Path
@@ -18,7 +20,7 @@ import matplotlib.pyplot as plt
 
 HERE = Path(__file__).resolve().parent
 RUNS = HERE.parent / "bench-compare" / "target" / "drift"
-# name: steps in a turn or cycle, colour
+# Name: number of steps in a turn or cycle, and colour.
 CASES = {"paddle": (72, "#17607a"), "flap": (24, "#e0583f"), "ventricle": (25, "#8a9a5b"), "cube": (24, "#c99a3b")}
 
 
@@ -30,7 +32,7 @@ def log(case):
 
 
 def draw(axes, values, steps, colour, label):
-    """The values at the ends of cycles, and a band from the least to the most within each."""
+    """Draw the values at the ends of cycles, and a band from the minimum to the maximum within each cycle."""
     n = (len(values) - 1) // steps
     ends = [values[k * steps] for k in range(n + 1)]
     within = [values[k * steps:(k + 1) * steps + 1] for k in range(n)]

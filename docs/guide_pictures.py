@@ -1,10 +1,10 @@
-"""Draws the pictures of docs/guide, from what the commands of its pages make.
+"""Draws the pictures of docs/guide from the output of the commands on its pages.
 
     ./test --setup && target/venv/bin/python -m pip install ./python    (once)
     cargo build --release
     target/venv/bin/python docs/guide_pictures.py         (writes docs/guide/*.png)
 
-Each page is followed, as `crosscheck/test_guide.py` follows it, until the files of its picture are there.
+The commands of each page are run, as in `crosscheck/test_guide.py`, until the files for its picture exist.
 """
 import sys
 import tempfile
@@ -23,12 +23,12 @@ from test_guide import follow  # noqa: E402
 GUIDE = HERE / "guide"
 SURFACE = dict(color="#dfe6ec", show_edges=True, edge_color=INK, line_width=0.9, edge_opacity=0.45, ambient=0.7, diffuse=0.38)
 PANEL, SQUARE = (600, 390), (440, 440)
-# Where the camera looks, and how much it sees from top to bottom.
+# Centre of view and visible height.
 WHOLE, SAC = ((0.0, 0.6, 0.0), 7.0), ((0.0, 2.25, 0.0), 3.0)
 
 
 def cut(mesh, panel=PANEL):
-    """The cells behind the middle, by their quality."""
+    """Return a scene with the cells behind the centre plane, coloured by quality."""
     plotter = lit(mesh, panel)
     behind = mesh.extract_cells(mesh.cell_centers().points[:, 2] < 0.0)
     plotter.add_mesh(behind, scalars="EAS", cmap=QUALITY, clim=RANGE, show_scalar_bar=False, **EDGES)
@@ -64,7 +64,7 @@ def draw_wall_moves(folder):
         plotter = cut(mesh)
         if mesh is frames[1]:
             line = at_rest.copy()
-            line.points[:, 2] = 2.0  # before all else
+            line.points[:, 2] = 2.0  # in front of everything else
             plotter.add_mesh(line, color=COPPER, line_width=4, lighting=False)
         pictures.append((seen(plotter, WHOLE), counted(mesh, text)))
     save_sheet(pictures, GUIDE / "wall-moves.png", bar=colour_bar)
@@ -108,8 +108,8 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             for command, code, lines in follow(GUIDE / f"{page}.md", binary(), Path(folder)):
                 if code != command.code:
-                    sys.exit(f"$ {command.words}\n" + "\n".join(lines))
-                if command.words.startswith(last):
+                    sys.exit(f"$ {command.text}\n" + "\n".join(lines))
+                if command.text.startswith(last):
                     break
             draw(Path(folder))
 

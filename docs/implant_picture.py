@@ -1,4 +1,5 @@
-"""Draws devices in meshes: a ball in a box (docs/implant_ball.png), a coil in an aneurysm (docs/implant.png), a stent across its neck (docs/implant_wall.png).
+"""Draws devices implanted in meshes (writes docs/implant_ball.png, docs/implant.png and
+docs/implant_wall.png).
 
     ./test --setup                                        (once: the Python packages)
     cargo run --release -p motet --example shapes target
@@ -8,8 +9,9 @@
     cargo run --release -- implant target/host.vtu target/stent.vtp -o target/with_stent.vtu
     target/venv/bin/python docs/implant_picture.py target
 
-The tets behind a plane: the host coloured by its equi-angle quality, the device in copper. Of the stent also its surface: copper within the
-vessel, blue where it has the wall in common.
+Shows a ball in a box, a coil in an aneurysm, and a stent across its neck. The tets behind a plane are
+coloured by equi-angle quality in the host, and copper in the device. The surface of the stent is copper
+inside the vessel, and blue where it shares the wall.
 """
 import sys
 from pathlib import Path
@@ -20,13 +22,13 @@ from pictures import COPPER, EDGES, HERE, QUALITY, RANGE, lit, save_sheet, seen_
 
 PANEL = (520, 400)
 BLUE = "#2f7fb5"
-# Where the camera looks, and how much it sees from top to bottom.
+# Centre of view and visible height.
 WHOLE, TURNS, BOX = ((0.0, 0.3, 0.0), 8.2), ((0.75, 2.2, 0.0), 1.8), ((0.0, 0.0, 0.0), 5.9)
 ACROSS = ((0.0, 0.0, 0.0), 2.6)
 
 
 def panel(mesh, view, axis=2, offset=(0.0, -8.0, 40.0), up=(0.0, 1.0, 0.0)):
-    """The cells behind the plane through the origin at right angles to an axis."""
+    """Return an image of the cells behind the plane through the origin normal to an axis."""
     plotter = lit(mesh, PANEL)
     behind = mesh.cell_centers().points[:, axis] * np.sign(offset[axis]) < 0.0
     in_device = mesh.cell_data["region"] > 1
@@ -38,7 +40,7 @@ def panel(mesh, view, axis=2, offset=(0.0, -8.0, 40.0), up=(0.0, 1.0, 0.0)):
 
 
 def surface_panel(path):
-    """The surface of the stent: inside the vessel, and where it has the wall in common; the vessel as a veil."""
+    """Return an image of the surface of the stent, inside the vessel and shared with the transparent wall."""
     mesh = pv.read(path)
     mesh = mesh.extract_cells(mesh.celltypes == pv.CellType.TRIANGLE)
     plotter = lit(mesh, PANEL)

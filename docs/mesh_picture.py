@@ -1,4 +1,4 @@
-"""Draws an aneurysm filled with tets, as it is and with layers (writes docs/mesh.png).
+"""Draws an aneurysm filled with tets, without and with boundary layers (writes docs/mesh.png).
 
     ./test --setup                                        (once: the Python packages)
     cargo run --release -p motet --example shapes target
@@ -6,19 +6,20 @@
     cargo run --release -- mesh target/aneurysm.vtp -o target/layered.vtu --size 0.4 --growth 0.3 --layers 4,0.02,1.4
     target/venv/bin/python docs/mesh_picture.py target/filled.vtu target/layered.vtu
 
-The tets behind a plane along the vessel, coloured by their equi-angle quality; on the right the neck of the sac.
+Shows the tets behind a plane along the vessel, coloured by equi-angle quality; on the right the neck of the
+sac.
 """
 import sys
 
 from pictures import HERE, INK, QUALITY, RANGE, lit, save_sheet, seen_straight, tets
 
 PANEL = (520, 400)
-# Where the camera looks, and how much it sees from top to bottom.
+# Centre of view and visible height.
 WHOLE, NECK = ((0.0, 0.3, 0.0), 8.2), ((-1.25, 1.0, 0.0), 1.3)
 
 
 def panel(mesh, centre, height):
-    """The cells behind the plane."""
+    """Return an image of the cells behind the plane."""
     plotter = lit(mesh, PANEL)
     behind = mesh.extract_cells(mesh.cell_centers().points[:, 2] < 0.0)
     plotter.add_mesh(behind, scalars="EAS", cmap=QUALITY, clim=RANGE, show_scalar_bar=False, show_edges=True, edge_color=INK, line_width=0.8,

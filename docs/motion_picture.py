@@ -6,7 +6,7 @@
     cargo run --release -- move target/flap.vtu -o target/flap_guided.vtu --displacement u --smooth 16 --method guided
     target/venv/bin/python docs/motion_picture.py target/flap.vtu target/flap_delaunay.vtu target/flap_guided.vtu
 
-A cut through the channel at z = 0: tets by their equi-angle quality, bad ones red.
+Shows a cut through the channel at z = 0, coloured by the equi-angle quality of tets; bad tets are red.
 """
 import sys
 from pathlib import Path
@@ -22,7 +22,7 @@ ANGLE = np.radians(60.0)
 
 
 def bent(points):
-    """The displacement of the flap's vertices, as an arc; none of the others'."""
+    """Return displacements that bend the flap to an arc, and are 0 elsewhere."""
     x, y, z = points.T
     along = y + 1.0
     moved = np.stack([(1.0 - np.cos(ANGLE * along)) / ANGLE + x * np.cos(ANGLE * along),
@@ -55,8 +55,8 @@ def main():
     if len(sys.argv) != 4:
         sys.exit(__doc__)
     pictures = [panel(path) for path in sys.argv[1:]]
-    words = ("a flap in a channel", "bent, --method delaunay", "bent, --method guided")
-    save_sheet([(picture, f"{text}: {bad} bad tets") for (picture, bad), text in zip(pictures, words)], HERE / "motion.png")
+    captions = ("a flap in a channel", "bent, --method delaunay", "bent, --method guided")
+    save_sheet([(picture, f"{text}: {bad} bad tets") for (picture, bad), text in zip(pictures, captions)], HERE / "motion.png")
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
-"""Draws the picture of docs/remesh.md, and has what the other scripts that draw share.
+"""Draws the picture of docs/remesh.md, and contains functions shared by the other drawing scripts.
 
     ./test --setup                                        (once: the Python packages)
     cargo run --release -p motet --example remesh_cases sphere target/moved.vtu
     cargo run --release -- remesh target/moved.vtu -o target/repaired.vtu --history target/history.json
     target/venv/bin/python docs/pictures.py target/moved.vtu target/repaired.vtu target/history.json
 
-The bad tets of a mesh and the tets that replace them, in a cut through it (writes docs/remesh.png).
+Shows the bad tets of a mesh and their replacements in a cut (writes docs/remesh.png).
 """
 import json
 import sys
@@ -22,16 +22,16 @@ HERE = Path(__file__).resolve().parent
 PANEL = (550, 550)
 INK = "#22303c"
 COPPER = "#b5652f"
-# Lines of tets.
+# Options for drawing the edges of tets.
 EDGES = dict(show_edges=True, edge_color=INK, line_width=0.8, edge_opacity=0.5, ambient=0.65, diffuse=0.4, specular=0.0)
 RANGE = (0.0, 0.8)
-# Red is bad (below 0.2), sand is fair, blue-green is good; pale enough that the edges stay visible.
+# Red: bad (below 0.2); sand: fair; blue-green: good. Pale enough for edges to remain visible.
 QUALITY = LinearSegmentedColormap.from_list("quality", [
     (0.0, "#7d0a2a"), (0.25, "#e0583f"), (0.4, "#f6d58e"), (0.6, "#b9dfc0"), (0.8, "#5fb3b3"), (1.0, "#17607a")])
 
 
 def tets(path):
-    """The volume cells with their equi-angle quality, negative where inverted."""
+    """Read the tets of a file, with their equi-angle quality, which is negative for inverted tets."""
     mesh = pv.read(path)
     mesh = mesh.extract_cells(mesh.celltypes == pv.CellType.TETRA)
     verdict = vtkMeshQuality()
@@ -45,7 +45,7 @@ def tets(path):
 
 
 def ball(mesh):
-    """The part of the surface away from the box's walls."""
+    """Return the part of the surface that is not on the walls of the box."""
     surface = mesh.extract_surface(algorithm="dataset_surface")
     low, high = np.array(surface.bounds).reshape(3, 2).T
     reach = 1e-6 * (high - low).max()
@@ -54,7 +54,7 @@ def ball(mesh):
 
 
 def lit(mesh, panel=PANEL):
-    """An empty scene with the lights for a mesh."""
+    """Return an empty scene with lights for a mesh."""
     plotter = pv.Plotter(off_screen=True, window_size=panel, lighting="none")
     plotter.set_background("white")
     centre, size = np.array(mesh.center), mesh.length / np.sqrt(3.0)
@@ -64,7 +64,7 @@ def lit(mesh, panel=PANEL):
 
 
 def shot(plotter):
-    """What the camera sees."""
+    """Render a scene to an image, and close it."""
     plotter.enable_anti_aliasing("ssaa")
     image = Image.fromarray(plotter.screenshot(return_img=True))
     plotter.close()
@@ -72,7 +72,7 @@ def shot(plotter):
 
 
 def seen_straight(plotter, centre, offset, up, height):
-    """What the camera sees from `centre` + `offset` without perspective, so much from top to bottom."""
+    """Render a scene in parallel projection from `centre` + `offset`, with a visible height."""
     centre = np.array(centre)
     plotter.camera_position = [centre + offset, centre, up]
     plotter.enable_parallel_projection()
@@ -81,7 +81,10 @@ def seen_straight(plotter, centre, offset, up, height):
 
 
 def save_sheet(pictures, path, columns=None, bar=None):
-    """Pictures of one size in rows, all in one where no number of columns is said, each with its text below; `bar` draws a scale under all of them."""
+    """Save pictures of equal size in rows of `columns` (default: one row), each with its text below.
+
+    `bar` draws a colour scale below all pictures.
+    """
     width, height = pictures[0][0].size
     columns = columns or len(pictures)
     rows, foot = -(-len(pictures) // columns), 52 if bar else 0
@@ -99,12 +102,16 @@ def save_sheet(pictures, path, columns=None, bar=None):
 CUT_PANEL = (550, 430)
 BAD = "#d5352c"
 NEW = "#1d9bb8"
-# Chosen cells up to here before the cut are shown too.
+# Chosen cells in front of the cut, up to this depth, are shown as well.
 STANDS_OUT = -0.1
 
 
 def cut_panel(mesh, chosen, colour):
-    """The cells behind the plane y = 0 in pale, the chosen ones among them solid; a few of these stand out before the others."""
+    """Return an image of the cells behind the plane y = 0 in a pale colour, with the chosen ones in a solid
+    colour.
+
+    A few chosen cells in front of the plane are shown as well.
+    """
     plotter = lit(mesh, CUT_PANEL)
     depth = mesh.cell_centers().points[:, 1]
     plotter.add_mesh(mesh.extract_cells((depth > 0.0) & ~chosen), color="#f1f3f5", show_edges=True, edge_color=INK, line_width=1.0,
@@ -120,18 +127,18 @@ def cut_panel(mesh, chosen, colour):
 
 
 def draw_repair(moved, repaired, history):
-    """Bad tets before, new tets after."""
+    """Draw the bad tets before a repair, and the new tets after it."""
     before, after = tets(moved), tets(repaired)
     none = 2**32 - 1
     kept = np.array(json.loads(Path(history).read_text())["cells"]["kept"])
     kinds = pv.read(repaired).celltypes
     bad = before["EAS"] < 0.2
-    came = kept[kinds == pv.CellType.TETRA] == none
+    new = kept[kinds == pv.CellType.TETRA] == none
     width, height = CUT_PANEL
     sheet = Image.new("RGB", (2 * width, height + 40), "white")
     draw = ImageDraw.Draw(sheet)
     panels = [(before, bad, BAD, f"before: {bad.sum():,} of {before.n_cells:,} tets are bad"),
-              (after, came, NEW, f"after: {np.count_nonzero(after['EAS'] < 0.2) or 'none'} left, {came.sum():,} tets are new")]
+              (after, new, NEW, f"after: {np.count_nonzero(after['EAS'] < 0.2) or 'none'} left, {new.sum():,} tets are new")]
     for column, (mesh, chosen, colour, text) in enumerate(panels):
         sheet.paste(cut_panel(mesh, chosen, colour), (column * width, 0))
         middle = column * width + width // 2
@@ -151,7 +158,7 @@ def font(size):
 
 
 def scale_of(colours, limits, ticks, name):
-    """What draws a scale of these colours: `(draw, left, top, width)`."""
+    """Return a function `(draw, left, top, width)` that draws a scale of these colours."""
     def bar(draw, left, top, width):
         for x in range(width):
             colour = tuple(int(255 * c) for c in colours(x / (width - 1))[:3])
@@ -164,7 +171,7 @@ def scale_of(colours, limits, ticks, name):
     return bar
 
 
-# The scale of quality, with the threshold of bad tets.
+# The scale of quality, with the limit of bad tets.
 colour_bar = scale_of(QUALITY, RANGE, (0.0, 0.2, 0.4, 0.6, 0.8), "EAS")
 
 

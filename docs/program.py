@@ -1,4 +1,4 @@
-"""Where the program is that scripts of docs/ and examples/ call."""
+"""Finds the program called by scripts of docs/ and examples/."""
 import os
 import sys
 from pathlib import Path
@@ -7,8 +7,9 @@ SUFFIX = ".exe" if os.name == "nt" else ""
 
 
 def binary():
-    """The program: in $MOTET_BIN_DIR, or where `cargo build --release` puts it."""
+    """Return the path of the program, in $MOTET_BIN_DIR or in the output folder of `cargo build
+    --release`."""
     path = Path(os.environ.get("MOTET_BIN_DIR") or Path(__file__).resolve().parent.parent / "target" / "release").resolve() / f"motet{SUFFIX}"
     if not path.exists():
-        sys.exit(f"{path} is not there: cargo build --release, or say in MOTET_BIN_DIR in which folder it is")
+        sys.exit(f"{path} does not exist: run cargo build --release, or set MOTET_BIN_DIR to its folder")
     return path

@@ -1,8 +1,10 @@
-"""The tables of refine-long.md: runs the example `refine_long` (built with --release) on real and random meshes, and prints what each run came to.
+"""Prints the tables of refine-long.md.
 
-    python docs/refine_long.py DATA BALL_IN_BOX [--processes N] [--only WORD]
+    python docs/refine_long.py DATA BALL_IN_BOX [--processes N] [--only TEXT]
 
-DATA is the folder of real meshes, BALL_IN_BOX a mesh file. A row is the last generation, or the extremes of a front's steps. Takes two minutes on two cores where nothing else runs.
+Runs the example `refine_long` (built with --release) on real and random meshes. DATA is the folder of real
+meshes, BALL_IN_BOX a mesh file. A row describes the last generation, or the extremes over the steps of a
+front. Takes two minutes on two idle cores.
 """
 import argparse
 import concurrent.futures
@@ -24,7 +26,7 @@ MESHES = {
     "screw": "bad_tets/polyfem_screw.msh",
 }
 NINE = [name for name in MESHES if not name.startswith("500")]
-# Table: heading, and rows of a mesh with the words of its call.
+# The headings of the two tables, and their rows: table, mesh, and options of the call.
 TOWARDS = "| mesh | tets | towards | generation | tets | worst / first | median | worst mean ratio / first | below 0.9 | promoted | sweeps | without: tets | worst / first | price |"
 FRONTS = "| mesh | front | depth | most tets | least worst / first | below 0.9, at most | promoted, at most | sweeps, at most | without: most tets | least worst / first | price | taken back in |"
 START = {"screw": ["--start", "300"]}
@@ -52,21 +54,21 @@ def below(rows):
 
 
 def row(job):
-    table, mesh, words, file = job
-    done = subprocess.run([EXAMPLE, file, *words], capture_output=True, text=True)
+    table, mesh, options, file = job
+    done = subprocess.run([EXAMPLE, file, *options], capture_output=True, text=True)
     lines = done.stdout.splitlines()
     rows = [numbers(line) for line in lines if re.match(r"\| \d", line)]
     if not rows or done.returncode == 2:
-        return table, f"| {mesh} | {' '.join(words)} | failed: {done.stderr.strip()} |"
+        return table, f"| {mesh} | {' '.join(options)} | failed: {done.stderr.strip()} |"
     n_first = int(re.search(r": (\d+) tets", lines[0])[1])
     if table == "towards":
         last = rows[-1]
-        cells = [mesh, f"{n_first:,}", words[1], f"{last['step']:.0f}", f"{last['tets']:,.0f}", f"{last['worst']:.3f}", f"{last['median']:.3f}", f"{last['ratio']:.3f}", below(rows),
+        cells = [mesh, f"{n_first:,}", options[1], f"{last['step']:.0f}", f"{last['tets']:,.0f}", f"{last['worst']:.3f}", f"{last['median']:.3f}", f"{last['ratio']:.3f}", below(rows),
                  f"{last['promoted']:,.0f}", f"{last['sweeps']:.0f}", f"{last['free_tets']:,.0f}", f"{last['free_worst']:.3f}", price(last)]
     else:
         largest = max(rows, key=lambda row: row["tets"])
         back = re.search(r"all taken back in (\d+) step", done.stdout)[1]
-        cells = [mesh, words[1], words[3], f"{largest['tets']:,.0f}", f"{min(row['worst'] for row in rows):.3f}", below(rows), f"{max(row['promoted'] for row in rows):,.0f}",
+        cells = [mesh, options[1], options[3], f"{largest['tets']:,.0f}", f"{min(row['worst'] for row in rows):.3f}", below(rows), f"{max(row['promoted'] for row in rows):,.0f}",
                  f"{max(row['sweeps'] for row in rows):.0f}", f"{max(row['free_tets'] for row in rows):,.0f}", f"{min(row['free_worst'] for row in rows):.3f}", price(largest),
                  f"{back} step{'s' if back != '1' else ''}"]
     if "BROKEN" in done.stdout:
@@ -82,7 +84,7 @@ def main():
     parser.add_argument("--only", default="")
     call = parser.parse_args()
     file = {mesh: call.ball_in_box if where is None else where if where.startswith("random") else call.data / where for mesh, where in MESHES.items()}
-    jobs = [(table, mesh, words, file[mesh]) for table, mesh, words in ROWS if call.only in f"{mesh} {' '.join(words)}"]
+    jobs = [(table, mesh, options, file[mesh]) for table, mesh, options in ROWS if call.only in f"{mesh} {' '.join(options)}"]
     before = None
     with concurrent.futures.ThreadPoolExecutor(call.processes) as pool:
         for table, line in pool.map(row, jobs):

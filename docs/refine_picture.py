@@ -1,12 +1,12 @@
-"""Draws the aneurysm that was refined towards a coil (writes docs/refine.png).
+"""Draws an aneurysm refined towards a coil (writes docs/refine.png).
 
     ./test --setup                                        (once: the Python packages)
     cargo run --release -p motet --example coil target/coil.vtp
     cargo run --release -- refine ANEURYSM -o target/fine.vtu --near-size target/coil.vtp=0.075
     target/venv/bin/python docs/refine_picture.py target/fine.vtu target/coil.vtp
 
-ANEURYSM is `aneurysm.xml.gz` of the DOLFIN project (LGPL-3; data/meshes). A plane through the axis of the coil cuts
-the tets; dark is the outline of the wire, on the right of one turn.
+ANEURYSM is `aneurysm.xml.gz` of the DOLFIN project (LGPL-3; data/meshes). A plane through the axis of the
+coil cuts the tets. The outline of the wire is dark; on the right is one turn.
 """
 import sys
 
@@ -16,12 +16,12 @@ from pictures import HERE, QUALITY, RANGE, lit, save_sheet, seen_straight, tets
 
 PANEL = (520, 560)
 PLANE = 43.3
-# Where the camera looks, and how much it sees from top to bottom.
+# Centre of view and visible height.
 VIEWS = (((50.5, PLANE, 27.0), 48.0), ((53.7, PLANE, 35.3), 7.6), ((55.2, PLANE, 35.3), 0.9))
 
 
 def panel(cut, coil, wall, centre, height):
-    """A cut with the wire's outline in it; all of the vessel where there is room."""
+    """Return an image of a cut with the outline of the wire, and of the wall if the view is large."""
     plotter = lit(cut, PANEL)
     is_whole = height > 20.0
     plotter.add_mesh(cut, scalars="EAS", cmap=QUALITY, clim=RANGE, show_scalar_bar=False, lighting=False,

@@ -1,13 +1,15 @@
-"""What a step of `motet run` takes against the size of the mesh: prints the tables of run.md, and draws docs/run_sizes.png.
+"""Measures time and memory of `motet run` by mesh size (prints the tables of run.md, writes
+docs/run_sizes.png).
 
     ./test --setup && target/venv/bin/python -m pip install ./python    (once)
     cargo build --release
     target/venv/bin/python docs/run_sizes.py              (a few minutes, 2 GB of memory and of disk)
 
-A sphere goes three radii towards the wall of its box in six steps. Meshes grow in two ways: more boxes side by side in one mesh, so that there is more of the same to do; and finer in
-one box, similar to each other, where a finer mesh also has more to repair for its size. Vertices inside are shaken a little: else tets come in rows of equals, which go bad and are
-repaired as one. Times are means a step; memory is the most that the process held. Slopes are those of
-the line through all sizes, both axes logarithmic: 1 is in proportion to the number of tets.
+A sphere moves by three radii towards the wall of its box in six steps. Meshes grow in two ways: more boxes
+side by side in one mesh, so that the work per tet is constant; and finer meshes of one box, where a larger
+fraction needs repair. Interior vertices are displaced randomly, because rows of equal tets would become bad,
+and be repaired, together. Times are means per step; memory is the maximum of the process. Slopes are those of
+regression lines in logarithmic axes; 1 means proportional to the number of tets.
 """
 import json
 import subprocess
@@ -25,13 +27,13 @@ from motet import Mesh, shapes
 from program import binary
 
 HERE = Path(__file__).resolve().parent
-# Circles of latitude of the sphere, and layers from it to the box, 1.4 times as many.
+# Number of cells along a side of the cubed sphere, and 1.4 times as many layers from it to the box.
 COARSEST = (10, 14)
 FINER = [COARSEST, (16, 22), (27, 38), (46, 64)]
 COPIES = [1, 4, 20, 99]
-# As a part of the shortest edge at a vertex.
+# Largest random displacement, relative to the shortest edge at a vertex.
 SHAKEN = 0.15
-# From a box to the next; a box is 10 wide.
+# Distance between boxes; the width of a box is 10.
 APART = 12.0
 STEPS = 6
 STAGES = {"motion": "motion", "quality": "quality", "repair": "repair", "setup": "set-up", "total": "step"}
@@ -54,7 +56,7 @@ COLOURS = {"motion": "#17607a", "quality": "#5fb3b3", "repair": "#e0583f", "set-
 
 
 def shaken(mesh):
-    """The mesh with its vertices inside a little elsewhere, the same each time."""
+    """Displace the interior vertices of a mesh randomly, with a fixed seed."""
     points, tets = np.array(mesh.points), mesh.tets
     shortest = np.full(len(points), np.inf)
     for i, j in zip(*np.triu_indices(4, 1)):
@@ -67,12 +69,12 @@ def shaken(mesh):
 
 
 def copies(one, n):
-    """A mesh so many times, side by side in the smallest cube."""
+    """Return a mesh of `n` copies side by side, in the smallest cube."""
     side = int(np.ceil(n ** (1 / 3) - 1e-9))
     places = APART * np.array(list(np.ndindex(side, side, side))[:n])
     first = len(one.points) * np.arange(n)[:, None, None]
     cells = [(kind, (first + rows).reshape(-1, rows.shape[1])) for kind, rows in (("tetra", one.tets.astype(np.int64)), ("triangle", one.triangles.astype(np.int64)))]
-    # All tets come first, in the one mesh and in the many.
+    # All tets precede the triangles, in the original mesh and in the copies.
     n_tets = len(one.tets)
     labels = {name: np.concatenate([np.tile(values[:n_tets], n), np.tile(values[n_tets:], n)]) for name, values in one.cell_data.items()}
     points = (places[:, None] + one.points).reshape(-1, 3)
@@ -80,39 +82,43 @@ def copies(one, n):
 
 
 def measured(folder, mesh):
-    """Of one run: tets; seconds of each stage of a step, bytes, and tets that repairs change a step."""
+    """Run a job; return the number of tets, and the times, memory and number of changed tets per step."""
     mesh.save(folder / "box.vtu")
     (folder / "job.toml").write_text(JOB)
-    held = watched([binary(), "run", "job.toml", "--threads", "2"], folder)
+    memory = watched([binary(), "run", "job.toml", "--threads", "2"], folder)
     lines = [json.loads(line) for line in (folder / "out/box.jsonl").read_text().splitlines()][1:]
     times = [json.loads(line)["seconds"] for line in (folder / "out/box.times.jsonl").read_text().splitlines()][1:]
     row = {name: np.mean([second[key] for second in times]) for key, name in STAGES.items()}
     changes = [change for line in lines for change in line["changes"]]
-    row["memory"] = held
+    row["memory"] = memory
     row["changed"] = sum(change["tets_before"] * (1 - change["kept_share"]) for change in changes) / STEPS
     left = max(line["bad"] for line in lines), max(line["inverted"] for line in lines)
     print(f"{lines[0]['tets']:,} tets: {sum(bool(line['changes']) for line in lines)} of {len(lines)} steps with a repair, "
-          f"{sum(change['bad_before'] for change in changes):,} bad ones repaired, at most {left[0]} left, inverted {left[1]}", flush=True)
+          f"{sum(change['bad_before'] for change in changes):,} bad tets repaired, at most {left[0]} left, {left[1]} inverted", flush=True)
     return lines[0]["tets"], row
 
 
 def watched(command, folder):
-    """The most bytes that a command held, asked for while it runs: what the system tells afterwards counts those of the parent, too."""
-    run, held = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL), 0
+    """Run a command and return its peak memory in bytes.
+
+    The memory is sampled during the run, because the resource usage of finished children includes the
+    parent's.
+    """
+    run, peak = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL), 0
     while run.poll() is None:
         try:
             status = Path(f"/proc/{run.pid}/status").read_text()
         except OSError:
             continue
-        held = max([held] + [1024 * int(line.split()[1]) for line in status.splitlines() if line.startswith("VmHWM")])
+        peak = max([peak] + [1024 * int(line.split()[1]) for line in status.splitlines() if line.startswith("VmHWM")])
         sleep(0.005)
     if run.returncode:
         sys.exit(f"motet run failed with {run.returncode}")
-    return held
+    return peak
 
 
 def slope(xs, ys):
-    """Of the line of least squares through the logarithms."""
+    """Return the slope of the least-squares line through the logarithms."""
     return np.polyfit(np.log(xs), np.log(ys), 1)[0]
 
 
@@ -149,7 +155,7 @@ def draw(sequences):
 
 
 def guide(axes, tets, first, title):
-    """What proportion would be, and the words of a panel."""
+    """Draw a line of proportional growth, and the labels of a panel."""
     values = first * np.array(tets) / tets[0]
     axes.loglog(tets, values, "--", color="#9aa5ad", lw=1)
     axes.annotate("in proportion", (tets[1], values[1]), color="#77838c", xytext=(-62, 16), textcoords="offset points")

@@ -1,10 +1,10 @@
-"""Distances between two surfaces by a library from PyPI: seconds out as JSON.
+"""Measures distances between two surfaces with a library from PyPI, and prints seconds as JSON.
 
 usage: contact_python.py igl|embree|vtk-cells|vtk-implicit FOLDER THREADS RUNS DISTANCES    all vertices of one surface
-       contact_python.py fcl|coal                          FOLDER THREADS RUNS DISTANCES    the nearest places alone
+       contact_python.py fcl|coal                          FOLDER THREADS RUNS DISTANCES    only the nearest points
 
-At a step the tree is made again: most refit none, or not from Python. Lists that a library wants of its own kind are filled
-before the clock starts.
+In a step the tree is rebuilt: most libraries cannot refit trees, or not from Python. Input lists of a
+library's own type are filled before the time is measured.
 """
 import json
 import os
@@ -16,7 +16,7 @@ from importlib.metadata import version
 import numpy as np
 
 NAME, FOLDER, THREADS, RUNS, DISTANCES = sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4]), sys.argv[5]
-STEPS = 8  # in the folder
+STEPS = 8  # number of steps in the folder
 
 
 def points(name):
@@ -46,7 +46,7 @@ class Igl:
         tree.init(tube, self.triangles)
         return tree
 
-    def ask(self, tree, tube, queries):
+    def query(self, tree, tube, queries):
         found = tree.squared_distance(tube, self.triangles, queries)
         return np.sqrt(found[0] if isinstance(found, tuple) else found)
 
@@ -64,10 +64,10 @@ class Embree:
     def build(self, tube, queries):
         scene = self.o3d.t.geometry.RaycastingScene(nthreads=THREADS)
         scene.add_triangles(tube, self.tensor(TUBE))
-        scene.compute_distance(queries[:1], nthreads=THREADS)  # the tree is built at the first question
+        scene.compute_distance(queries[:1], nthreads=THREADS)  # the first query builds the tree
         return scene
 
-    def ask(self, scene, _, queries):
+    def query(self, scene, _, queries):
         return scene.compute_distance(queries, nthreads=THREADS).numpy().astype(float)
 
 
@@ -98,12 +98,12 @@ class VtkCells(Vtk):
         locator.BuildLocator()
         return locator
 
-    def ask(self, locator, _, queries):
+    def query(self, locator, _, queries):
         vtk = self.vtk
         place, cell, sub, squared = [0.0] * 3, vtk.reference(0), vtk.reference(0), vtk.reference(0.0)
         generic = vtk.vtkGenericCell()
         found = np.empty(len(queries))
-        for i, query in enumerate(queries.tolist()):  # VTK has no call for many points
+        for i, query in enumerate(queries.tolist()):  # VTK has no query for several points
             locator.FindClosestPoint(query, place, generic, cell, sub, squared)
             found[i] = squared.get()
         return np.sqrt(found)
@@ -119,7 +119,7 @@ class VtkImplicit(Vtk):
         distance.SetInput(surface)
         return distance
 
-    def ask(self, distance, _, queries):
+    def query(self, distance, _, queries):
         found = self.vtk.vtkDoubleArray()
         distance.FunctionValue(queries, found)
         return np.abs(self.support.vtk_to_numpy(found))
@@ -145,7 +145,7 @@ class Fcl:
         model.endModel()
         return self.fcl.CollisionObject(model, self.fcl.Transform())
 
-    def ask(self, bodies, *_):
+    def query(self, bodies, *_):
         return self.fcl.distance(*bodies, self.fcl.DistanceRequest(), self.fcl.DistanceResult())
 
 
@@ -178,43 +178,43 @@ class Coal:
         model.endModel()
         return model
 
-    def again(self, bodies, *both):
+    def rebuild(self, bodies, *both):
         for body, points in zip(bodies, both):
             body.beginReplaceModel()
             body.replaceSubModel(points)
-            body.endReplaceModel(False, False)  # its refits make the answer ten times slower, or take longer than this
+            body.endReplaceModel(False, False)  # refitting makes queries ten times slower, or takes longer than this
         return bodies
 
-    def ask(self, bodies, *_):
+    def query(self, bodies, *_):
         tube, lattice = bodies
         return self.coal.distance(tube, self.rest, lattice, self.rest, self.coal.DistanceRequest(), self.coal.DistanceResult())
 
 
-def timed(work, *words):
+def timed(work, *arguments):
     start = time.perf_counter()
-    made = work(*words)
-    return time.perf_counter() - start, made
+    result = work(*arguments)
+    return time.perf_counter() - start, result
 
 
 def main():
     library = {"igl": Igl, "embree": Embree, "vtk-cells": VtkCells, "vtk-implicit": VtkImplicit, "fcl": Fcl, "coal": Coal}[NAME]()
     rest = library.prepared(points("tube"), points("lattice"))
-    building, asking, moving, warm = [], [], [], []
+    building, querying, moving, warm = [], [], [], []
     for _ in range(RUNS):
         seconds, tree = timed(library.build, *rest)
         building.append(seconds)
-        seconds, found = timed(library.ask, tree, *rest)
-        asking.append(seconds)
+        seconds, found = timed(library.query, tree, *rest)
+        querying.append(seconds)
     at_rest = found
     for step in range(STEPS):
         moved = library.prepared(points(f"tube_{step}"), points(f"lattice_{step}"))
-        is_kept = hasattr(library, "again")
-        seconds, tree = timed(library.again, tree, *moved) if is_kept else timed(library.build, *moved)
+        is_kept = hasattr(library, "rebuild")
+        seconds, tree = timed(library.rebuild, tree, *moved) if is_kept else timed(library.build, *moved)
         moving.append(seconds)
-        seconds, found = timed(library.ask, tree, *moved)
+        seconds, found = timed(library.query, tree, *moved)
         warm.append(seconds)
-    out = {"seconds": [a + b for a, b in zip(building, asking)], "build_seconds": statistics.median(building),
-           "cold_seconds": statistics.median(asking), "refit_seconds": statistics.median(moving),
+    out = {"seconds": [a + b for a, b in zip(building, querying)], "build_seconds": statistics.median(building),
+           "cold_seconds": statistics.median(querying), "refit_seconds": statistics.median(moving),
            "warm_seconds": statistics.median(warm), "version": version(library.package),
            "step_seconds": statistics.median(a + b for a, b in zip(moving, warm))}
     if NAME in ("fcl", "coal"):

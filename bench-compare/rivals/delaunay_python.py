@@ -1,4 +1,4 @@
-"""Delaunay tetrahedralisation by Qhull (SciPy), Gmsh or TetGen: raw f64 triples in, JSON out.
+"""Delaunay tetrahedralisation of raw f64 triples by Qhull (SciPy), Gmsh or TetGen; prints seconds as JSON.
 
 usage: delaunay_python.py PROGRAM FILE RUNS
 """
@@ -40,7 +40,7 @@ def gmsh(points, runs):
 
 
 def tetgen(points, runs):
-    """The command line program tells its own "Delaunay seconds", of processor time."""
+    """Run TetGen, which reports its "Delaunay seconds" as CPU time."""
     seconds, tets = [], 0
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "points.node"
@@ -48,10 +48,10 @@ def tetgen(points, runs):
         path.write_text("\n".join([f"{len(points)} 3 0 0", *rows, ""]))
         for _ in range(runs):
             done = subprocess.run(["tetgen", "-VNEF", str(path)], capture_output=True, text=True)
-            took = re.search(r"Delaunay seconds:\s*(\S+)", done.stdout)
-            if took is None:
+            reported = re.search(r"Delaunay seconds:\s*(\S+)", done.stdout)
+            if reported is None:
                 sys.exit(f"tetgen ended with {done.returncode}: {(done.stdout + done.stderr)[-150:]!r}")
-            seconds.append(float(took[1]))
+            seconds.append(float(reported[1]))
             count = re.search(r"Mesh tetrahedra:\s*(\d+)", done.stdout)
             tets = int(count[1]) if count else 0
         version = subprocess.run(["tetgen", "-h"], capture_output=True, text=True).stdout

@@ -1,12 +1,14 @@
-"""A rigid body moves in a box, its mesh kept good by a loop round Mmg: the first mesh's sizes remembered, walls kept, one thread.
+"""Moves a rigid body in a box and keeps the mesh good by repeated remeshing with Mmg, with one thread.
 
-usage: drift_mmg.py MESH.npz JOB.json LOG.jsonl      MESH: points, tets; LOG: a line a step, as `motet run` writes them
+usage: drift_mmg.py MESH.npz JOB.json LOG.jsonl      MESH: points, tets; LOG: one line per step, as in `motet run`
 
-JOB: the body is a box of half sides `half`, rounded by `radius`, about the origin; the box it moves in reaches from `low` to `high`; `turn` degrees
-about z and `shift` along x a step; `steps`; `short`: tets with an edge below this part of its size belong to the zone, too.
+JOB contains the body, a box around the origin with half sides `half`, rounded by `radius`; the surrounding
+box from `low` to `high`; the motion per step, `turn` degrees about z and `shift` along x; the number of
+`steps`; and `short`: tets with an edge below this fraction of its size also belong to the zone.
 
-The strain is put into a layer near the body: rigid up to a share of the way to the box, still beyond another one. Mmg may change tets that are
-below an EAS and one ring about them; all else is required.
+The sizes of the first mesh and the walls are kept. The strain is restricted to a layer near the body: points
+are rigid up to a fraction of the way to the box, and fixed beyond another one. Mmg may change tets below an
+EAS and one ring around them; all others are required.
 """
 import json
 import sys
@@ -22,8 +24,8 @@ from tets import BAD, EDGES, boundary, eas, spread, volumes
 
 LAYER = (0.1, 0.3)
 LIMIT = 0.3
-LONGER = 1.06  # a size is not the mean length of edges that a mesh of this size has
-SMALLEST_PART = 1 / 64  # of a step
+LONGER = 1.06  # ratio of the requested size to the mean edge length that it gives
+SMALLEST_PART = 1 / 64  # smallest fraction of a step
 NEIGHBOURS = 24
 SAME_PLACE = 1e-6
 
@@ -33,34 +35,36 @@ class Stuck(Exception):
 
 
 class Course:
-    """Where the body is after so many steps, and what follows it."""
+    """The position of the body after a number of steps, and of the points that follow it."""
 
     def __init__(self, job):
         self.half, self.low, self.high = (np.array(job[key], float) for key in ("half", "low", "high"))
         self.radius, self.turn, self.shift = job["radius"], np.radians(job["turn"]), job["shift"]
 
     def moved(self, points, steps):
-        """Moved rigidly by so many steps, which may differ from point to point; first turned, then shifted."""
+        """Move points rigidly by a number of steps, which may differ between points: first rotation, then
+        translation."""
         angle = self.turn * steps
         c, s = np.cos(angle), np.sin(angle)
         x, y, z = points.T
         return np.stack([c * x - s * y + self.shift * steps, s * x + c * y, z + 0 * angle], axis=1)
 
     def distances(self, points, at):
-        """From the body and from the box."""
+        """Return the distances of points from the body and from the box."""
         outside = np.maximum(np.abs(self.moved(points, -at)) - self.half, 0)
         body = np.maximum(np.linalg.norm(outside, axis=1) - self.radius, 0)
         return body, np.maximum(np.minimum(points - self.low, self.high - points).min(axis=1), 0)
 
     def share(self, points, at):
-        """Which part of the body's motion a point takes part in: 1 near it, 0 far away, smooth between."""
+        """Return the share of the body's motion at each point: 1 near the body, 0 far away, smooth in
+        between."""
         body, wall = self.distances(points, at)
-        way = np.clip((body / np.maximum(body + wall, 1e-30) - LAYER[0]) / (LAYER[1] - LAYER[0]), 0, 1)
-        return 1 - way * way * (3 - 2 * way)
+        t = np.clip((body / np.maximum(body + wall, 1e-30) - LAYER[0]) / (LAYER[1] - LAYER[0]), 0, 1)
+        return 1 - t * t * (3 - 2 * t)
 
 
 class Sizes:
-    """Edge lengths of the first mesh, by the distances from body and box."""
+    """Edge lengths of the first mesh as a function of the distances from body and box."""
 
     def __init__(self, points, tets, course):
         edges = np.unique(np.sort(tets[:, EDGES].reshape(-1, 2), axis=1), axis=0)
@@ -79,7 +83,7 @@ class Moving:
     def __init__(self, points, tets, job):
         self.points, self.tets, self.course, self.short = points, tets, Course(job), job["short"]
         self.sizes = Sizes(points, tets, self.course)
-        self.walls = np.unique(boundary(tets))  # rows of the walls' vertices, whose first places are kept
+        self.walls = np.unique(boundary(tets))  # ids of the vertices on walls, with their initial positions
         self.first = points[self.walls]
         self.on_body = self.course.distances(self.first, 0.0)[0] < SAME_PLACE
 
@@ -87,17 +91,17 @@ class Moving:
         return np.where(self.on_body[:, None], self.course.moved(self.first, at), self.first)
 
     def placed(self, start, end):
-        """All vertices after a part of a step: the walls' exactly."""
+        """Return all vertices after a part of a step, exact on the walls."""
         share = self.course.share(self.points, start)
         c = self.course
-        # About where the body is now: back to its first place, and on from there.
+        # Relative to the current position of the body.
         shifted = np.array([c.shift * start, 0, 0])
         points = c.moved(self.points - shifted, share * (end - start)) + shifted
         points[self.walls] = self.wall_places(end)
         return points
 
     def step(self, number):
-        """Goes a step, in parts where a tet would turn over. Gives the change of each part."""
+        """Do a step, in parts if a tet would be inverted; return the changes of the mesh."""
         at, end, changes = number - 1.0, float(number), []
         while at < end:
             part = end - at
@@ -110,7 +114,7 @@ class Moving:
         return changes
 
     def zone(self, sizes):
-        """Tets that may change: those that are bad or too dense, and one ring."""
+        """Return the tets that may change: those that are bad or too small, and one ring around them."""
         chosen = eas(self.points, self.tets) < LIMIT
         if self.short:
             for i, j in EDGES:
@@ -132,7 +136,7 @@ class Moving:
         distance, self.walls = cKDTree(self.points).query(places)
         if distance.max() > SAME_PLACE or len(np.unique(boundary(self.tets))) != len(places):
             raise Stuck
-        self.points[self.walls] = places  # Mmg scales a mesh and back
+        self.points[self.walls] = places  # Mmg scales meshes, which causes rounding errors
         return [(old_points, old_tets, self.points, self.tets)]
 
 
@@ -152,9 +156,9 @@ def remeshed(points, tets, sizes, zone):
 
 
 def line(number, moving, changes, seconds):
-    """As a line of the log of `motet run`."""
+    """Return a line of the log, as in `motet run`."""
     quality = eas(moving.points, moving.tets)
-    # What is kept is compared after the clock was read.
+    # The comparison of meshes is not timed.
     shares = [{"kept_share": compared(*change)["kept_near"], "tets_before": len(change[1]), "tets_after": len(change[3])} for change in changes]
     return {"step": number, "points": len(moving.points), "tets": len(moving.tets), "worst": {"eas": float(quality.min())},
             "bad": int((quality < BAD).sum()), "inverted": int((quality <= 0).sum()), "changes": shares, "seconds": seconds,
@@ -171,7 +175,7 @@ def main():
             try:
                 changes = moving.step(number) if number else []
             except Stuck:
-                status = 4  # as motet says that a step was not gone to its end
+                status = 4  # the exit status of motet for an incomplete step
                 break
             seconds = time.perf_counter() - start
             whole += seconds

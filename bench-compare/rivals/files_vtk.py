@@ -1,4 +1,4 @@
-"""VTU files read and written by VTK: seconds out as JSON.
+"""Reads and writes VTU files with VTK, and prints seconds as JSON.
 
 usage: files_vtk.py make FILE N            a box of 6 N^3 tets with arrays, written uncompressed
        files_vtk.py read FILE RUNS
@@ -14,14 +14,14 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 
 def box(n):
-    """A box of n^3 cubes of six tets each, its points bent a little; a vector on points, a number on tets."""
+    """Return the points and tets of a slightly distorted box of n^3 cubes with six tets each."""
     line = np.linspace(0.0, 1.0, n + 1)
     points = np.stack(np.meshgrid(line, line, line, indexing="ij"), -1).reshape(-1, 3)
     points += 0.2 / n * np.sin(points[:, [1, 2, 0]] * 7.0)
     id_of = np.arange((n + 1) ** 3).reshape([n + 1] * 3)
     corner = lambda i, j, k: id_of[i:n + i, j:n + j, k:n + k].ravel()
     tets = []
-    for path in ((0, 1, 2), (0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)):  # one tet a walk from 000 to 111
+    for path in ((0, 1, 2), (0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)):  # one tet per path from 000 to 111
         at, walk = [0, 0, 0], []
         for axis in (None, *path):
             if axis is not None:
@@ -80,16 +80,16 @@ def clocked(call, runs):
     return seconds
 
 
-verb, *words = sys.argv[1:]
+verb, *arguments = sys.argv[1:]
 if verb == "make":
-    grid = grid_of(*box(int(words[1])))
-    write(grid, words[0], "none")
+    grid = grid_of(*box(int(arguments[1])))
+    write(grid, arguments[0], "none")
     seconds = []
 elif verb == "read":
-    grid = read(words[0])
-    seconds = clocked(lambda: read(words[0]), int(words[1]))
+    grid = read(arguments[0])
+    seconds = clocked(lambda: read(arguments[0]), int(arguments[1]))
 else:
-    grid = read(words[0])
-    seconds = clocked(lambda: write(grid, words[1], words[2]), int(words[3]))
+    grid = read(arguments[0])
+    seconds = clocked(lambda: write(grid, arguments[1], arguments[2]), int(arguments[3]))
 print(json.dumps({"seconds": seconds, "version": vtk.vtkVersion.GetVTKVersion(), "points": grid.GetNumberOfPoints(),
                   "cells": grid.GetNumberOfCells()}))

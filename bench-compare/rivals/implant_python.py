@@ -1,10 +1,13 @@
-"""Surfaces of a host and of devices in it filled as one by TetGen, Gmsh, fTetWild or Mmg, one thread: NPZ in, NPZ out, JSON out.
+"""Meshes a host with devices from their surfaces by TetGen, Gmsh, fTetWild or Mmg with one thread; prints
+times as JSON.
 
 usage: implant_python.py PROGRAM RUNS IN.npz OUT.npz
 
-IN: points, triangles, part (of each triangle: 0 the host, then the devices one by one), wire (half of the thickness of the devices), edge (of the
-host); for Mmg: background_points, background_tets. OUT: points, tets, and in_device where the program tells that itself. `seconds` run from the
-program's own surfaces in memory to its own mesh in memory, `whole_seconds` from reading IN to OUT being written, `cpu_seconds` are those of the processor meanwhile.
+IN: points, triangles, part (of each triangle: 0 for the host, then 1, 2, ... for the devices), wire (half the
+thickness of the devices), edge (edge length of the host); for Mmg also background_points and background_tets.
+OUT: points, tets, and in_device if the program reports it. `seconds` are measured between the program's own
+data structures in memory, `whole_seconds` include reading and writing of files, `cpu_seconds` are the CPU
+time.
 """
 import json
 import os
@@ -19,7 +22,7 @@ import numpy as np
 
 from in_memory import clocked, gmsh_tets
 
-BUDGET = 10.0  # no repeat is begun after so many seconds of work
+BUDGET = 10.0  # no repeat is started after this number of seconds
 
 
 def tetgen(given, switches):
@@ -47,7 +50,7 @@ def gmsh(given, algorithm):
         loops.append(program.model.geo.addSurfaceLoop([surface]))
     for loop in loops[1:]:
         program.model.geo.addVolume([loop])
-    program.model.geo.addVolume(loops)  # the first bounds it, the others are holes
+    program.model.geo.addVolume(loops)  # the first loop is the boundary, the others are holes
     program.model.geo.synchronize()
     seconds, _ = clocked(lambda: mesh.generate(3))
     points, tets = gmsh_tets(mesh)
@@ -64,7 +67,7 @@ def ftetwild(given):
 
 
 def mmg(given):
-    """Divided where the distance from the devices, negative inside, is 0."""
+    """Divide the background mesh at the zero level set of the signed distance from the devices."""
     import igl
     import mmgpy as program
 
@@ -76,7 +79,7 @@ def mmg(given):
     work = lambda: mesh.remesh_levelset(distance.reshape(-1, 1), verbose=-1, hausd=wire / 24, hmax=edge)
     seconds, _ = clocked(work)
     tets, reference = mesh.get_tetrahedra_with_refs()
-    inside = 3  # what Mmg calls the part where the distance is negative
+    inside = 3  # Mmg's reference of tets with negative distance
     return seconds, {"points": mesh.get_vertices(), "tets": tets, "in_device": np.asarray(reference).ravel() == inside}, version("mmgpy")
 
 
@@ -91,16 +94,16 @@ PROGRAMS = {
 
 
 def main(name, runs, source, target):
-    os.chdir(os.path.dirname(target))  # fTetWild leaves a file where it runs
-    program, *words = PROGRAMS[name]
+    os.chdir(os.path.dirname(target))  # fTetWild writes a file to its working directory
+    program, *options = PROGRAMS[name]
     seconds, whole, cpu = [], [], []
     while len(seconds) < int(runs) and sum(seconds) < BUDGET:
         start, used = time.perf_counter(), time.process_time()
-        took, made, release = program(dict(np.load(source)), *words)
+        duration, made, release = program(dict(np.load(source)), *options)
         if len(made["tets"]) == 0:
             raise ValueError("no tets")
         np.savez(target, **made)
-        seconds.append(took)
+        seconds.append(duration)
         whole.append(time.perf_counter() - start)
         cpu.append(time.process_time() - used)
     return {"seconds": seconds, "whole_seconds": statistics.median(whole), "cpu_seconds": statistics.median(cpu), "version": release}
@@ -108,5 +111,5 @@ def main(name, runs, source, target):
 
 try:
     print(json.dumps(main(*sys.argv[1:])))
-except Exception as error:  # a refusal is a result, too
+except Exception as error:  # errors are reported as results
     print(json.dumps({"error": " ".join(str(error).split())[:200] or type(error).__name__}))

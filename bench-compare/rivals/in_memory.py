@@ -1,4 +1,4 @@
-"""What rivals that are called from Python have in common: a clock, and the mesh that Gmsh holds."""
+"""Helpers of programs called from Python: measurement of time, and Gmsh's mesh as arrays."""
 import time
 
 import numpy as np
@@ -11,7 +11,7 @@ def clocked(work):
 
 
 def gmsh_tets(mesh):
-    """Points and tets of `gmsh.model.mesh`, numbered from 0."""
+    """Return the points and tets of `gmsh.model.mesh`, numbered from 0."""
     tags, coordinates, _ = mesh.getNodes()
     row = np.zeros(int(tags.max()) + 1, np.int64)
     row[tags.astype(np.int64)] = np.arange(len(tags))

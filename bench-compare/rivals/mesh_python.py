@@ -1,9 +1,10 @@
-"""A closed surface filled by TetGen, Gmsh or fTetWild, one thread: points and triangles in, points and tets out, JSON out.
+"""Meshes a closed surface by TetGen, Gmsh or fTetWild with one thread; prints times as JSON.
 
-usage: mesh_python.py PROGRAM SIZE RUNS IN.npz OUT.npz      IN: points, triangles
+usage: mesh_python.py PROGRAM SIZE RUNS IN.npz OUT.npz      IN: points, triangles; OUT: points, tets
 
-SIZE is the length of edges that is asked for; TetGen gets the volume of the regular tet with such edges as its limit. The clock runs
-from the program's own surface in memory to its own mesh in memory; fewer repeats than RUNS if they take long.
+SIZE is the requested edge length; for TetGen the volume of the regular tet with such edges is the limit.
+Times are measured between the program's own data structures in memory, with fewer repeats than RUNS if they
+take long.
 """
 import json
 import os
@@ -14,7 +15,7 @@ import numpy as np
 
 from in_memory import clocked, gmsh_tets
 
-BUDGET = 3.0  # no repeat is begun after so many seconds of work
+BUDGET = 3.0  # no repeat is started after this number of seconds
 
 
 def tetgen(points, triangles, size, switches):
@@ -31,7 +32,7 @@ def gmsh(points, triangles, size, algorithm):
 
     program.initialize()
     options = {"General.Terminal": 0, "General.NumThreads": 1, "Mesh.Algorithm3D": algorithm,
-               # One size for all of the inside, as the others have.
+               # A uniform interior size, as in the other programs.
                "Mesh.MeshSizeMin": size, "Mesh.MeshSizeMax": size, "Mesh.MeshSizeExtendFromBoundary": 0}
     for name, value in options.items():
         program.option.setNumber(name, value)
@@ -67,19 +68,19 @@ PROGRAMS = {
 
 def main(name, size, runs, source, target):
     given = np.load(source)
-    os.chdir(os.path.dirname(target))  # fTetWild leaves a file where it runs
-    program, *words = PROGRAMS[name]
+    os.chdir(os.path.dirname(target))  # fTetWild writes a file to its working directory
+    program, *options = PROGRAMS[name]
     seconds = []
     while len(seconds) < int(runs) and sum(seconds) < BUDGET:
-        took, points, tets, release = program(given["points"], given["triangles"], float(size), *words)
+        duration, points, tets, release = program(given["points"], given["triangles"], float(size), *options)
         if len(tets) == 0:
             raise ValueError("no tets")
-        seconds.append(took)
+        seconds.append(duration)
     np.savez(target, points=points, tets=tets)
     return {"seconds": seconds, "version": release, "tets": len(tets)}
 
 
 try:
     print(json.dumps(main(*sys.argv[1:])))
-except Exception as error:  # a refusal is a result, too
+except Exception as error:  # errors are reported as results
     print(json.dumps({"error": " ".join(str(error).split())[:200] or type(error).__name__}))

@@ -1,12 +1,15 @@
-"""One step of mesh motion by a linear system, in programs from PyPI: set-up and step clocked.
+"""Measures set-up and step of mesh motion by a linear system, in programs from PyPI.
 
 usage: motion_python.py pardiso|pyamg|ngsolve laplace|elastic MESH.npz THREADS [TOLERANCE]
 
-P1 on the tets of a sphere in a box, the sphere moved by half its radius along x, the walls held. `laplace`: diffusivity 1; the iterated ones
-solve for x alone, since nothing moves along y and z.
-`elastic`: Poisson's ratio 0.3, Young's modulus 1/volume (NGSolve: 1/h^3). pardiso (MKL): Cholesky's factor, kept. pyamg: conjugate
-gradients with Ruge-Stueben or smoothed aggregation multigrid. ngsolve: its own assembly, conjugate gradients with its multigrid `h1amg`
-(laplace) or the diagonal (elastic: it has no multigrid for it). The iterated ones go on to TOLERANCE (1e-8).
+P1 elements on the tets of a sphere in a box; the sphere moves by half its radius along x, the walls are
+fixed. `laplace` has diffusivity 1; iterative solvers solve only for x, since the other components are zero.
+`elastic` has Poisson's ratio 0.3 and Young's modulus 1/volume (NGSolve: 1/h^3).
+
+pardiso (MKL): stored Cholesky factorization. pyamg: conjugate gradients with Ruge-Stueben or smoothed
+aggregation multigrid. ngsolve: its own assembly, and conjugate gradients with its multigrid `h1amg` (laplace)
+or a diagonal preconditioner (elastic, for which it has no multigrid). Iterations stop at TOLERANCE (default
+1e-8).
 """
 import json
 import os
@@ -18,16 +21,19 @@ program, kind, path, threads = sys.argv[1:5]
 tolerance = float(sys.argv[5]) if len(sys.argv) > 5 else 1e-8
 for variable in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ[variable] = threads
-# A factor that does not fit ends this program, not the machine.
+# A factorization that does not fit into memory ends this program, and does not exhaust the machine.
 resource.setrlimit(resource.RLIMIT_AS, (int(0.8 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")),) * 2)
 
-import numpy as np  # noqa: E402  after the number of threads is said
+import numpy as np  # noqa: E402  after the number of threads is set
 
 TRAVEL, POISSON, BUDGET, MOST = 0.5, 0.3, 1.0, 20.0
 
 
 def median_seconds(step):
-    """Repeated for a second or so, five times at least unless that takes long."""
+    """Repeat a step for about a second, at least five times unless it takes long.
+
+    Return the seconds of each.
+    """
     step()
     seconds = []
     while not seconds or (sum(seconds) < MOST and (len(seconds) < 5 or sum(seconds) < BUDGET)):
@@ -38,7 +44,7 @@ def median_seconds(step):
 
 
 class System:
-    """The matrix of the free vertices, and its coupling to the boundary: assembled in NumPy and SciPy."""
+    """The matrix of the free vertices and its coupling to the boundary, assembled with NumPy and SciPy."""
 
     def __init__(self, mesh):
         import scipy.sparse
@@ -59,7 +65,7 @@ class System:
             blocks, rows = products * np.abs(volume)[:, None, None], tets
         else:
             lame, shear = POISSON / ((1 + POISSON) * (1 - 2 * POISSON)), 0.5 / (1 + POISSON)
-            # Modulus 1/volume times volume: 1 everywhere.
+            # The modulus 1/volume times the volume is 1 everywhere.
             blocks = lame * np.einsum("nia,njb->niajb", gradients, gradients)
             blocks += shear * np.einsum("nib,nja->niajb", gradients, gradients)
             for a in range(3):
@@ -107,7 +113,7 @@ def pyamg(system):
         levels = pyamg.ruge_stuben_solver(system.inner)
     else:
         x, y, z = system.places.T
-        modes = np.zeros((3 * len(x), 6))  # shifts and turns
+        modes = np.zeros((3 * len(x), 6))  # translations and rotations
         for axis in range(3):
             modes[axis::3, axis] = 1
         modes[0::3, 3], modes[1::3, 3] = -y, x

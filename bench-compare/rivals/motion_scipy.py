@@ -1,7 +1,8 @@
-"""The method in a few lines of SciPy: set-up and update clocked; weights left behind for the C loop.
+"""Mesh motion by the Delaunay graph in SciPy; measures set-up and update, and writes the weights for the C
+loop.
 
-usage: motion_scipy.py prepare MESH.npz FOLDER       set-up once, weights written into FOLDER
-       motion_scipy.py update FOLDER SECONDS         the update alone, repeated
+usage: motion_scipy.py prepare MESH.npz FOLDER       set-up once, weights are written to FOLDER
+       motion_scipy.py update FOLDER SECONDS         only the update, repeated
 """
 import json
 import sys
@@ -34,7 +35,8 @@ def prepare(path, folder):
     ids.tofile(folder / "ids.u32")
     weights.tofile(folder / "weights.f64")
     moved.tofile(folder / "boundary.f64")
-    # The same job as motet's: all vertices, boundary ones at their own node, by displacements.
+    # Data for the same computation as motet's: displacements of all vertices, with boundary vertices at their
+    # own node.
     all_ids = np.empty((len(points), 4), np.uint32)
     all_weights = np.full((len(points), 4), 0.25)
     all_ids[boundary] = np.arange(len(boundary))[:, None]

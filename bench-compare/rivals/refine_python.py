@@ -1,11 +1,13 @@
-"""Refinement by NGSolve, MFEM, dolfinx or Gmsh, one thread, generation by generation: the same mesh and marks for all; JSON out.
+"""Refinement by NGSolve, MFEM, dolfinx or Gmsh with one thread, generation by generation; prints times as
+JSON.
 
-usage: refine_python.py PROGRAM CASE.json OUT     meshes go to OUT_1.points, OUT_1.tets, ..., unless they are there
+usage: refine_python.py PROGRAM CASE.json OUT     meshes are written to OUT_1.points, OUT_1.tets, ..., unless they exist
 
-What is clocked: the call that refines, from the program's own mesh in memory to its own mesh in memory, and the call that tells it
-the marks where that is another one. Not clocked: its own first mesh, which tets to mark, an array of their ids in the program's own
-type, reading points and tets. No generation is waited for longer than the case's `limit`: the program is ended, and the next round
-begins no such generation. `examples/refine_rivals.rs` says what is marked.
+All programs have the same mesh and marks. Times include the calls that refine and that pass the marks,
+between the program's own data structures in memory. They exclude the creation of the first mesh, the choice
+of tets to mark, arrays of their ids in the program's own type, and reading of points and tets. A generation
+that exceeds the `limit` of the case is aborted and not started in later rounds. `examples/refine_rivals.rs`
+defines the marks.
 """
 import json
 import multiprocessing
@@ -25,7 +27,7 @@ def clocked(work):
 
 
 class NGSolve:
-    """Bisection, each marked tet until all its edges are halved; uniform: into eight."""
+    """Bisection of each marked tet until all its edges are halved; uniform refinement into eight."""
 
     def __init__(self, points, tets, boundary):
         import ngsolve
@@ -35,7 +37,7 @@ class NGSolve:
         mesh.AddPoints(np.ascontiguousarray(points))
         mesh.SetMaterial(1, "volume")
         face = mesh.Add(FaceDescriptor(surfnr=1, domin=1, bc=1))
-        turned = lambda corners: np.ascontiguousarray(corners.astype(np.int32))  # Netgen's tets are negative
+        turned = lambda corners: np.ascontiguousarray(corners.astype(np.int32))  # Netgen's tets have negative orientation
         mesh.AddElements(dim=3, index=1, data=turned(tets[:, [1, 0, 2, 3]]), base=0)
         mesh.AddElements(dim=2, index=face, data=turned(boundary), base=0)
         self.mesh, self.version = ngsolve.Mesh(mesh), ngsolve.__version__
@@ -60,7 +62,7 @@ class NGSolve:
 
 
 class MFEM:
-    """Bisection, each marked tet until all its edges are halved; uniform: into eight."""
+    """Bisection of each marked tet until all its edges are halved; uniform refinement into eight."""
 
     conforming = True
 
@@ -96,13 +98,14 @@ class MFEM:
 
 
 class HangingMFEM(MFEM):
-    """Marked tets into eight, their neighbours left alone."""
+    """Division of marked tets into eight, with their neighbours unchanged."""
 
     conforming = False
 
 
 class Dolfinx:
-    """Plaza: edges of marked tets halved, and the longest edges of the facets that these are in."""
+    """Plaza refinement: edges of marked tets are halved, and the longest edges of the facets that contain
+    these."""
 
     def __init__(self, points, tets, _boundary):
         import dolfinx
@@ -139,7 +142,7 @@ class Dolfinx:
 
 
 class Gmsh:
-    """Uniform alone: into eight."""
+    """Only uniform refinement into eight."""
 
     def __init__(self, points, tets, boundary):
         import gmsh
@@ -171,7 +174,7 @@ PROGRAMS = {"ngsolve": NGSolve, "mfem": MFEM, "mfem-hanging": HangingMFEM, "dolf
 
 
 def marks(case, near, points, tets, generation):
-    """Ids of the tets to divide."""
+    """Return the ids of the tets to divide."""
     from scipy.spatial import cKDTree
 
     corners = points[tets]
@@ -190,48 +193,54 @@ def write(points, tets, out, generation):
         tets.astype(np.uint32).tofile(f"{out}_{generation}.tets")
 
 
-def refine(name, case, folder, out, last, tell):
-    """All generations up to `last`; tells when one begins, and what it came to."""
+def refine(name, case, folder, out, last, send):
+    """Refine up to the generation `last`.
+
+    Send a message when a generation begins and ends, and its result.
+    """
     raw = lambda file, kind, width: np.fromfile(folder / file, kind).reshape(-1, width)
     ids = lambda file, width: raw(file, np.uint32, width).astype(np.int64)
     near = raw(case["near"], np.float64, 3) if case["near"] else None
     program = PROGRAMS[name](raw("first.points", np.float64, 3), ids("first.tets", 4), ids("boundary.u32", 3))
-    points, tets = program.arrays()  # a program may number the first mesh anew
+    points, tets = program.arrays()  # a program may renumber the first mesh
     for generation in range(1, last + 1):
         marked = np.arange(len(tets)) if near is None else marks(case, near, points, tets, generation)
         if not len(marked):
             break
-        tell("begin")
+        send("begin")
         seconds = program.uniform() if near is None else program.local(marked)
-        tell("end")
+        send("end")
         points, tets = program.arrays()
         write(points, tets, out, generation)
-        tell({"seconds": seconds, "marked": len(marked), "tets": len(tets), "version": program.version})
-    tell(None)
+        send({"seconds": seconds, "marked": len(marked), "tets": len(tets), "version": program.version})
+    send(None)
 
 
 def watched(name, case, folder, out):
-    """The generations' rows, and why there are no more, from a process that is ended when one takes too long."""
+    """Refine in a separate process that is killed if a generation takes too long.
+
+    Return the rows of generations.
+    """
     stop = Path(f"{out}.stop")
     last = int(stop.read_text().split()[0]) - 1 if stop.exists() else case["generations"]
-    here, there = multiprocessing.Pipe(duplex=False)
-    child = multiprocessing.get_context("fork").Process(target=refine, args=(name, case, folder, out, last, there.send))
+    receiver, sender = multiprocessing.Pipe(duplex=False)
+    child = multiprocessing.get_context("fork").Process(target=refine, args=(name, case, folder, out, last, sender.send))
     child.start()
-    there.close()
-    rows, why = [], None
+    sender.close()
+    rows, reason = [], None
     try:
-        while (told := here.recv()) is not None:
-            if told == "begin" and not here.poll(case["limit"]):
-                why = f"> {case['limit']:g} s"
+        while (message := receiver.recv()) is not None:
+            if message == "begin" and not receiver.poll(case["limit"]):
+                reason = f"> {case['limit']:g} s"
                 break
-            if isinstance(told, dict):
-                rows.append(told)
+            if isinstance(message, dict):
+                rows.append(message)
     except EOFError:
-        why = "failed"
+        reason = "failed"
     child.kill()
     child.join()
-    if why and rows:
-        stop.write_text(f"{len(rows) + 1} {why}")
+    if reason and rows:
+        stop.write_text(f"{len(rows) + 1} {reason}")
     return rows
 
 

@@ -1,8 +1,9 @@
-"""Remeshing by Mmg, Gmsh or Netgen, boundary kept, one thread: points and tets in, points and tets out, JSON out.
+"""Remeshing with a fixed boundary by Mmg, Gmsh or Netgen with one thread; prints times as JSON.
 
-usage: remesh_python.py PROGRAM IN.npz OUT.npz      IN: points, tets, boundary (triangles), far (ids of tets to keep)
+usage: remesh_python.py PROGRAM IN.npz OUT.npz
 
-The clock runs from the program's own mesh in memory to its own mesh in memory; three repeats, fewer if they take long.
+IN: points, tets, boundary (triangles), far (ids of tets to keep). OUT: points, tets. Times are measured
+between the program's own data structures in memory, with three repeats or fewer if they take long.
 """
 import json
 import sys
@@ -10,7 +11,7 @@ import time
 
 import numpy as np
 
-RUNS, BUDGET = 3, 3.0  # repeats; none is begun after so many seconds of work
+RUNS, BUDGET = 3, 3.0  # number of repeats; none is started after this number of seconds
 
 
 def clocked(work):
@@ -57,7 +58,7 @@ def gmsh(points, tets, boundary, _far, method, options):
     row[tags.astype(np.int64)] = np.arange(len(tags))
     names, corners = mesh.getElementsByType(4)
     tets = row[corners.astype(np.int64).reshape(-1, 4)]
-    if method == "Netgen":  # a discrete volume keeps its old tets beside the new ones
+    if method == "Netgen":  # a discrete volume keeps its old tets in addition to the new ones
         tets = tets[names > given]
     program.finalize()
     return seconds, coordinates.reshape(-1, 3), tets, program.__version__
@@ -72,7 +73,7 @@ def netgen(points, tets, boundary, _far):
     mesh.AddPoints(np.ascontiguousarray(points))
     mesh.SetMaterial(1, "volume")
     face = mesh.Add(FaceDescriptor(surfnr=1, domin=1, bc=1))
-    turned = lambda corners: np.ascontiguousarray(corners.astype(np.int32))  # Netgen's tets are negative
+    turned = lambda corners: np.ascontiguousarray(corners.astype(np.int32))  # Netgen's tets have negative orientation
     mesh.AddElements(dim=3, index=1, data=turned(tets[:, [1, 0, 2, 3]]), base=0)
     mesh.AddElements(dim=2, index=face, data=turned(boundary), base=0)
     seconds = clocked(lambda: mesh.OptimizeVolumeMesh(MeshingParameters()))
@@ -90,10 +91,10 @@ PROGRAMS = {
 }
 name, source, target = sys.argv[1:]
 given = np.load(source)
-program, *words = PROGRAMS[name]
+program, *options = PROGRAMS[name]
 seconds = []
 while len(seconds) < RUNS and sum(seconds) < BUDGET:
-    took, points, tets, version = program(*(given[k] for k in ("points", "tets", "boundary", "far")), *words)
-    seconds.append(took)
+    duration, points, tets, version = program(*(given[k] for k in ("points", "tets", "boundary", "far")), *options)
+    seconds.append(duration)
 np.savez(target, points=points, tets=tets)
 print(json.dumps({"seconds": seconds, "version": version}))

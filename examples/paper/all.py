@@ -1,4 +1,4 @@
-"""Rebuilds all tables and figures of the paper that can be, one after the other.
+"""Reproduces the tables and figures of the paper, one after the other.
 
     target/venv/bin/python examples/paper/all.py
 """

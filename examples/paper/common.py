@@ -1,4 +1,4 @@
-"""What the scripts of this folder share: where things are, how motet is called, how a sheet of pictures is laid out."""
+"""Helpers of the scripts in this folder: paths, calls of motet, meshes for drawing, and tables."""
 import json
 import subprocess
 import sys
@@ -18,28 +18,28 @@ sys.path.append(str(DOCS))
 from program import binary  # noqa: E402
 
 
-def motet_json(*words):
-    """Calls the program with --json; its report."""
-    done = subprocess.run([str(binary()), *map(str, words), "--json"], capture_output=True, text=True)
+def motet_json(*arguments):
+    """Call the program with --json and return its report."""
+    done = subprocess.run([str(binary()), *map(str, arguments), "--json"], capture_output=True, text=True)
     if done.returncode not in (0, 4):
-        sys.exit(f"motet {' '.join(map(str, words))}: exit status {done.returncode}\n{done.stderr}")
+        sys.exit(f"motet {' '.join(map(str, arguments))}: exit status {done.returncode}\n{done.stderr}")
     return json.loads(done.stdout)
 
 
 def work(name):
-    """A file of this name among those that are made on the way."""
+    """Return the path of an intermediate file."""
     WORK.mkdir(parents=True, exist_ok=True)
     return WORK / name
 
 
 def patch_triangles(mesh, name):
-    """The triangles of a patch, as rows of vertices."""
-    label = next(number for number, word in mesh.patch_names.items() if word == name)
+    """Return the triangles of a patch as rows of vertex ids."""
+    label = next(number for number, known in mesh.patch_names.items() if known == name)
     return mesh.triangles[mesh.cell_data["patch"][mesh.cell_ids("triangle")] == label]
 
 
 def surface(points, triangles, name):
-    """A surface of these triangles and no other points, of one patch."""
+    """Return a surface of the given triangles and only their points, with one patch."""
     import motet
 
     used, rows = np.unique(triangles, return_inverse=True)
@@ -52,7 +52,7 @@ def surface(points, triangles, name):
 
 
 def grid(mesh, **arrays):
-    """The tets of a mesh for drawing, with their EAS and more arrays, a row a tet."""
+    """Return the tets of a mesh for drawing, with their EAS and further arrays of one row per tet."""
     import pyvista as pv
 
     drawn = pv.UnstructuredGrid({pv.CellType.TETRA: mesh.tets}, mesh.points)
@@ -63,7 +63,7 @@ def grid(mesh, **arrays):
 
 
 def poly(mesh, triangles=None):
-    """Triangles of a mesh for drawing: all, or these rows."""
+    """Return triangles of a mesh for drawing: all, or the given rows."""
     import pyvista as pv
 
     rows = mesh.triangles if triangles is None else triangles
@@ -71,11 +71,11 @@ def poly(mesh, triangles=None):
 
 
 def behind(drawn, axis, at=0.0):
-    """The cells of a grid whose middle lies beyond a plane, seen from its lower side."""
+    """Return the cells of a grid whose centres lie behind a plane, seen from its lower side."""
     return drawn.extract_cells(drawn.cell_centers().points[:, axis] > at)
 
 
 def print_table(head, rows):
-    """A table as Markdown has it."""
+    """Print a Markdown table."""
     for row in (head, ["---"] * len(head), *rows):
         print("| " + " | ".join(map(str, row)) + " |")

@@ -1,9 +1,11 @@
-"""Rebuilds figure 1 of the paper: how the Delaunay graph of the boundary moves a mesh (writes docs/paper_1.png).
+"""Reproduces figure 1 of the paper: how the Delaunay graph of the boundary moves a mesh (writes
+docs/paper_1.png).
 
     target/venv/bin/python examples/paper/figure_1.py
 
-(a) A sphere in a box, (b) the box filled with tets, (c) the Delaunay tets between the vertices of both surfaces, (d) what the boundary is told,
-(e) the same for every vertex inside, (f) the mesh moved. Cuts through the middle, seen from the front.
+(a) A sphere in a box, (b) the mesh between them, (c) the Delaunay tets between the vertices of both surfaces,
+(d) the displacements of the boundary, (e) the displacements of interior vertices, (f) the moved mesh. Cuts
+through the centre, seen from the front.
 """
 import numpy as np
 import pyvista as pv
@@ -20,21 +22,21 @@ ARROWS = dict(color=COPPER, lighting=False)
 
 
 def seen(*layers):
-    """What the camera sees of some meshes, each with its words."""
+    """Return an image of some meshes, each given with the options of `add_mesh`."""
     plotter = lit(pv.Box((-5.0, 5.0, -5.0, 5.0, -5.0, 5.0)), PANEL)
-    for drawn, words in layers:
-        plotter.add_mesh(drawn, **words)
+    for drawn, options in layers:
+        plotter.add_mesh(drawn, **options)
     return seen_straight(plotter, *VIEW)
 
 
 def half_box():
-    """The lines of the box."""
+    """Return the edges of the box, with drawing options."""
     frame = pv.Box((-5.0, 5.0, -5.0, 5.0, -5.0, 5.0)).extract_feature_edges(30.0)
     return frame, dict(color=INK, line_width=1.5, lighting=False)
 
 
 def arrows(points, vectors):
-    """Arrows as long as the vectors, of one thickness."""
+    """Return arrows as long as the vectors, of equal thickness."""
     glyph = pv.Arrow(tip_length=0.3, tip_radius=0.07, shaft_radius=0.022)
     cloud = pv.PolyData(np.ascontiguousarray(points))
     cloud["vectors"] = vectors
@@ -42,14 +44,14 @@ def arrows(points, vectors):
 
 
 def graph_tets(path):
-    """The Delaunay tets that have vertices of both surfaces, as `motet contact` writes them."""
+    """Return the Delaunay tets with vertices of both surfaces, written by `motet contact`."""
     gaps, tets = work("figure_1_gaps.vtp"), work("figure_1_graph.vtu")
     motet_json("contact", path, "--patches", "sphere,box", "-o", gaps, "--method", "delaunay", "--gap-tets", tets)
     return pv.read(tets)
 
 
 def on_cut(points):
-    """Rows of points on the plane of the cut."""
+    """Return which points lie on the plane of the cut."""
     return np.abs(points[:, 1]) < 1e-9
 
 
@@ -63,9 +65,9 @@ def main():
     mover = motet.Mover(mesh)
     at = mesh.points[mover.boundary]
     is_sphere = np.linalg.norm(at, axis=1) < 1.01
-    told = np.where(is_sphere[:, None], SHIFT, 0.0)
+    displacement = np.where(is_sphere[:, None], SHIFT, 0.0)
     moved = mesh.copy()
-    moved.points = mover.step(told)
+    moved.points = mover.step(displacement)
     save_sheet(panels(mesh, moved, at[is_sphere], graph_tets(path)), DOCS / "paper_1.png", 3)
     before, after = (one.quality()[one.cell_ids("tetra")] for one in (mesh, moved))
     print(f"{mesh.n_points} vertices, {len(at)} on the boundary; worst EAS {before.min():.3f}, moved {after.min():.3f}")
@@ -85,7 +87,7 @@ def panels(mesh, moved, at, graph):
         (seen(half_box(), ball, (arrows(np.array([[1.1, 0.0, 0.0]]), SHIFT[None]), ARROWS)), "(a) a sphere in a box is to move"),
         (seen((behind(cells, 1), dict(color=PALE, **EDGES)), ball), f"(b) {len(mesh.tets):,} tets between them"),
         (seen((behind(graph, 1), dict(color="#f6e6cf", **EDGES)), ball), f"(c) {graph.n_cells:,} Delaunay tets join both"),
-        (seen(half_box(), ball, (arrows(ring, np.tile(SHIFT, (len(ring), 1))), ARROWS)), "(d) what boundary vertices are told"),
+        (seen(half_box(), ball, (arrows(ring, np.tile(SHIFT, (len(ring), 1))), ARROWS)), "(d) displacements of the boundary"),
         (seen((behind(cells, 1), coloured), ball, (vectors, ARROWS)), "(e) interpolated at those inside"),
         (seen((behind(after, 1), dict(color=PALE, **EDGES)), there), "(f) all moved"),
     ]

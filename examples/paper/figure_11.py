@@ -1,9 +1,11 @@
-"""Rebuilds figure 11 of the paper: a sphere moves along a channel, bad tets are counted and repaired (writes docs/paper_11.png, prints three tables).
+"""Reproduces figure 11 of the paper: bad tets around a sphere that moves along a channel, and their repair.
 
     target/venv/bin/python examples/paper/figure_11.py
 
-The mesh follows as an elastic body, as in the paper, (a) to (b) in four equal steps to the right; (c) is (b) repaired. The first table has these steps, all
-from the first place, each repaired for itself; the second a longer way, repaired after every step of it; the third the same way as a moving mesh, which keeps what it was.
+Writes docs/paper_11.png and prints three tables. The mesh follows as an elastic body, as in the paper: from
+(a) to (b) the sphere moves by four equal shifts; (c) is (b) repaired. The first table contains these shifts,
+all from the initial position and each repaired separately; the second a longer motion that is repaired after
+every step; the third the same motion with a `MovingMesh`, which keeps the initial quality.
 """
 import numpy as np
 from common import BAD, DOCS, behind, grid, patch_triangles, poly, print_table, surface
@@ -19,7 +21,7 @@ STEP, STEPS = 0.2, 15
 
 
 def channel():
-    """The room between a box and a sphere in it."""
+    """Return a mesh of the space between a box and a sphere."""
     import motet
     from motet import shapes
 
@@ -35,7 +37,7 @@ def tet_quality(mesh):
 
 
 def elastic(mesh, way):
-    """The mesh after its sphere has moved along x, as an elastic body; nothing is checked on the way."""
+    """Return the mesh moved as an elastic body, with the sphere displaced along x, without any check."""
     import motet
 
     mover = motet.Mover(mesh, method="elastic")
@@ -50,8 +52,8 @@ def counts(mesh):
     return [np.count_nonzero(q < BAD), np.count_nonzero(q <= 0.0), f"{q.min():.3f}"]
 
 
-def from_the_first_place(mesh):
-    """The meshes of the first table, and the last of them repaired."""
+def from_initial_position(mesh):
+    """Print the first table; return its meshes, and the last of them repaired."""
     import motet
 
     moved = [elastic(mesh, way) for way in SHIFTS]
@@ -65,7 +67,7 @@ def from_the_first_place(mesh):
 
 
 def step_by_step(mesh):
-    """Moves and repairs in turn."""
+    """Print the second table: each step is followed by a repair."""
     import motet
 
     rows = []
@@ -77,7 +79,8 @@ def step_by_step(mesh):
 
 
 def as_a_moving_mesh(mesh):
-    """The same way; what a repair changes is improved, vertices are kept, and a band beside the sphere takes the strain."""
+    """Print the third table: a `MovingMesh` improves what a repair changes, and strains only a band at the
+    sphere."""
     import motet
 
     moving = motet.MovingMesh(mesh, method="bodies", strain="band", smooth=2)
@@ -91,7 +94,7 @@ def as_a_moving_mesh(mesh):
     print_table(["way", "bad", "inverted", "worst EAS", "1 % below", "mean EAS", "vertices", "tets"], rows)
 
 
-def panel(mesh, words):
+def panel(mesh, caption):
     drawn = grid(mesh)
     plotter = lit(drawn, PANEL)
     cells = behind(drawn, 1)
@@ -99,17 +102,17 @@ def panel(mesh, words):
     plotter.add_mesh(poly(mesh, patch_triangles(mesh, "sphere")), color="#b9c6d2", **EDGES)
     bad = np.count_nonzero(drawn["EAS"] < BAD)
     centre = 0.5 * (LOW + HIGH) + (0.05, 0.0, 0.12)
-    return seen_straight(plotter, centre, (-4.0, -40.0, 9.0), (0.0, 0.0, 1.0), 2.5), f"{words}: {bad or 'no'} bad tet{'' if bad == 1 else 's'}"
+    return seen_straight(plotter, centre, (-4.0, -40.0, 9.0), (0.0, 0.0, 1.0), 2.5), f"{caption}: {bad or 'no'} bad tet{'' if bad == 1 else 's'}"
 
 
 def main():
     mesh = channel()
     print(f"{mesh.n_points:,} vertices, {len(mesh.tets):,} tets, worst EAS {tet_quality(mesh).min():.3f}, mean {tet_quality(mesh).mean():.3f}; radius of the sphere {RADIUS:g}\n")
-    moved, repaired = from_the_first_place(mesh)
-    words = [f"moved by {way:g}" for way in SHIFTS]
-    words[0], words[-1] = f"(a) {words[0]}", f"(b) {words[-1]}"
+    moved, repaired = from_initial_position(mesh)
+    captions = [f"moved by {way:g}" for way in SHIFTS]
+    captions[0], captions[-1] = f"(a) {captions[0]}", f"(b) {captions[-1]}"
     meshes = [mesh, *moved, repaired]
-    pictures = [panel(one, word) for one, word in zip(meshes, ["the first place", *words, "(c) repaired"])]
+    pictures = [panel(one, caption) for one, caption in zip(meshes, ["initial position", *captions, "(c) repaired"])]
     save_sheet(pictures, DOCS / "paper_11.png", 2, colour_bar)
     print()
     step_by_step(mesh)

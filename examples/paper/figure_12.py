@@ -1,9 +1,11 @@
-"""Rebuilds figure 12 of the paper: an aneurysm, refined round a coil wire and joined with it (writes docs/paper_12.png, prints a table).
+"""Reproduces figure 12 of the paper: a coil in an aneurysm (writes docs/paper_12.png, prints a table).
 
     target/venv/bin/python examples/paper/figure_12.py
 
-Refined first, until no edge at the wire is longer than SIZE, then the wire is put in, as the paper has it. The whole, and three cuts: along the vessel,
-across it, and through the sac; lumen in the colour of its quality, wire in copper. The last row of the table is of the wire put into the aneurysm as it came, which is how motet does it.
+As in the paper, the mesh is refined until no edge at the wire is longer than SIZE, then the wire is
+implanted. Shows the whole mesh and three cuts: along the vessel, across it, and through the sac, with the
+lumen coloured by quality and the wire in copper. The last row of the table is for the implantation without
+refinement, which is motet's default.
 """
 import numpy as np
 from common import BAD, DOCS, grid, patch_triangles, poly, print_table
@@ -12,7 +14,7 @@ from pictures import COPPER, QUALITY, RANGE, colour_bar, lit, save_sheet, seen_s
 PANEL = (600, 430)
 SAC = np.array([0.0, 2.2, 0.0])
 SIZE, GROWTH = 0.12, 0.35
-# What cuts, where that looks from, what is up, what is in the middle and how much is seen from top to bottom.
+# Normal of the cut, direction of the camera, upward direction, centre and visible height.
 CUTS = (
     ("(b) along the vessel", "z", (0.0, 0.0, 40.0), (0.0, 1.0, 0.0), (0.0, 1.0, 0.0), 5.6),
     ("(c) across the vessel", "x", (40.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 1.3, 0.0), 5.2),
@@ -34,7 +36,7 @@ def row(name, mesh):
 
 
 def whole(mesh):
-    """The wall as a veil, and the wire in it."""
+    """Return an image of the transparent wall with the wire."""
     plotter = lit(poly(mesh), PANEL)
     plotter.add_mesh(poly(mesh, patch_triangles(mesh, "wall")), color="#d9a79a", opacity=0.3, show_edges=True, edge_color="#8a6a60", edge_opacity=0.25, ambient=0.5, diffuse=0.5)
     plotter.add_mesh(poly(mesh, patch_triangles(mesh, "coil")), color=COPPER, smooth_shading=True, ambient=0.55, diffuse=0.6, specular=0.1)
@@ -45,7 +47,7 @@ def whole(mesh):
 
 
 def cut(drawn, normal, offset, up, centre, height):
-    """A flat cut: the lumen by its quality, the wire in copper."""
+    """Return an image of a planar cut: the lumen coloured by quality, the wire in copper."""
     plotter = lit(drawn, PANEL)
     origin = SAC if normal == "y" else (0.0, 0.0, 0.0)
     flat = drawn.slice(normal=normal, origin=np.array(origin) + 1e-4, generate_triangles=False)

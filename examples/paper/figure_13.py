@@ -1,9 +1,10 @@
-"""Rebuilds figure 13 of the paper: gaps between a stent that has not been opened and an aneurysm (writes docs/paper_13.png, prints two tables).
+"""Reproduces figure 13 of the paper: gaps between an unexpanded stent and an aneurysm.
 
     target/venv/bin/python examples/paper/figure_13.py
 
-The distance of every vertex to the nearest place of the other surface, exact, on (a) the stent and (b) the wall; (c), (d) the same as the stent is
-about to touch. The second table opens it in steps: from where on motet warns, so that a model of contact would be called.
+Writes docs/paper_13.png and prints two tables. Shows the exact distance of every vertex to the other surface,
+on (a) the stent and (b) the wall; (c), (d) just before the stent touches the wall. The second table expands
+the stent in steps and shows when motet warns, so that a contact model would be called.
 """
 import numpy as np
 from common import DOCS, poly, print_table
@@ -12,18 +13,19 @@ from pictures import COPPER, lit, save_sheet, scale_of, shot
 
 PANEL = (600, 400)
 RANGE, WARN = (0.0, 1.2), 0.1
-# Radius of the circle that the vessel's axis lies on: its length over its bend; the vessel's own radius is 1.
+# Radius of the circle on which the vessel's axis lies: its length over its bend. The radius of the vessel is
+# 1.
 AXIS = 10.0 / np.radians(90.0)
 LENGTH = 7.0
-# How far the stent is from the axis, towards the inside of the bend.
+# Distance of the stent from the axis, towards the inside of the bend.
 OFF = 0.2
 RADII = (0.4, 0.5, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85)
-# Red warns, pale is near, blue is far.
+# Red: warning; pale: near; blue: far.
 GAP = LinearSegmentedColormap.from_list("gap", [(0.0, "#8c0f2d"), (0.083, "#e0583f"), (0.085, "#f0c36a"), (0.5, "#8fc7b4"), (1.0, "#2b6c8a")])
 
 
 def bent_stent(radius):
-    """A stent along the axis of the vessel, its middle under the sac."""
+    """Return a stent along the axis of the vessel, with its centre at the sac."""
     from motet import shapes
 
     stent = shapes.stent(radius, length=LENGTH, rings=7, crowns=6, strut_width=0.12, thickness=0.08)
@@ -40,7 +42,7 @@ def contact(stent, vessel):
 
 
 def with_gaps(mesh, body, first):
-    """A surface with the gap of each of its vertices."""
+    """Return a surface for drawing, with the gap at each vertex."""
     drawn = poly(mesh)
     gap = np.full(mesh.n_points, np.nan)
     gap[body.vertices.astype(int) - first] = body.gap
@@ -49,7 +51,7 @@ def with_gaps(mesh, body, first):
 
 
 def panel(stent, vessel, on):
-    """Both surfaces, one of them in the colour of its gaps."""
+    """Return an image of both surfaces, one of them coloured by its gaps."""
     plotter = lit(vessel, PANEL)
     coloured = dict(scalars="gap", cmap=GAP, clim=RANGE, show_scalar_bar=False, ambient=0.6, diffuse=0.45)
     if on == "stent":

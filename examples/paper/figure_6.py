@@ -1,10 +1,12 @@
-"""Rebuilds figure 6 of the paper: a tet divided, and those beside it (writes docs/paper_6.png, prints two tables).
+"""Reproduces figure 6 of the paper: division of a tet and its neighbours (writes docs/paper_6.png, prints two
+tables).
 
     target/venv/bin/python examples/paper/figure_6.py
 
-One of three regular tets is divided, (a), into eight; the others are cut to fit: (b) shares an edge with it, (c) a facet. Above the edges that come, below
-the parts, pulled apart, in the colour of their quality. Then a mesh is divided round one place again and again: what becomes of its quality where motet
-remembers what was cut, and where it is made to forget that after each generation, so that pieces that were cut are divided themselves.
+One of three regular tets (a) is divided into eight; the others are cut to conform: (b) shares an edge with
+it, (c) a facet. The upper row shows the new edges, the lower row the separated parts, coloured by quality.
+Then a mesh is divided repeatedly around one point, and its quality is compared with that of a mesh whose
+divisions are forgotten after each generation, so that cut pieces are divided again.
 """
 import numpy as np
 import pyvista as pv
@@ -16,14 +18,15 @@ GENERATIONS = 8
 APART = 0.5
 HEIGHT, LIFT = 3.9, 0.3
 PLACE = ((1.7, 0.3, 0.2), 0.02)
-# From where each is seen, and what is up there.
+# For each panel, the camera's direction and the upward direction.
 VIEWS = (((12.0, -8.0, 2.0), (1.0, 1.0, 1.0)), ((9.0, -14.0, 7.0), (0.0, 0.0, 1.0)), ((9.0, -14.0, 7.0), (0.0, 0.0, 1.0)))
 
 
 def regular():
-    """Three regular tets: one, one that shares a facet with it, and one that shares an edge with it.
+    """Return three regular tets: one, one that shares a facet with it, and one that shares an edge with it.
 
-    A fourth stands aside and is flat: without it motet would divide all three, since no part may be much worse than the worst tet of the mesh.
+    A fourth, separate tet is flat: without it motet would divide all three, since no part may be much worse
+    than the worst tet of the mesh.
     """
     import motet
 
@@ -37,7 +40,7 @@ def regular():
 
 
 def mirrored(points, facet, v):
-    """Where a vertex of a regular tet comes to lie beyond the facet opposite."""
+    """Return the mirror image of a vertex of a regular tet beyond the opposite facet."""
     return 2.0 * np.mean([points[i] for i in facet], axis=0) - points[v]
 
 
@@ -47,7 +50,7 @@ def upright(points, tet):
 
 
 def divided(mesh):
-    """The mesh with its first tet divided, and for each cell which one it was."""
+    """Return the mesh with its first tet divided, and the original cell of each cell."""
     import motet
 
     refinement = motet.Refinement(mesh)
@@ -56,47 +59,47 @@ def divided(mesh):
 
 
 def apart(drawn):
-    """Cells moved away from their common middle."""
+    """Return the cells moved away from their common centre."""
     middle = drawn.cell_centers().points.mean(axis=0)
     parts = [drawn.extract_cells([i]) for i in range(drawn.n_cells)]
     return pv.merge([part.translate(APART * (np.array(part.center) - middle)) for part in parts], merge_points=False)
 
 
 def upper_panel(parts, whole, view):
-    """A tet, and inside it the edges that came and the vertices that came."""
+    """Return an image of a tet with its new edges and new vertices."""
     plotter = lit(whole, PANEL)
     plotter.add_mesh(whole, color="#e8ecf0", opacity=0.35, ambient=0.6, diffuse=0.4)
     plotter.add_mesh(parts.extract_all_edges(), color=COPPER, line_width=2.0, lighting=False)
     plotter.add_mesh(whole.extract_all_edges(), color=INK, line_width=2.5, lighting=False)
-    came = [p for p in parts.points if np.linalg.norm(whole.points - p, axis=1).min() > 1e-9]
-    plotter.add_mesh(pv.PolyData(np.array(came)), color=COPPER, point_size=12.0, render_points_as_spheres=True, lighting=False)
+    new = [p for p in parts.points if np.linalg.norm(whole.points - p, axis=1).min() > 1e-9]
+    plotter.add_mesh(pv.PolyData(np.array(new)), color=COPPER, point_size=12.0, render_points_as_spheres=True, lighting=False)
     return seen_straight(plotter, whole.cell_centers().points[0] + LIFT * np.array(view[1]), *view, HEIGHT)
 
 
 def lower_panel(parts, whole, view):
-    """The parts, pulled apart."""
+    """Return an image of the separated parts."""
     plotter = lit(whole, PANEL)
     lines = EDGES | dict(line_width=1.6, edge_opacity=0.9)
     plotter.add_mesh(apart(parts), scalars="EAS", cmap=QUALITY, clim=RANGE, show_scalar_bar=False, **lines)
     return seen_straight(plotter, whole.cell_centers().points[0] + LIFT * np.array(view[1]), *view, HEIGHT)
 
 
-def words(values):
+def range_text(values):
     low, high = min(values), max(values)
     return f"{low:.3f}" if high - low < 5e-4 else f"{low:.3f} to {high:.3f}"
 
 
 def main():
     mesh = regular()
-    fine, came_from = divided(mesh)
+    fine, origin = divided(mesh)
     drawn, whole = grid(fine), grid(mesh)
     rows, upper, lower = [], [], []
     names = ((0, "(a) marked"), (2, "(b) beside it, an edge shared"), (1, "(c) beside it, a facet shared"))
     for (tet, name), view in zip(names, VIEWS):
-        parts, one = drawn.extract_cells(np.flatnonzero(came_from == tet)), whole.extract_cells([tet])
+        parts, one = drawn.extract_cells(np.flatnonzero(origin == tet)), whole.extract_cells([tet])
         upper.append((upper_panel(parts, one, view), name))
-        lower.append((lower_panel(parts, one, view), f"{parts.n_cells} parts, EAS {words(parts['EAS'])}"))
-        rows.append([name, f"{whole['EAS'][tet]:.3f}", parts.n_cells, words(parts["EAS"])])
+        lower.append((lower_panel(parts, one, view), f"{parts.n_cells} parts, EAS {range_text(parts['EAS'])}"))
+        rows.append([name, f"{whole['EAS'][tet]:.3f}", parts.n_cells, range_text(parts["EAS"])])
     save_sheet(upper + lower, DOCS / "paper_6.png", 3, colour_bar)
     print_table(["tet", "EAS before", "parts", "EAS after"], rows)
     print()
@@ -104,7 +107,7 @@ def main():
 
 
 def generations():
-    """What becomes of a mesh that is divided round the same place again and again: with memory of what was cut, and without."""
+    """Print the quality of a mesh divided repeatedly around one point, with and without stored divisions."""
     import motet
     from motet import shapes
 
@@ -112,7 +115,7 @@ def generations():
     meshes, rows = {False: first, True: first}, []
     for generation in range(GENERATIONS + 1):
         eas = [tet_quality(mesh) for mesh in meshes.values()]
-        rows.append([generation, *(word for q in eas for word in (f"{len(q):,}", f"{q.min():.3f}", f"{np.median(q):.3f}"))])
+        rows.append([generation, *(text for q in eas for text in (f"{len(q):,}", f"{q.min():.3f}", f"{np.median(q):.3f}"))])
         meshes = {forget: motet.refine(mesh, ball=[PLACE], forget=forget).mesh for forget, mesh in meshes.items()}
     print_table(["generation", "tets", "worst EAS", "median EAS", "tets, forgetful", "worst EAS", "median EAS"], rows)
 

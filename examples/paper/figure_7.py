@@ -1,9 +1,10 @@
-"""Rebuilds figure 7 of the paper: a body is put into a mesh, step by step (writes docs/paper_7.png).
+"""Reproduces figure 7 of the paper: implantation of a body into a mesh, step by step (writes
+docs/paper_7.png).
 
     target/venv/bin/python examples/paper/figure_7.py
 
-(a) The outer mesh and (b) the inner one, each on its own; (c) what of the outer mesh stays; (d) the surfaces that bound the room in between;
-(e) what fills it; (f) all of it, in the colour of its quality. Cuts through the middle.
+(a) The outer and (b) the inner mesh; (c) the part of the outer mesh that is kept; (d) the surfaces that bound
+the space in between; (e) its new tets; (f) the whole mesh, coloured by quality. Cuts through the centre.
 """
 import numpy as np
 from common import BAD, DOCS, PALE, behind, grid, patch_triangles, poly
@@ -17,13 +18,13 @@ LOOK = dict(show_scalar_bar=False, **EDGES)
 
 def seen(*layers):
     plotter = lit(layers[0][0], PANEL)
-    for drawn, words in layers:
-        plotter.add_mesh(drawn, **words)
+    for drawn, options in layers:
+        plotter.add_mesh(drawn, **options)
     return seen_straight(plotter, *VIEW)
 
 
 def outer():
-    """A box of tets, with vertices on no lattice: filled from its surface."""
+    """Return an unstructured mesh of a box, filled from its surface."""
     import motet
     from motet import shapes
 
@@ -32,14 +33,14 @@ def outer():
 
 
 def facets(tets):
-    """The facets of tets that one of them alone has."""
+    """Return the facets that belong to only one tet."""
     rows = np.concatenate([tets[:, [i for i in range(4) if i != j]] for j in range(4)])
     keys, first, counts = np.unique(np.sort(rows, axis=1), axis=0, return_index=True, return_counts=True)
     return rows[first[counts == 1]]
 
 
 def half(drawn):
-    """Triangles beyond the cut."""
+    """Return the triangles behind the cut."""
     return drawn.extract_cells(drawn.cell_centers().points[:, 1] > 0.0)
 
 
@@ -62,7 +63,7 @@ def panels(host, ball, made):
     in_ball = mesh.cell_data["region"][ids] > 1
     stayed = (made.history.cell_to_old[ids] >= 0) & ~in_ball
     all_tets = grid(mesh, stayed=stayed, in_ball=in_ball)
-    kept, inner, came = (behind(all_tets.extract_cells(which), 1) for which in (stayed, in_ball, ~stayed & ~in_ball))
+    kept, inner, new = (behind(all_tets.extract_cells(which), 1) for which in (stayed, in_ball, ~stayed & ~in_ball))
     room = facets(mesh.tets[~stayed & ~in_ball])
     on_ball = np.isin(room, patch_triangles(mesh, "ball")).all(axis=1)
     hollow, skin = (half(poly(mesh, rows)) for rows in (room[~on_ball], room[on_ball]))
@@ -73,7 +74,7 @@ def panels(host, ball, made):
         (seen((behind(grid(ball), 1), copper)), f"(b) inner mesh, {len(ball.tets):,} tets"),
         (seen((kept, pale)), f"(c) {np.count_nonzero(stayed):,} tets of (a) stay"),
         (seen((hollow, blue), (skin, copper)), "(d) surfaces that bound the room"),
-        (seen((kept, pale), (came, blue), (inner, copper)), f"(e) filled by {np.count_nonzero(~stayed & ~in_ball):,} tets"),
+        (seen((kept, pale), (new, blue), (inner, copper)), f"(e) filled by {np.count_nonzero(~stayed & ~in_ball):,} tets"),
         (seen((behind(all_tets, 1), coloured)), f"(f) worst EAS {all_tets['EAS'].min():.2f}"),
     ]
 

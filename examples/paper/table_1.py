@@ -1,11 +1,12 @@
-"""Rebuilds table 1 of the paper: a step of mesh motion by the Delaunay graph beside one of pseudo-elasticity, on four sizes (prints two tables).
+"""Reproduces table 1 of the paper: times of mesh motion by the Delaunay graph and by pseudo-elasticity.
 
-    target/venv/bin/python examples/paper/table_1.py            (some three minutes)
+    target/venv/bin/python examples/paper/table_1.py            (about three minutes)
     target/venv/bin/python examples/paper/table_1.py A B        (only these sizes)
 
-A sphere in a box moves by half of its radius. Each call of `motet move` is a process of its own with one thread; times are medians of REPEATS
-calls, of which a step of the graph is the median of STEPS steps. The rival is motet's own elastic body (`--method elastic`, 1/volume as stiffness),
-one step a call, so that no iteration begins at what it looks for. Setting up is told for both.
+Prints two tables for meshes of four sizes. A sphere in a box moves by half its radius. Each call of `motet
+move` is a separate process with one thread. Times are medians of REPEATS calls; a step of the graph is the
+median of STEPS steps. Pseudo-elasticity is motet's `--method elastic` with the stiffness 1/volume, with one
+step per call, so that iterations do not start from the solution. Set-up times are given for both.
 """
 import os
 import sys
@@ -13,11 +14,12 @@ from statistics import median
 
 from common import motet_json, print_table, work
 
-# Cells along a side of the cubed sphere, and layers from it to the walls: near the paper's counts.
+# Cells along a side of the cubed sphere, and layers from it to the walls: close to the numbers of the paper.
 SIZES = {"A": (15, 7), "B": (22, 10), "C": (30, 13), "D": (38, 17)}
 REPEATS, STEPS = 5, 21
 LAYER = ("--rigid-layer", "1layers", "--rigid-layer-at", "sphere", "--rigid-layer-at", "box")
-# What the paper prints, seconds: set-up without and with a rigid layer, step of the elastic solver, step of the graph without and with one.
+# Times in the paper, in seconds: set-up without and with a rigid layer, step of the elastic solver, and step
+# of the graph without and with a rigid layer.
 PAPER = {
     "A": (1.20, 2.21, 4.42, 2.22e-3, 1.25e-3),
     "B": (3.47, 6.14, 15.16, 5.65e-3, 6.66e-3),
@@ -27,7 +29,7 @@ PAPER = {
 
 
 def made(name):
-    """The mesh, as a file."""
+    """Write the mesh to a file and return its path."""
     from motet import shapes
 
     path = work(f"table_1_{name}.vtu")
@@ -35,23 +37,23 @@ def made(name):
     return path
 
 
-def calls(path, *words):
-    """The reports of some calls that move the sphere."""
+def calls(path, *options):
+    """Return the reports of REPEATS calls that move the sphere."""
     move = ("move", path, "-o", work("table_1_moved.vtu"), "--translate", "sphere=0.5,0,0", "--threads", 1)
-    return [motet_json(*move, *words) for _ in range(REPEATS)]
+    return [motet_json(*move, *options) for _ in range(REPEATS)]
 
 
-def setup_time(told):
-    return median(one["setup"]["seconds"]["total"] for one in told)
+def setup_time(reports):
+    return median(one["setup"]["seconds"]["total"] for one in reports)
 
 
-def step_time(told):
-    """A step's time; of several in a call the first, which finds cold memory, is left out."""
-    return median(median(step["seconds"]["update"] for step in one["steps"][1:] or one["steps"]) for one in told)
+def step_time(reports):
+    """Return the time of a step; the first of several steps in a call, with cold caches, is omitted."""
+    return median(median(step["seconds"]["update"] for step in one["steps"][1:] or one["steps"]) for one in reports)
 
 
 def measured(name):
-    """The counts of a size, and times in the order of PAPER; what setting up the elastic body takes, last."""
+    """Return the counts of a size, and the times in the order of PAPER, followed by the elastic set-up."""
     path = made(name)
     summary = motet_json("info", path)
     plain, rigid = calls(path, "--steps", STEPS), calls(path, "--steps", STEPS, *LAYER)
@@ -69,10 +71,10 @@ def count_row(name, counts):
 
 def time_row(who, times):
     plain, rigid, elastic, step, step_rigid = times[:5]
-    return [*who, *map(in_words, (plain, rigid, step, step_rigid, elastic)), f"{elastic / step:,.0f}", f"{elastic / step_rigid:,.0f}"]
+    return [*who, *map(duration, (plain, rigid, step, step_rigid, elastic)), f"{elastic / step:,.0f}", f"{elastic / step_rigid:,.0f}"]
 
 
-def in_words(seconds):
+def duration(seconds):
     unit, name = next((u for u in ((1.0, "s"), (1e-3, "ms")) if seconds >= u[0]), (1e-6, "us"))
     return f"{seconds / unit:.3g} {name}"
 
@@ -88,7 +90,7 @@ def main():
     rows = [row for n, (_, t) in found.items() for row in (time_row((n, "2008"), PAPER[n]), time_row((n, "now"), t))]
     print_table(head, rows)
     for name, (_, times) in found.items():
-        print(f"{name}: setting up the elastic body took {in_words(times[5])}")
+        print(f"{name}: set-up of the elastic body {duration(times[5])}")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""Incompressible flow in NGSolve on a mesh of arrays that moves, and is exchanged for a repaired one on the way.
+"""Incompressible flow in NGSolve on a moving `motet.Mesh`, which can be replaced by a repaired mesh.
 
-Navier-Stokes in arbitrary Lagrangian-Eulerian form (Donea, Giuliani, Halleux 1982), Taylor and Hood's elements, implicit Euler, convection by
-the velocity of the step before, pressure by the incremental projection of Goda (1979). `Mesh.SetDeformation` moves the mesh, by a field of
-order 1.
+Navier-Stokes equations in arbitrary Lagrangian-Eulerian form (Donea, Giuliani, Halleux 1982), Taylor-Hood
+elements, implicit Euler with convection by the velocity of the previous step, and the incremental projection
+of Goda (1979) for the pressure. `Mesh.SetDeformation` moves the mesh by a field of order 1.
 """
 import netgen.meshing
 import numpy as np
@@ -16,12 +16,13 @@ TOLERANCE = 1e-9
 
 
 def ramp(t):
-    """From 0 to 1, so that nothing starts with a blow."""
+    """Return a smooth rise from 0 to 1, which avoids an impulsive start."""
     return np.sin(np.pi / 2 * min(t / RAMP, 1.0)) ** 2
 
 
 def to_ngsolve(mesh, points):
-    """A mesh of NGSolve: vertices in the order of the points, boundaries named after the patches."""
+    """Return a mesh of NGSolve, with vertices in the order of the points and boundaries named after the
+    patches."""
     made = netgen.meshing.Mesh(dim=3)
     made.AddPoints(np.ascontiguousarray(points))
     patches = mesh.cell_data["patch"][mesh.cell_ids("triangle")]
@@ -29,13 +30,13 @@ def to_ngsolve(mesh, points):
         index = made.Add(netgen.meshing.FaceDescriptor(surfnr=i + 1, domin=1, bc=i + 1))
         made.SetBCName(i, name)
         made.AddElements(dim=2, index=index, data=mesh.triangles[patches == label].astype(np.int32), base=0)
-    # A tet of netgen is seen in a mirror.
+    # Tets of netgen have the opposite orientation.
     made.AddElements(dim=3, index=1, data=mesh.tets[:, [0, 1, 3, 2]].astype(np.int32), base=0)
     return Mesh(made)
 
 
 class Flow:
-    """Velocity and pressure on a `motet.Mesh`, whose points move."""
+    """Velocity and pressure on a `motet.Mesh` with moving points."""
 
     def __init__(self, arrays):
         self.arrays, self.mesh = arrays, to_ngsolve(arrays, arrays.points)
@@ -51,11 +52,14 @@ class Flow:
             field.Set(CoefficientFunction(tuple(float(axis == i) for i in range(3))), definedon=self.mesh.Boundaries("sphere"))
 
     def points(self):
-        """Where the mesh is now."""
+        """Return the current points of the mesh."""
         return self.arrays.points + self.moved.vec.FV().NumPy().reshape(3, -1).T
 
     def step(self, points, t, wall):
-        """One step, to the time `t` and the mesh at `points`; `wall` is the sphere's velocity. Gives the force on it."""
+        """Advance to the time `t` and the mesh at `points`.
+
+        Return the force on the sphere, which moves at `wall`.
+        """
         moved = (points - self.arrays.points).T.ravel()
         self.grid.vec.FV().NumPy()[:] = (moved - self.moved.vec.FV().NumPy()) / DT
         self.moved.vec.FV().NumPy()[:] = moved
@@ -67,10 +71,10 @@ class Flow:
         self._project()
         u, v = self.velocity, self.velocities.TestFunction()
         inertia = InnerProduct(1 / DT * (old - u) - Grad(u) * stream, v)
-        lack = LinearForm((inertia - VISCOSITY * InnerProduct(Grad(u), Grad(v)) + self.pressure * div(v)) * dx).Assemble().vec
+        residual = LinearForm((inertia - VISCOSITY * InnerProduct(Grad(u), Grad(v)) + self.pressure * div(v)) * dx).Assemble().vec
         self.mesh.UnsetDeformation()
-        # The force is what the equation lacks at the sphere's degrees of freedom.
-        return np.array([InnerProduct(lack, unit.vec) for unit in self.on_sphere])
+        # The force is the residual of the equation at the degrees of freedom of the sphere.
+        return np.array([InnerProduct(residual, unit.vec) for unit in self.on_sphere])
 
     def _predict(self, old, stream, inflow, wall):
         u, v = self.scalars.TnT()
@@ -107,7 +111,7 @@ class Flow:
             self.velocity.components[axis].vec.data += solve * change.components[axis].vec
 
     def divergence(self):
-        """The L2 norm of the velocity's divergence, on the mesh where it is."""
+        """Return the L2 norm of the divergence of the velocity on the current mesh."""
         self.mesh.SetDeformation(self.moved)
         square = Integrate(div(self.velocity) ** 2, self.mesh)
         self.mesh.UnsetDeformation()
@@ -115,10 +119,14 @@ class Flow:
 
 
 def carried(old, mesh, history):
-    """The flow on a repaired mesh: to the bit at vertices and edges that stayed, elsewhere the old velocity's value in the place, pressure as motet interpolates it."""
+    """Return the flow on a repaired mesh.
+
+    The velocity is copied exactly at unchanged vertices and edges, and evaluated in the old mesh elsewhere;
+    the pressure is interpolated by motet.
+    """
     new = Flow(mesh)
     new.pressure.vec.FV().NumPy()[:] = history.transfer(old.pressure.vec.FV().NumPy(), on="points")
-    # NGSolve finds points in a mesh that is not deformed: the old one, where it is now.
+    # NGSolve locates points only in undeformed meshes, so the old mesh is rebuilt at its current position.
     here = to_ngsolve(old.arrays, old.points())
     field = GridFunction(VectorH1(here, order=2))
     field.vec.data = old.velocity.vec
@@ -135,18 +143,18 @@ def carried(old, mesh, history):
         vertices[:] = before[kept]
         vertices[kept < 0] = at_ends[:, axis]
         bubbles[:] = before[old.mesh.nv + edge_kept]
-        # NGSolve's function of an edge is -1/8 in its middle.
+        # The edge function of NGSolve is -1/8 at the midpoint.
         bubbles[edge_kept < 0] = 8 * (vertices[new_edges[edge_kept < 0]].mean(axis=1) - at_middles[:, axis])
     return new
 
 
 def edges(mesh):
-    """The two vertices of each edge."""
+    """Return the two vertices of each edge."""
     return np.array([[v.nr for v in edge.vertices] for edge in mesh.edges])
 
 
 def same_edges(wanted, known):
-    """For each pair of vertices the number of the known edge that it is, or -1; a vertex of -1 is none."""
+    """Return for each pair of vertices the index of the known edge, or -1; also -1 if a vertex is -1."""
     n = known.max() + 1
     keys = known.min(axis=1) * n + known.max(axis=1)
     order = np.argsort(keys)

@@ -1,11 +1,12 @@
-"""Incompressible flow round a sphere that drifts along a channel and swings across it, on a mesh that moves.
+"""Incompressible flow around a sphere that drifts along a channel and oscillates across it, on a moving mesh.
 
-    pip install ./python ngsolve
-    python integrations/ngsolve/sphere.py [--steps 100] [--size 1.0] [--swing 2.0] [--drift 4.0] [--worn 0.15] [--save end_{}.vtu]
+    pip install ./python ngsolve python integrations/ngsolve/sphere.py [--steps 100] [--size 1.0] [--swing
+    2.0] [--drift 4.0] [--worn 0.15] [--save end_{}.vtu]
 
-The mesh is moved by motet, which repairs it when its worst tet is below `--worn`; by motet without repair; and by NGSolve's own solution of a
-Laplace and of an elasticity equation. The flow is that of `flow.py`. Prints what the steps of each motion took, how the mesh fared, what each
-repair did to the flow, and how far drag and lift are apart.
+The mesh is moved by motet, with a repair when the worst tet is below `--worn`; by motet without repair; and
+by a Laplace and an elasticity equation solved with NGSolve. The flow solver is `flow.py`. Prints the times of
+each motion, the quality of the mesh, the effect of each repair on the flow, and the differences of drag and
+lift.
 """
 import argparse
 import functools
@@ -23,7 +24,7 @@ RADIUS, PERIOD = 0.5, 4.0
 
 
 def made(size):
-    """The channel round the sphere, meshed by netgen, as a `motet.Mesh` whose patches have names."""
+    """Mesh the channel around the sphere with netgen; return a `motet.Mesh` with named patches."""
     box = Box(Pnt(-2, -2, -2), Pnt(4, 2, 2))
     box.faces.name = "sides"
     ball = Sphere(Pnt(0, 0, 0), RADIUS)
@@ -43,12 +44,12 @@ def made(size):
 
 
 def path(t, drift, swing):
-    """How far the sphere is from its first place."""
+    """Return the displacement of the sphere from its initial position."""
     return RADIUS * ramp(t) * np.array([drift * t / PERIOD, swing * np.sin(2 * np.pi * t / PERIOD), 0])
 
 
 class ByMotet:
-    """Certified steps from where the mesh was made or repaired last."""
+    """Motion by motet in certified steps, from the position of the last repair."""
 
     def __init__(self, mesh, worn=0.0, start=np.zeros(3)):
         self.mesh, self.worn, self.start = mesh, worn, start
@@ -67,7 +68,10 @@ class ByMotet:
         return self.certificate.worst_eas.value < self.worn
 
     def repaired(self):
-        """The motion from here on, of the mesh repaired where it is, and what the repair changed. The boundary stays to the bit."""
+        """Repair the mesh at its current position, with the boundary unchanged.
+
+        Return the new motion and the change.
+        """
         here = self.mesh.copy()
         here.points = self.points
         changed = motet.remesh(here)
@@ -75,7 +79,8 @@ class ByMotet:
 
 
 class BySystem:
-    """NGSolve's own: a linear system whose factor is kept, the fastest that it has for this."""
+    """Motion by a linear system in NGSolve with a stored factorization, its fastest solver for
+    this purpose."""
 
     def __init__(self, mesh, kind):
         self.mesh, self.sphere = mesh, mesh.patch_vertices("sphere")
@@ -103,7 +108,7 @@ class BySystem:
 
 
 class Run:
-    """The flow with one motion, to the end or to where the mesh tangles."""
+    """The flow with one motion, up to the end or until the mesh tangles."""
 
     def __init__(self, mesh, motion_of):
         self.seconds, self.forces, self.worst_eas, self.tangled = defaultdict(list), [], 1.0, None
@@ -118,7 +123,7 @@ class Run:
         return result
 
     def step(self, t, shift, wall):
-        """Goes on to the time `t`; false where the mesh tangles on the way."""
+        """Advance to the time `t`; return False if the mesh tangles."""
         points = self.clocked("motion", self.motion.move, shift)
         there = motet.Mesh(points, self.motion.mesh.tets)
         self.worst_eas = min(self.worst_eas, there.quality().min())
@@ -127,7 +132,7 @@ class Run:
             return False
         self.forces.append(self.clocked("flow", self.flow.step, points, t, wall))
         if self.unrepaired:
-            # The same step on the mesh that was not repaired says what the repair did to the drag.
+            # A step on the unrepaired mesh shows the effect of the repair on the drag.
             motion, flow = self.unrepaired
             self.repairs[-1]["drag"] = self.forces[-1][0] - flow.step(motion.move(shift), t, wall)[0]
             self.unrepaired = None
@@ -140,8 +145,8 @@ class Run:
         divergence = self.flow.divergence()
         self.motion, changed = self.clocked("repair", self.motion.repaired)
         self.flow = self.clocked("transfer", carried, self.flow, changed.mesh, changed.history)
-        told = {"step": len(self.forces), "bad": changed.report.before.bad, "left": changed.report.after.bad, "kept": changed.report.kept_share}
-        self.repairs.append({**told, "divergence": self.flow.divergence() / divergence, "drag": np.nan})
+        repair = {"step": len(self.forces), "bad": changed.report.before.bad, "left": changed.report.after.bad, "kept": changed.report.kept_share}
+        self.repairs.append({**repair, "divergence": self.flow.divergence() / divergence, "drag": np.nan})
 
     def show(self, name):
         ms = {what: 1e3 * np.median(each) for what, each in self.seconds.items()}
@@ -156,29 +161,33 @@ class Run:
 
 
 def compare(first, other):
-    """How far drag and lift are apart, once the flow has started, while both meshes are valid: in parts of their mean size."""
+    """Describe the differences of drag and lift, relative to their means, after the start while both meshes
+    are valid."""
     n, begin = min(len(first.forces), len(other.forces)), round(RAMP / DT)
     if n <= begin:
         return "tangled before the flow has started"
     ours, theirs = [np.array(run.forces)[begin:n, :2] for run in (first, other)]
-    apart = 100 * np.abs(ours - theirs) / np.abs(ours).mean(axis=0)
-    (drag, lift), (most_drag, most_lift) = apart.mean(axis=0), apart.max(axis=0)
-    return f"steps {begin + 1} to {n}: drag apart by {drag:.2f} % in the mean, {most_drag:.2f} % at most; lift by {lift:.2f} %, {most_lift:.2f} %"
+    difference = 100 * np.abs(ours - theirs) / np.abs(ours).mean(axis=0)
+    (drag, lift), (most_drag, most_lift) = difference.mean(axis=0), difference.max(axis=0)
+    return (
+        f"steps {begin + 1} to {n}: difference of drag {drag:.2f} % on average, {most_drag:.2f} % at most;"
+        f" of lift {lift:.2f} %, {most_lift:.2f} %"
+    )
 
 
 def main():
-    words = argparse.ArgumentParser()
-    words.add_argument("--steps", type=int, default=100)
-    words.add_argument("--size", type=float, default=1.0, help="edges far from the sphere; a quarter of it at the sphere")
-    words.add_argument("--swing", type=float, default=2.0, help="to each side, in radii")
-    words.add_argument("--drift", type=float, default=4.0, help="along the channel in 100 steps, in radii")
-    words.add_argument("--worn", type=float, default=0.15, help="the EAS of the worst tet below which motet repairs")
-    words.add_argument("--save", help="where the last meshes go; {} is the motion's name")
-    asked = words.parse_args()
-    mesh = made(asked.size)
-    print(f"{mesh.n_points} vertices, {len(mesh.tets)} tets, {asked.steps} steps of {DT}")
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--steps", type=int, default=100, help="number of time steps")
+    parser.add_argument("--size", type=float, default=1.0, help="edge length far from the sphere; a quarter of it at the sphere")
+    parser.add_argument("--swing", type=float, default=2.0, help="amplitude of the oscillation, in radii")
+    parser.add_argument("--drift", type=float, default=4.0, help="drift along the channel in 100 steps, in radii")
+    parser.add_argument("--worn", type=float, default=0.15, help="EAS of the worst tet below which motet repairs the mesh")
+    parser.add_argument("--save", help="file for the last mesh of each motion; {} is replaced by its name")
+    options = parser.parse_args()
+    mesh = made(options.size)
+    print(f"{mesh.n_points} vertices, {len(mesh.tets)} tets, {options.steps} steps of {DT}")
     motions = {
-        "motet": functools.partial(ByMotet, worn=asked.worn),
+        "motet": functools.partial(ByMotet, worn=options.worn),
         "unrepaired": ByMotet,
         "Laplace": functools.partial(BySystem, kind="Laplace"),
         "elasticity": functools.partial(BySystem, kind="elasticity"),
@@ -187,17 +196,17 @@ def main():
     with TaskManager():
         for name, motion_of in motions.items():
             run = runs[name] = Run(mesh, motion_of)
-            for k in range(1, asked.steps + 1):
-                shift, before = [path(DT * i, asked.drift, asked.swing) for i in (k, k - 1)]
+            for k in range(1, options.steps + 1):
+                shift, before = [path(DT * i, options.drift, options.swing) for i in (k, k - 1)]
                 if not run.step(k * DT, shift, (shift - before) / DT):
                     break
             run.show(name)
             if run is not runs["motet"]:
-                print(f"  beside motet, {compare(runs['motet'], run)}", flush=True)
-            if asked.save:
+                print(f"  compared with motet, {compare(runs['motet'], run)}", flush=True)
+            if options.save:
                 last = run.motion.mesh.copy()
                 last.points = run.flow.points()
-                last.save(asked.save.format(name))
+                last.save(options.save.format(name))
 
 
 if __name__ == "__main__":

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Runs the case by moveDynamicMesh and pimpleFoam, serial and on two processes, with `delaunayGraph`: the points have to be the same to round-off. Then clocks a step of it and
-of displacementLaplacian.
+"""Checks the motion solver `delaunayGraph`, or measures its time with --time.
 
-    integrations/openfoam/check.py FOLDER [--time [CELLS]]     FOLDER: that of libmotetMotionSolver.so; CELLS: along an edge of the box, 64 if not said
+    integrations/openfoam/check.py FOLDER [--time [CELLS]]
 
-Needs OpenFOAM's programs and mpirun. The runs go into FOLDER/run.
+Runs the case with moveDynamicMesh and pimpleFoam, serially and on two processes; points must agree up to
+rounding. With --time, measures a step of `delaunayGraph` and of displacementLaplacian instead. FOLDER
+contains libmotetMotionSolver.so; the cases are written to FOLDER/run. CELLS is the number of cells along an
+edge of the box (default 64). Needs OpenFOAM's programs and mpirun.
 """
 import os
 import re
@@ -28,24 +30,25 @@ class Case:
         self.environment = {"WM_PROJECT_DIR": "/usr/share/openfoam", **os.environ}
         paths = [str(library), self.environment.get("LD_LIBRARY_PATH", "")]
         self.environment["LD_LIBRARY_PATH"] = ":".join(filter(None, paths))
-        # What mpirun asks for where the user is root, as in containers.
+        # mpirun requires these if the user is root, as in containers.
         self.environment |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
         self.change("system/blockMeshDict", r"\(32 32 32\)", f"({cells} {cells} {cells})")
         coefficients = "diffusivity inverseVolume;" if solver != "delaunayGraph" else ""
         self.change("constant/dynamicMeshDict", "motionSolver delaunayGraph;", f"motionSolver {solver}; {coefficients}")
-        for words in (["blockMesh"], ["topoSet"], ["subsetMesh", "-overwrite", "fluid", "-patch", "body"]):
-            self.run(*words)
+        for command in (["blockMesh"], ["topoSet"], ["subsetMesh", "-overwrite", "fluid", "-patch", "body"]):
+            self.run(*command)
 
     def change(self, file, old, new):
         path = self.folder / file
         text, n = re.subn(old, new, path.read_text())
-        assert n == 1, f"{file}: no {old}"
+        assert n == 1, f"{file}: {old} found {n} times, expected once"
         path.write_text(text)
 
-    def run(self, *words, processes=1):
-        command = list(words)
+    def run(self, *program, processes=1):
+        """Run a program in the case; return its duration in seconds and its output."""
+        command = list(program)
         if processes > 1:
-            command = ["mpirun", "-np", str(processes), "--oversubscribe", *words, "-parallel"]
+            command = ["mpirun", "-np", str(processes), "--oversubscribe", *program, "-parallel"]
         begin = time.perf_counter()
         done = subprocess.run(command, cwd=self.folder, env=self.environment, capture_output=True, text=True)
         if done.returncode != 0:
@@ -58,7 +61,7 @@ class Case:
         return [tuple(map(float, row)) for row in rows]
 
 
-def farthest(a, b):
+def largest_difference(a, b):
     assert len(a) == len(b) > 0
     return max(abs(x - y) for p, q in zip(a, b) for x, y in zip(p, q))
 
@@ -66,39 +69,39 @@ def farthest(a, b):
 def compare(folder, library, program):
     serial = Case(folder / f"{program}_serial", library)
     start = serial.points("constant")
-    _, told = serial.run(program)
+    _, output = serial.run(program)
     parallel = Case(folder / f"{program}_parallel", library)
     parallel.run("decomposePar")
     parallel.run(program, processes=2)
     parallel.run("reconstructPar", "-latestTime")
-    moved, apart = farthest(start, serial.points()), farthest(serial.points(), parallel.points())
-    nodes = re.search(r"delaunayGraph: (\d+) nodes", told)[1]
-    print(f"{program}: {nodes} nodes, points moved by {moved:.3g} at most; on 2 processes they are {apart:.1e} apart")
-    assert moved > 0.1 and apart < 1e-12
+    moved, difference = largest_difference(start, serial.points()), largest_difference(serial.points(), parallel.points())
+    nodes = re.search(r"delaunayGraph: (\d+) nodes", output)[1]
+    print(f"{program}: {nodes} nodes, points moved by {moved:.3g} at most; difference on 2 processes {difference:.1e}")
+    assert moved > 0.1 and difference < 1e-12
 
 
 def clock(folder, library, cells):
-    """Seconds of a set-up and of a step: a run of one step, and what four more take."""
+    """Measure the seconds of a run with one step, and of each of four further steps."""
     seconds = {}
     for solver in ("delaunayGraph", "displacementLaplacian"):
         case = Case(folder / f"time_{solver}", library, cells, solver)
         case.change("system/controlDict", "writeInterval 20;", "writeInterval 1000;")
-        took = []
+        times = []
         for steps in (1, 5):
             case.change("system/controlDict", r"endTime [0-9.]+;", f"endTime {0.01 * steps};")
-            took.append(min(case.run("moveMesh")[0] for _ in range(3)))
-        seconds[solver] = (took[0], (took[1] - took[0]) / 4)
+            times.append(min(case.run("moveMesh")[0] for _ in range(3)))
+        seconds[solver] = (times[0], (times[1] - times[0]) / 4)
     n = len(Case(folder / "time_delaunayGraph", library, cells).points("constant"))
     for solver, (first, step) in seconds.items():
         print(f"{solver}: {n} points, start, set-up and first step {first:.2f} s, each further step {step:.3f} s")
     print(f"a step of displacementLaplacian takes {seconds['displacementLaplacian'][1] / seconds['delaunayGraph'][1]:.1f} times as long")
 
 
-def main(words):
-    library = Path(words[0]).resolve()
+def main(arguments):
+    library = Path(arguments[0]).resolve()
     folder = library / "run"
-    if "--time" in words:
-        rest = words[words.index("--time") + 1 :]
+    if "--time" in arguments:
+        rest = arguments[arguments.index("--time") + 1 :]
         return clock(folder, library, int(rest[0]) if rest else 64)
     compare(folder, library, "moveDynamicMesh")
     compare(folder, library, "pimpleFoam")

@@ -16,7 +16,7 @@ namespace Foam
     );
 }
 
-static_assert(sizeof(Foam::scalar) == sizeof(double), "motet's arrays are of doubles: OpenFOAM has to be built with WM_PRECISION_OPTION=DP");
+static_assert(sizeof(Foam::scalar) == sizeof(double), "motet uses double precision: build OpenFOAM with WM_PRECISION_OPTION=DP");
 
 namespace
 {
@@ -26,7 +26,7 @@ const double* doubles(const Foam::UList<Foam::vector>& list)
     return reinterpret_cast<const double*>(list.cdata());
 }
 
-//- The lists of all processes, one after the other, on each of them
+//- Returns on each process the concatenated lists of all processes
 Foam::pointField gathered(const Foam::pointField& own)
 {
     Foam::List<Foam::pointField> all(Foam::Pstream::nProcs());
@@ -97,7 +97,7 @@ void Foam::delaunayGraphMotionSolver::setUp()
     (
         doubles(nodes), nodes.size(), 3, doubles(points0()), points0().size(), 3, 1, &mover, &error
     );
-    check(status, error, "the Delaunay graph of the points whose displacement is given");
+    check(status, error, "Delaunay graph of the points with a prescribed displacement");
     mover_.reset(mover);
     Info<< "delaunayGraph: " << nodes.size() << " nodes" << endl;
 }
@@ -110,7 +110,7 @@ void Foam::delaunayGraphMotionSolver::solve()
         setUp();
     }
 
-    // Patches with a value put it into the field.
+    // Copy the values of patches to the field.
     pointDisplacement_.correctBoundaryConditions();
 
     const pointField displacement(gathered(pointField(pointDisplacement_.primitiveField(), nodes_)));
@@ -121,7 +121,7 @@ void Foam::delaunayGraphMotionSolver::solve()
         mover_.get(), doubles(displacement), displacement.size(), 3,
         reinterpret_cast<double*>(moved.data()), moved.size(), 3, &error
     );
-    check(status, error, "a step of the mesh");
+    check(status, error, "step of the mesh");
 
     pointDisplacement_.primitiveFieldRef() = moved - points0();
     pointDisplacement_.correctBoundaryConditions();

@@ -1,8 +1,9 @@
-"""A participant of preCICE whose mesh motet moves: the wall's displacement comes from a solid, the load on the wall goes back.
+"""A preCICE participant with a mesh moved by motet: reads the wall displacement of a solid, writes the wall
+load.
 
     python fluid.py precice-config.xml vessel.vtu wall
 
-Where the flow is solved, `solve` stands: here it is nothing but a pressure that is the same everywhere, put on the wall's facets.
+Replace `solve` by a flow solver. Here it is a constant pressure on the facets of the wall.
 """
 import sys
 
@@ -12,7 +13,7 @@ import motet
 
 
 def solve(points, velocity, mesh, wall):
-    """In place of a flow solver: the load on each vertex of the wall, of a pressure of 1."""
+    """Return the load on each vertex of the wall for a pressure of 1, in place of a flow solver."""
     facets = mesh.triangles[np.isin(mesh.triangles, wall).all(axis=1)]
     a, b, c = (points[facets[:, i]] for i in range(3))
     load = np.zeros_like(points)
@@ -21,7 +22,7 @@ def solve(points, velocity, mesh, wall):
 
 
 def couple(participant, mesh, wall, solve=solve):
-    """The loop. Gives the points at the end."""
+    """Run the coupling loop; return the final points."""
     ids = participant.set_mesh_vertices("Fluid-Mesh", mesh.points[wall])
     mover = motet.Mover(mesh)
     at_wall = np.searchsorted(mover.boundary, wall)
@@ -29,14 +30,15 @@ def couple(participant, mesh, wall, solve=solve):
     points, before = mesh.points.copy(), mesh.points.copy()
     participant.initialize()
     while participant.is_coupling_ongoing():
-        # A step of motet depends on the displacement alone: of the mesh there is nothing to be kept for an iteration that is done again.
+        # A step of motet depends only on the displacement, so a repeated iteration needs no saved state of
+        # the mesh.
         if participant.requires_writing_checkpoint():
             before = points.copy()
         dt = participant.get_max_time_step_size()
         displacement[at_wall] = participant.read_data("Fluid-Mesh", "Displacement", ids, dt)
         points, certificate = mover.advance(displacement, points)
         if not certificate.complete:
-            raise RuntimeError(f"{certificate.fraction:.0%} of the motion was reached: repair the mesh before this step")
+            raise RuntimeError(f"only {certificate.fraction:.0%} of the motion was completed: repair the mesh before this step")
         velocity = motet.mesh_velocity(before, points, dt)
         participant.write_data("Fluid-Mesh", "Force", ids, solve(points, velocity, mesh, wall))
         participant.advance(dt)

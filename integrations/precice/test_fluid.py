@@ -1,4 +1,5 @@
-"""The loop of `fluid.py`, with a stand-in for preCICE's participant: a wall on springs, two iterations a window."""
+"""The loop of `fluid.py` with a stand-in for preCICE: a wall on springs, with two iterations per
+time window."""
 import numpy as np
 
 import motet
@@ -6,7 +7,7 @@ from fluid import couple
 
 
 class Participant:
-    """What `couple` calls of preCICE's `Participant`, under the same names."""
+    """The methods of preCICE's `Participant` that `couple` calls."""
 
     def __init__(self, windows, dt=0.1, stiffness=1.0):
         self.left, self.dt, self.stiffness = 2 * windows, dt, stiffness
@@ -36,7 +37,7 @@ class Participant:
         return self.read[-1]
 
     def write_data(self, mesh, data, ids, values):
-        # Half of what the springs give, so that iterations differ.
+        # Relaxed by one half, so that iterations differ.
         self.displacement[ids] += 0.5 * (values / self.stiffness - self.displacement[ids])
 
     def advance(self, dt):
@@ -46,7 +47,7 @@ class Participant:
         self.finalized = True
 
 
-def test_the_mesh_follows_the_wall_and_no_iteration_leaves_a_trace():
+def test_the_mesh_follows_the_wall_independently_of_previous_iterations():
     mesh = motet.shapes.sphere_in_box()
     wall = mesh.patch_vertices("sphere")
     solid = Participant(windows=10)
@@ -55,7 +56,7 @@ def test_the_mesh_follows_the_wall_and_no_iteration_leaves_a_trace():
     last = solid.read[-1]
     assert 1e-3 < np.abs(last).max() < 0.1
     np.testing.assert_array_equal(points[wall], mesh.points[wall] + last)
-    # The same in one step from the first place, without the iterations before it.
+    # One step from the initial position gives the same points, without previous iterations.
     mover = motet.Mover(mesh)
     displacement = np.zeros((len(mover.boundary), 3))
     displacement[np.isin(mover.boundary, wall)] = last

@@ -1,4 +1,4 @@
-/* Makes a fluid of one layer of tets with the stand-in of Fluent and calls the example twice: does the node in the middle follow? */
+/* Calls the example for a small mesh with the stand-in for Fluent, and checks that an inner node follows. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,7 +17,7 @@ Thread *Lookup_Thread(Domain *domain, int id)
 
 int main(void)
 {
-    /* An octahedron of radius 1, the body, in one of radius 4, the walls; one node between. */
+    /* The body is an octahedron of radius 1, the walls are one of radius 4; one node lies in between. */
     static Node nodes[13];
     Node *body_nodes[6], *wall_nodes[6], *cell_nodes[4];
     Thread body = {5, 2, 3, body_nodes, 0}, wall = {6, 2, 3, wall_nodes, 0}, fluid = {1, 1, 4, cell_nodes, 0}, *faces[2] = {&body, &wall};
@@ -33,6 +33,6 @@ int main(void)
     cell_nodes[0] = &nodes[0], cell_nodes[1] = &nodes[6], cell_nodes[2] = &nodes[8], cell_nodes[3] = &nodes[12];
     for (i = 0; i < 13; i++) nodes[i].needs_update = 1;
     motet_motion(&domain, &dynamic, 0.25, 0.25);
-    printf("the body went to %.3f, the node between to %.3f, the wall is at %.3f\n", nodes[0].x[0], nodes[12].x[0], nodes[6].x[0]);
+    printf("body at %.3f, node in between at %.3f, wall at %.3f\n", nodes[0].x[0], nodes[12].x[0], nodes[6].x[0]);
     return !(fabs(nodes[0].x[0] - 1.5) < 1e-6 && fabs(nodes[12].x[0] - 2.75) < 1e-6 && nodes[6].x[0] == 4 && fluid.deforms);
 }

@@ -1,4 +1,4 @@
-"""A step of a mover from Python beside the same from Rust, on 158,000 vertices, in turn.
+"""Times a step of a mover from Python and from Rust alternately, on 158,000 vertices.
 
     pip install ./python && cargo build --release -p motet --example motion_timing
     python python/benches/step.py target/release/examples/motion_timing
@@ -23,13 +23,13 @@ out = np.empty_like(mover.reference)
 
 
 def python():
-    took = []
+    seconds = []
     end = time.perf_counter() + SECONDS
     while time.perf_counter() < end:
         begin = time.perf_counter()
         mover.step(displacement, out)
-        took.append(time.perf_counter() - begin)
-    return statistics.median(took)
+        seconds.append(time.perf_counter() - begin)
+    return statistics.median(seconds)
 
 
 def rust():

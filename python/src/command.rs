@@ -8,6 +8,6 @@ use crate::error::call;
 
 /// Runs the command line with these arguments, the name of the program first, and returns the exit status.
 #[pyfunction]
-pub(crate) fn command(py: Python<'_>, words: Vec<OsString>) -> PyResult<u8> {
-    call(py, || Ok(motet_cli::run(words)))
+pub(crate) fn command(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<u8> {
+    call(py, || Ok(motet_cli::run(arguments)))
 }

@@ -50,7 +50,7 @@ impl Contact {
     /// library decide.
     #[new]
     #[pyo3(signature = (points, bodies, *, warn, own, within, facing, fold, threads))]
-    #[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
+    #[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
     fn new(
         py: Python<'_>,
         points: Vectors<'_>,

@@ -18,7 +18,7 @@ use crate::words::{one_of, rules};
 #[pyo3(signature = (
     host, devices, *, inside, interface, tolerance, outside, stray, adapt, size, growth, carve, reach, min_eas, values, carry, threads, progress
 ))]
-#[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
+#[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
 pub(crate) fn implant<'py>(
     py: Python<'py>,
     host: MeshArg,

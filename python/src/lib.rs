@@ -1,7 +1,7 @@
 //! The extension module that Python calls: arrays in, arrays out. The package `motet` beside this crate adds
 //! names, keywords and documentation.
 //!
-//! | file | what it holds |
+//! | file | contents |
 //! |---|---|
 //! | `arrays` | conversion between numpy arrays and lists of the library |
 //! | `convert` | conversion of whole meshes |

@@ -1,4 +1,4 @@
-//! Refinement: tets divided, many generations deep, and divisions taken back.
+//! Refinement: tets divided over many generations, and divisions undone.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -57,7 +57,7 @@ fn estimate(array: String, by: Estimator, amount: AmountArg) -> PyResult<Criteri
 fn threshold(text: &str) -> PyResult<(String, f64)> {
     match text.parse::<Condition>().or_raise()? {
         Condition { array, relation: Relation::Above, value } => Ok((array, value)),
-        _ => Err(options(format!("{text:?}: ARRAY>VALUE is expected, such as velocity>50"))),
+        _ => Err(options(format!("{text:?}: expected ARRAY>VALUE, such as velocity>50"))),
     }
 }
 
@@ -237,7 +237,7 @@ pub(crate) fn refined<'py>(
     Ok((parts(py, new)?, History(history), report, not_reached))
 }
 
-/// A mesh whose tets are divided, and divisions taken back, step after step.
+/// A mesh whose tets are divided, and divisions undone, step by step.
 #[pyclass(module = "motet._motet")]
 pub(crate) struct Refinement {
     refinement: MeshRefinement,

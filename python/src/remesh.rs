@@ -22,7 +22,7 @@ pub(crate) enum SizesArg {
 /// Returns the new mesh, its history, the report, and why the requested result was not reached.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, min_eas, min_dihedral_deg, goal, surface, distance, keep_layers, hold, sizes, rounds, carry, threads, progress))]
-#[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
+#[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
 pub(crate) fn remesh<'py>(
     py: Python<'py>,
     mesh: MeshArg,

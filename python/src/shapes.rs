@@ -86,7 +86,7 @@ pub(crate) fn stent(
 }
 
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
+#[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
 pub(crate) fn coil(
     py: Python<'_>,
     centre: Point,

@@ -16,33 +16,33 @@ pub(crate) fn threads(n: usize) -> PyResult<Threads> {
     Threads::new(n).or_raise()
 }
 
-/// One of a few keywords.
-pub(crate) fn one_of<T: Copy>(option: &str, word: &str, known: &[(&str, T)]) -> PyResult<T> {
-    known.iter().find(|(name, _)| *name == word).map(|(_, value)| *value).ok_or_else(|| {
+/// The meaning of an option's value, which must be one of the known names.
+pub(crate) fn one_of<T: Copy>(option: &str, given: &str, known: &[(&str, T)]) -> PyResult<T> {
+    known.iter().find(|(name, _)| *name == given).map(|(_, value)| *value).ok_or_else(|| {
         let names: Vec<String> = known.iter().map(|(name, _)| format!("{name:?}")).collect();
         to_exception(
-            Error::options(format!("{option}={word:?} means nothing"))
+            Error::options(format!("{option}={given:?} is not a known value"))
                 .remedy(format!("choose one of {}", names.join(", "))),
         )
     })
 }
 
-/// The rules by which arrays are carried, from their names to "mean", "linear", "inherit" or "drop".
+/// The rules by which arrays are carried, by name: "mean", "linear", "inherit" or "drop".
 pub(crate) fn rules(mesh: &Mesh, carry: &BTreeMap<String, String>) -> PyResult<Rules> {
     let mut rules = Rules::default();
-    for (name, word) in carry {
+    for (name, rule) in carry {
         let known = [
             ("mean", Carry::Mean),
             ("linear", Carry::Linear),
             ("inherit", Carry::Inherit),
             ("drop", Carry::Drop),
         ];
-        rules.carry(mesh, name, one_of("carry", word, &known)?).or_raise()?;
+        rules.carry(mesh, name, one_of("carry", rule, &known)?).or_raise()?;
     }
     Ok(rules)
 }
 
-/// Facets, as named by a call.
+/// Facets given by an argument: a patch by number or name, or the facets themselves.
 #[derive(FromPyObject)]
 pub(crate) enum Facets<'py> {
     Number(i32),
@@ -51,9 +51,9 @@ pub(crate) enum Facets<'py> {
     Own((Ids<'py>, usize)),
 }
 
-/// The facets that a word refers to: a patch by name or number, or the facets themselves.
-pub(crate) fn facets(mesh: &Mesh, word: &Facets<'_>) -> PyResult<FacetSet> {
-    let word = match word {
+/// The facets that an argument refers to.
+pub(crate) fn facets(mesh: &Mesh, given: &Facets<'_>) -> PyResult<FacetSet> {
+    let patch = match given {
         Facets::Number(label) => label.to_string(),
         Facets::Name(name) => name.clone(),
         Facets::Own((vertices, n)) => {
@@ -61,10 +61,10 @@ pub(crate) fn facets(mesh: &Mesh, word: &Facets<'_>) -> PyResult<FacetSet> {
             return Ok(FacetSet::of_rings("facets given", vertices.chunks(*n)));
         }
     };
-    FacetSet::find(mesh, &word).or_raise()
+    FacetSet::find(mesh, &patch).or_raise()
 }
 
-/// The facets of each of several words.
-pub(crate) fn all_facets(mesh: &Mesh, words: &[Facets<'_>]) -> PyResult<Vec<FacetSet>> {
-    words.iter().map(|word| facets(mesh, word)).collect()
+/// The facets that each of several arguments refers to.
+pub(crate) fn all_facets(mesh: &Mesh, given: &[Facets<'_>]) -> PyResult<Vec<FacetSet>> {
+    given.iter().map(|one| facets(mesh, one)).collect()
 }

@@ -1,4 +1,4 @@
-"""Open rims closed."""
+"""Closing open rims with caps."""
 import numpy as np
 import pytest
 
@@ -13,7 +13,7 @@ def open_vessel():
     return motet.Mesh(whole.points, whole.triangles[patch == wall])
 
 
-def test_a_vessel_is_closed():
+def test_an_open_vessel_is_closed():
     vessel = open_vessel()
     closed = motet.cap(vessel)
     assert closed.summary().surface.closed and not vessel.summary().surface.closed
@@ -22,7 +22,7 @@ def test_a_vessel_is_closed():
     assert motet.mesh(closed).complete
 
 
-def test_frames_get_the_same_triangles(tmp_path):
+def test_all_frames_have_the_same_triangles(tmp_path):
     vessel = open_vessel()
     moved = [vessel.points * s for s in (1.1, 1.2)]
     closed = motet.cap([vessel, moved[0], motet.Mesh(moved[1], vessel.triangles)])
@@ -39,7 +39,7 @@ def test_frames_get_the_same_triangles(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "given, told",
+    "given, message",
     [
         (lambda: shapes.aneurysm(), "no open rim"),
         (lambda: [], "no frames"),
@@ -48,6 +48,6 @@ def test_frames_get_the_same_triangles(tmp_path):
         (lambda: [open_vessel(), shapes.aneurysm(around=12)], "points"),
     ],
 )
-def test_what_cannot_be_capped_is_told(given, told):
-    with pytest.raises(motet.InputError, match=told):
+def test_surfaces_that_cannot_be_capped_raise_an_error(given, message):
+    with pytest.raises(motet.InputError, match=message):
         motet.cap(given())

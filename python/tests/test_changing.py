@@ -1,4 +1,4 @@
-"""Verbs that change a mesh: repair, implantation, filling, and histories that carry arrays along."""
+"""Repair, implantation and meshing, and histories that transfer arrays."""
 import numpy as np
 import pytest
 
@@ -7,7 +7,7 @@ from motet import shapes
 
 
 def shaken(seed=1):
-    """A box whose vertices inside have been shaken until tets are bad."""
+    """A box with randomly displaced interior vertices, so that some tets are bad."""
     mesh = shapes.box((6, 6, 6))
     inside = (np.abs(mesh.points - 0.5) < 0.49).all(axis=1)
     mesh.points[inside] += np.random.default_rng(seed).uniform(-0.05, 0.05, (inside.sum(), 3))
@@ -17,7 +17,7 @@ def shaken(seed=1):
     return mesh
 
 
-def test_bad_tets_are_repaired_and_all_else_stays():
+def test_repair_removes_bad_tets_and_keeps_the_others():
     mesh = shaken()
     done = motet.remesh(mesh)
     assert done.complete and done.report.before.bad > 0 == done.report.after.bad
@@ -32,7 +32,7 @@ def test_bad_tets_are_repaired_and_all_else_stays():
     assert stayed.any()
 
 
-def test_a_history_carries_arrays_later():
+def test_a_history_transfers_arrays_after_the_change():
     mesh = shaken()
     done = motet.remesh(mesh, carry={"id": "drop"})
     assert "id" not in done.mesh.cell_data
@@ -59,7 +59,7 @@ def test_a_history_carries_arrays_later():
         done.history.transfer(np.zeros(3), on="cells")
 
 
-def test_edges_are_brought_to_sizes():
+def test_remeshing_reaches_requested_edge_lengths():
     mesh = shapes.box((4, 4, 4))
     fine = motet.remesh(mesh, sizes=0.12, surface="adapt")
     assert fine.mesh.n_points > 3 * mesh.n_points
@@ -67,31 +67,31 @@ def test_edges_are_brought_to_sizes():
     np.testing.assert_array_equal(motet.remesh(mesh, sizes="h", surface="adapt").mesh.points, fine.mesh.points)
 
 
-def test_a_device_is_implanted():
+def test_implanting_a_device_gives_a_conforming_mesh():
     host, device = shapes.box((8, 8, 8), (-2, -2, -2), (2, 2, 2)), shapes.coil()
     done = motet.implant(host, {"coil": device})
     assert done.complete and "coil" in done.mesh.region_names.values() and "coil" in done.mesh.patch_names.values()
-    told = done.mesh.summary()
-    assert told.conforming and told.inverted == 0
-    assert told.volume == pytest.approx(64.0)
-    assert done.report.quality == [host.summary().quality.distribution, told.quality.distribution]
-    assert told.regions["coil"].volume == pytest.approx(device.summary().volume or motet.mesh(device).mesh.summary().volume)
+    summary = done.mesh.summary()
+    assert summary.conforming and summary.inverted == 0
+    assert summary.volume == pytest.approx(64.0)
+    assert done.report.quality == [host.summary().quality.distribution, summary.quality.distribution]
+    assert summary.regions["coil"].volume == pytest.approx(device.summary().volume or motet.mesh(device).mesh.summary().volume)
     hollow = motet.implant(host, [device, motet.shapes.coil((0, 0, -1.2))], inside="hollow")
     assert {"device", "device_2"} <= set(hollow.mesh.patch_names.values())
     assert hollow.mesh.summary().volume < 64.0
 
 
-def test_surfaces_are_filled():
+def test_closed_surfaces_are_filled_with_tets():
     done = motet.mesh(shapes.aneurysm(), size="auto", layers=(3, 0.02, 1.2))
     assert done.complete and done.history is None and done.report.layers.prisms > 0
-    told = done.mesh.summary()
-    assert set(told.patches) == {"wall", "inlet", "outlet"} and told.quality.eas.min > 0
-    assert done.report.quality.p1 == told.quality.distribution.p1 and done.report.quality.mean > done.report.quality.p5
+    summary = done.mesh.summary()
+    assert set(summary.patches) == {"wall", "inlet", "outlet"} and summary.quality.eas.min > 0
+    assert done.report.quality.p1 == summary.quality.distribution.p1 and done.report.quality.mean > done.report.quality.p5
     plain = motet.mesh(shapes.stent())
     assert plain.mesh.n_points >= shapes.stent().n_points and plain.report.triangles_kept == plain.report.triangles
 
 
-def test_regions_are_named_by_seeds_and_holes_left_out():
+def test_seeds_name_regions_and_holes_are_left_empty():
     outer, inner = shapes.ball(), shapes.ball()
     inner.points = inner.points * 0.5
     surfaces = {"outer": outer, "inner": inner}
@@ -103,7 +103,7 @@ def test_regions_are_named_by_seeds_and_holes_left_out():
 
 
 @pytest.mark.parametrize(
-    "call, told",
+    "call, message",
     [
         (lambda: motet.remesh(shaken(), goal="x"), '"repair", "best"'),
         (lambda: motet.remesh(shaken(), sizes="h"), "'h'"),
@@ -117,7 +117,7 @@ def test_regions_are_named_by_seeds_and_holes_left_out():
         (lambda: motet.mesh(shapes.aneurysm(), layers={"door": (3, 0.1, 1.2)}), "door"),
     ],
 )
-def test_what_cannot_be_is_told(call, told):
+def test_invalid_arguments_raise_an_error(call, message):
     with pytest.raises(ValueError) as error:
         call()
-    assert isinstance(error.value, motet.Error) and told in str(error.value)
+    assert isinstance(error.value, motet.Error) and message in str(error.value)

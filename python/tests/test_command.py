@@ -1,4 +1,4 @@
-"""The command line that is installed with the package."""
+"""The command line installed with the package."""
 import os
 import re
 import subprocess
@@ -12,11 +12,11 @@ from motet import shapes
 MOTET = [sys.executable, "-m", "motet"]
 
 
-def run(*words, **more):
-    return subprocess.run([*MOTET, *map(str, words)], capture_output=True, text=True, timeout=60, **more)
+def run(*arguments, **options):
+    return subprocess.run([*MOTET, *map(str, arguments)], capture_output=True, text=True, timeout=60, **options)
 
 
-def test_it_is_the_program(tmp_path):
+def test_the_installed_command_runs_like_the_package(tmp_path):
     assert run("--version").stdout == f"motet {motet.__version__}\n"
     shapes.aneurysm().save(tmp_path / "vessel.vtp")
     done = run("mesh", tmp_path / "vessel.vtp", "-o", tmp_path / "mesh.vtu")
@@ -24,7 +24,7 @@ def test_it_is_the_program(tmp_path):
     assert motet.read(tmp_path / "mesh.vtu").summary().volume == pytest.approx(motet.mesh(shapes.aneurysm()).mesh.summary().volume)
 
 
-def test_its_exit_statuses(tmp_path):
+def test_exit_statuses_tell_errors_apart(tmp_path):
     shapes.box().save(tmp_path / "box.vtu")
     assert run("info", tmp_path / "box.vtu", "--json").returncode == 0
     assert run("info").returncode == 2 and "Usage" in run("info").stderr
@@ -33,7 +33,7 @@ def test_its_exit_statuses(tmp_path):
     assert "meshio convert wing.exo" in run("info", tmp_path / "wing.exo").stderr
 
 
-def test_the_package_says_what_converts_files_of_others(tmp_path):
+def test_errors_for_foreign_formats_suggest_a_converter(tmp_path):
     for name, content, what in [
         ("a.cas", b"", "Fluent"), ("a.exo", b"CDF\x01", "Exodus"), ("a.xdmf", b"<Xdmf>", "XDMF"), ("a.msh", b"(0 \"x\")\n(2 3)\n", "Fluent"),
     ]:  # fmt: skip
@@ -44,19 +44,19 @@ def test_the_package_says_what_converts_files_of_others(tmp_path):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals")
-def test_on_a_terminal_it_says_what_it_does_and_what_is_left_of_that(tmp_path):
+def test_a_terminal_shows_the_stage_and_the_remaining_time(tmp_path):
     import pty
 
     shapes.ball(6, 6).save(tmp_path / "ball.vtu")
     leader, follower = pty.openpty()
-    words = ["remesh", tmp_path / "ball.vtu", "-o", tmp_path / "fine.vtu", "--sizes", "0.1", "--surface", "adapt"]
-    with subprocess.Popen([*MOTET, *map(str, words)], stdout=subprocess.DEVNULL, stderr=follower) as call:
+    arguments = ["remesh", tmp_path / "ball.vtu", "-o", tmp_path / "fine.vtu", "--sizes", "0.1", "--surface", "adapt"]
+    with subprocess.Popen([*MOTET, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=follower) as call:
         os.close(follower)
         drawn = b""
         while True:
             try:
                 more = os.read(leader, 65536)
-            except OSError:  # how the end of a pseudo-terminal is told
+            except OSError:  # signals the end of a pseudo-terminal
                 break
             if not more:
                 break
@@ -67,5 +67,5 @@ def test_on_a_terminal_it_says_what_it_does_and_what_is_left_of_that(tmp_path):
     assert "remeshing: " in text
     parts = re.findall(r"remeshing: ([a-z ]+), (\d+) of (\d+)", text)
     assert parts and all(int(done) <= int(of) for _, done, of in parts)
-    # Time is told of a part that is counted alone.
+    # A remaining time is shown only beside a counted stage.
     assert all(re.search(r"\d+ of \d+, $", text[: at.start()]) for at in re.finditer(r"\d+ (s|min|h) left", text))

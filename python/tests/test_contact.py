@@ -1,4 +1,4 @@
-"""Contact: gaps, warnings, and what will come."""
+"""Contact: gaps, warnings and predicted contacts."""
 import numpy as np
 import pytest
 
@@ -12,7 +12,7 @@ def balls(apart):
     return {"first": first, "second": second}
 
 
-def test_gaps_are_those_of_brute_force():
+def test_gaps_agree_with_brute_force():
     contact = motet.Contact(balls(2.5), warn=0.6)
     gaps = contact.measure()
     assert gaps.least == pytest.approx(0.5) and gaps.pairs[0].bodies == ["first", "second"] and gaps.warnings
@@ -25,7 +25,7 @@ def test_gaps_are_those_of_brute_force():
     assert (body.closest_body == 1).all() and body.warning.any()
 
 
-def test_points_move_and_what_comes_is_told():
+def test_contact_of_moving_points_is_predicted():
     contact = motet.Contact(balls(2.5))
     velocity = np.zeros_like(contact.points)
     velocity[len(contact.points) // 2 :, 0] = -1.0
@@ -38,13 +38,13 @@ def test_points_move_and_what_comes_is_told():
     assert motet.Contact(balls(2.5)).look_ahead(velocity, horizon=0.1).first is None
 
 
-def test_patches_and_rooms():
+def test_patches_of_one_mesh_are_measured_in_a_room():
     mesh = shapes.sphere_in_box()
     gaps = motet.Contact(mesh, patches=["sphere", "box"], room=["box"]).measure()
     assert gaps.least == pytest.approx(4.0) and (gaps.bodies["sphere"].gap > 0).all()
 
 
-def test_rooms_are_found_and_can_be_told():
+def test_rooms_are_detected_and_can_be_specified():
     inner, outer = shapes.ball(), shapes.ball()
     outer.points = 3 * outer.points
     both = {"inner": inner, "outer": outer}
@@ -57,7 +57,7 @@ def test_rooms_are_found_and_can_be_told():
     assert solid.rooms == [] and (solid.measure().bodies["inner"].gap < 0).all()
 
 
-def test_a_soup_is_as_closed_as_its_surface():
+def test_unconnected_triangles_of_a_closed_surface_form_a_room():
     ball = shapes.ball()
     facets = np.concatenate([ball.tets[:, f] for f in ([1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1])])
     _, first, count = np.unique(np.sort(facets, 1), axis=0, return_index=True, return_counts=True)
@@ -67,13 +67,13 @@ def test_a_soup_is_as_closed_as_its_surface():
     assert contact.rooms[0].room == "outer" and (contact.measure().bodies["inner"].gap > 0).all()
 
 
-def test_a_surface_against_itself():
+def test_a_surface_is_measured_against_itself():
     gaps = motet.Contact(shapes.coil(pitch=0.3, wire_radius=0.08), own=True, within=0.5).measure()
     assert 0.1 < gaps.least < 0.16
 
 
 @pytest.mark.parametrize(
-    "call, told",
+    "call, message",
     [
         (lambda: motet.Contact(balls(3.0), room=["third"]), "first, second"),
         (lambda: motet.Contact(shapes.sphere_in_box(), patches=["door"]), "sphere, box"),
@@ -81,7 +81,7 @@ def test_a_surface_against_itself():
         (lambda: motet.Contact(balls(3.0)).look_ahead(np.zeros((3, 3))), "velocit"),
     ],
 )
-def test_what_does_not_fit_is_told(call, told):
+def test_invalid_arguments_raise_an_error(call, message):
     with pytest.raises(ValueError) as error:
         call()
-    assert isinstance(error.value, motet.Error) and told in str(error.value)
+    assert isinstance(error.value, motet.Error) and message in str(error.value)

@@ -1,4 +1,4 @@
-"""Meshes: made of arrays, copied, told of, written and read again."""
+"""Meshes: creation from arrays, copies, summaries, and files."""
 import numpy as np
 import pytest
 
@@ -18,7 +18,7 @@ def same(a, b):
 
 
 @pytest.mark.parametrize("shape", ALL)
-def test_a_mesh_survives_a_file(shape, tmp_path):
+def test_writing_and_reading_preserves_a_mesh(shape, tmp_path):
     mesh = shape()
     mesh.point_data["vectors"] = mesh.points * 2
     mesh.point_data["tensors"] = np.arange(9.0 * mesh.n_points).reshape(-1, 3, 3)
@@ -30,7 +30,7 @@ def test_a_mesh_survives_a_file(shape, tmp_path):
     assert back.patch_names == mesh.patch_names and back.region_names == mesh.region_names
 
 
-def test_a_mesh_of_plain_arrays():
+def test_a_mesh_is_created_from_lists():
     points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     mesh = motet.Mesh(points, [[0, 1, 2, 3]])
     assert mesh.points.dtype == np.float64 and mesh.tets.dtype == np.uint32
@@ -43,7 +43,7 @@ def test_a_mesh_of_plain_arrays():
     assert np.isnan(both.quality()[1])
 
 
-def test_every_kind_of_numbers_keeps_its_type(tmp_path):
+def test_arrays_keep_their_number_types_in_files(tmp_path):
     mesh = shapes.box((1, 1, 1))
     for kind in "i1 u1 i2 u2 i4 u4 i8 u8 f4 f8".split():
         mesh.point_data[kind] = np.arange(mesh.n_points).astype(kind)
@@ -60,33 +60,33 @@ def test_a_copy_shares_nothing():
     assert mesh.points.max() == 1 and mesh.cell_data["region"].max() == 1
 
 
-def test_arrays_that_are_not_contiguous_are_taken():
+def test_non_contiguous_arrays_are_accepted():
     mesh = shapes.box()
     reversed_rows = motet.Mesh(mesh.points[:, ::-1], mesh.tets[::-1].astype(np.int64), point_data={"x": mesh.points[:, 0]})
     assert reversed_rows.summary().cells == {"tetra": len(mesh.tets)}
 
 
 @pytest.mark.parametrize(
-    "make, told",
+    "make, message",
     [
         (lambda: motet.Mesh([[0, 0]], [[0, 1, 2, 3]]), "(n, 3)"),
         (lambda: motet.Mesh(np.eye(3), [[0, 1, 2, -1]]), "0 or more"),
-        (lambda: motet.Mesh(np.eye(3), [[0.5, 1, 2, 3]]), "whole numbers"),
+        (lambda: motet.Mesh(np.eye(3), [[0.5, 1, 2, 3]]), "integers"),
         (lambda: motet.Mesh(np.eye(3), {"cube": [[0]]}), "'cube'"),
         (lambda: motet.Mesh(np.eye(3), [[0, 1, 2, 3]]).summary(), "names point 3"),
         (lambda: motet.Mesh(np.eye(3), {"tetra": [[0, 1, 2]]}).summary(), "4 vertices"),
         (lambda: motet.Mesh(np.eye(3), [[0, 1, 2]], point_data={"p": [1.0]}).summary(), "point array p"),
         (lambda: shapes.box().quality("beauty"), "mean_ratio"),
-        (lambda: motet.remesh(42), "int is no mesh"),
+        (lambda: motet.remesh(42), "int is not a mesh"),
     ],
 )
-def test_what_is_no_mesh_is_told(make, told):
+def test_invalid_meshes_raise_an_error(make, message):
     with pytest.raises((motet.InputError, motet.OptionsError)) as error:
         make()
-    assert told in str(error.value) and isinstance(error.value, ValueError)
+    assert message in str(error.value) and isinstance(error.value, ValueError)
 
 
-def test_files_that_cannot_be_read_are_told_with_their_names(tmp_path):
+def test_errors_name_files_that_cannot_be_read(tmp_path):
     with pytest.raises(motet.FileError) as error:
         motet.read(tmp_path / "none.vtu")
     assert isinstance(error.value, OSError) and error.value.file == tmp_path / "none.vtu"
@@ -98,14 +98,14 @@ def test_files_that_cannot_be_read_are_told_with_their_names(tmp_path):
         shapes.box().save(tmp_path / "mesh.unknown")
 
 
-def test_what_a_format_cannot_hold_is_said(tmp_path):
+def test_save_returns_what_a_format_cannot_store(tmp_path):
     mesh = shapes.aneurysm()
     mesh.point_data["p"] = np.zeros(mesh.n_points)
     assert any("p" in sentence for sentence in mesh.save(tmp_path / "mesh.stl"))
     assert ".vtu" in motet.formats()
 
 
-def test_a_report_reads_like_an_object_and_shows_as_a_table():
+def test_reports_have_attributes_and_are_shown_as_tables():
     summary = shapes.box().summary()
     assert summary.quality.eas.bad == summary["quality"]["eas"]["bad"] == 0
     assert "<table>" in summary._repr_html_() and "eas" in repr(summary)

@@ -1,4 +1,4 @@
-"""Motion: what a mover does, and that no array is copied on the way."""
+"""Motion of a mesh by its boundary, without copies of arrays."""
 import tracemalloc
 
 import numpy as np
@@ -9,13 +9,13 @@ from motet import shapes
 
 
 def shifted(mover, by=(0.5, 0.0, 0.0)):
-    """The sphere of radius 1 shifted, the box held."""
+    """Displacements that shift the sphere of radius 1 and keep the box."""
     at = mover.reference[mover.boundary]
     return np.where((np.linalg.norm(at, axis=1) < 1.01)[:, None], by, 0.0)
 
 
 @pytest.mark.parametrize("method", ["delaunay", "bodies", "guided", "elastic", "laplace", "idw", "rbf"])
-def test_every_method_moves_the_boundary_to_the_bit(method):
+def test_every_method_moves_the_boundary_exactly(method):
     mesh = shapes.sphere_in_box()
     mover = motet.Mover(mesh, method=method)
     displacement = shifted(mover)
@@ -57,11 +57,11 @@ def test_a_step_copies_no_array():
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert out.ctypes.data == place
-    # numpy tells tracemalloc of its arrays: the smallest of these would be far larger.
+    # numpy reports its arrays to tracemalloc; even the smallest of these would exceed the limit.
     assert peak < displacement.nbytes / 4
 
 
-def test_points_follow_nodes_whoever_has_them():
+def test_a_part_of_the_points_moves_like_all_points():
     mesh = shapes.sphere_in_box()
     mover = motet.Mover(mesh)
     nodes, displacement = mesh.points[mover.boundary], shifted(mover)
@@ -77,7 +77,7 @@ def test_points_follow_nodes_whoever_has_them():
         whole.step(displacement[:-1])
 
 
-def test_displacements_of_any_kind_are_taken():
+def test_displacements_of_any_array_type_are_accepted():
     mover = motet.Mover(shapes.sphere_in_box())
     displacement = shifted(mover)
     first = mover.step(displacement)
@@ -87,14 +87,14 @@ def test_displacements_of_any_kind_are_taken():
 
 
 @pytest.mark.parametrize("threads", [2, 0])
-def test_threads_change_no_bit(threads):
+def test_results_do_not_depend_on_threads(threads):
     mesh = shapes.sphere_in_box(16, 12)
     one, more = motet.Mover(mesh, smooth=2), motet.Mover(mesh, smooth=2, threads=threads)
     displacement = shifted(one, (1.5, 0.3, 0.0))
     np.testing.assert_array_equal(one.advance(displacement)[0], more.advance(displacement)[0])
 
 
-def test_words_of_a_mover():
+def test_options_of_a_mover():
     mesh = shapes.tube(wall_layers=3)
     turned = motet.Mover(mesh, slide=["inlet", 3], rigid_layer_cells=3, rigid_layer_at=["wall"], within_walls=True, smooth=1)
     assert turned.setup.sliding > 0 and turned.setup.layer > 0
@@ -107,7 +107,7 @@ def test_words_of_a_mover():
     assert set(inside) <= set(motet.Mover(mesh, also_moved=inside).boundary)
 
 
-def test_move_by_words():
+def test_move_translates_rotates_and_displaces():
     mesh = shapes.sphere_in_box()
     moved = motet.move(mesh, translate={"sphere": (1.0, 0.0, 0.0)}, smooth=2)
     assert moved.complete and moved.mesh.cell_data.keys() == mesh.cell_data.keys()
@@ -120,24 +120,24 @@ def test_move_by_words():
     np.testing.assert_array_equal(motet.move(mesh, displacement="u", smooth=2).mesh.points, moved.mesh.points)
 
 
-def test_auto_tells_what_it_tried():
+def test_auto_reports_the_methods_that_it_tried():
     moved = motet.move(shapes.sphere_in_box(), rotate={"sphere": ((0, 0, 1), 60)}, method="auto", least=0.1)
     assert moved.choice.tried[0].method == "delaunay" and not moved.choice.tried[0].kept
     assert moved.choice.method != "delaunay" and moved.certificate.worst_eas.value >= 0.1
 
 
-def test_a_motion_that_does_not_get_there_is_told_and_not_raised():
+def test_an_incomplete_motion_is_reported_without_an_error():
     moved = motet.move(shapes.sphere_in_box(), translate={"sphere": (9.0, 0.0, 0.0)})
     assert not moved.complete and 0 < moved.certificate.fraction < 1 and moved.certificate.inverted == 0
 
 
-def test_velocity():
+def test_mesh_velocity_is_a_backward_difference():
     points = shapes.box().points
     np.testing.assert_allclose(motet.mesh_velocity(points, points + 0.5, 0.25), 2.0)
 
 
 @pytest.mark.parametrize(
-    "call, told",
+    "call, message",
     [
         (lambda mesh: motet.Mover(mesh, method="magic"), "guided"),
         (lambda mesh: motet.Mover(mesh, slide=["door"]), "sphere, box"),
@@ -158,10 +158,10 @@ def test_velocity():
         (lambda mesh: motet.move(mesh, translate={"box": (1, 2, 3)}, steps=0), "1 or more"),
     ],
 )
-def test_what_means_nothing_is_told(call, told):
+def test_invalid_arguments_raise_an_error(call, message):
     with pytest.raises(ValueError) as error:
         call(shapes.sphere_in_box())
-    assert isinstance(error.value, motet.Error) and told in str(error.value)
+    assert isinstance(error.value, motet.Error) and message in str(error.value)
     with pytest.raises(TypeError):
         motet.Mover(shapes.box(), speed=1)
 
@@ -179,7 +179,7 @@ def test_arrays_that_share_memory_are_refused():
         for out in (memory[: n], memory[k - 1 : n + k - 1]):
             with pytest.raises(motet.InputError, match="shares memory"):
                 call(memory[:k], out)
-        # Two arrays that know nothing of each other.
+        # Two arrays over one buffer, without a common base array.
         with pytest.raises(motet.InputError, match="shares memory"):
             call(views[0][:k], views[1])
     whole = motet.PointMover(mesh.points[mover.boundary], mesh.points)
@@ -201,7 +201,7 @@ def test_arrays_that_share_memory_are_refused():
         lambda n: np.broadcast_to(np.zeros(3), (n, 3)),
     ],
 )
-def test_places_that_cannot_be_written_are_refused(out):
+def test_output_arrays_that_cannot_be_written_are_refused(out):
     mesh = shapes.box((2, 2, 2))
     mover = motet.Mover(mesh)
     still = np.zeros((len(mover.boundary), 3))
@@ -210,8 +210,8 @@ def test_places_that_cannot_be_written_are_refused(out):
             call(still, out(mesh.n_points))
 
 
-def test_the_native_part_refuses_what_numpy_knows_to_be_shared():
-    """Behind the checks of the package: arrays of other types, and memory that is read and written at once, raise and do not panic."""
+def test_the_native_module_refuses_shared_memory_and_other_types():
+    """Without the checks of the package, such arrays raise an error instead of a panic."""
     mesh = shapes.box((2, 2, 2))
     native = motet.Mover(mesh)._mover
     memory = np.zeros((mesh.n_points, 3))
@@ -225,7 +225,7 @@ def test_the_native_part_refuses_what_numpy_knows_to_be_shared():
         native.step(memory[:k], fixed)
 
 
-def test_arrays_of_a_mesh_of_other_types_are_told():
+def test_a_mesh_with_arrays_of_another_type_raises_an_error():
     mesh = shapes.box((1, 1, 1))
     mesh.connectivity = mesh.connectivity.astype(np.int64)
     with pytest.raises(motet.InputError, match="expected an array of uint32 and 1 axes, found an array of int64"):

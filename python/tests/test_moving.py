@@ -1,4 +1,4 @@
-"""The moving mesh: what it gives, what it refuses, and that it goes on to the same bytes."""
+"""The moving mesh: results, errors, and identical results after save and load."""
 import numpy as np
 import pytest
 
@@ -7,7 +7,7 @@ from motet import shapes
 
 
 def sphere_at(moving, by, turn=0.0):
-    """The sphere shifted and turned about z, the box still."""
+    """Displacements that shift the sphere and turn it about z, and keep the box."""
     places = moving.driven_places
     is_sphere = np.linalg.norm(places, axis=1) < 1.01
     c, s = np.cos(turn), np.sin(turn)
@@ -15,7 +15,7 @@ def sphere_at(moving, by, turn=0.0):
     return np.where(is_sphere[:, None], moved - places, 0.0)
 
 
-def test_a_sphere_goes_far_and_no_tet_is_bad():
+def test_no_tet_is_bad_after_large_motions_of_a_sphere():
     moving = motet.MovingMesh(shapes.sphere_in_box(5, 4), smooth=2, watch=["sphere", "box"], warn=1.5)
     first = np.arange(moving.mesh.n_points, dtype=float)
     changes = 0
@@ -33,7 +33,7 @@ def test_a_sphere_goes_far_and_no_tet_is_bad():
     assert moving.remembers(0) and moving.history_since(8) is None
 
 
-def test_it_goes_on_to_the_same_bytes(tmp_path):
+def test_a_loaded_mesh_continues_with_the_same_results(tmp_path):
     options = {"smooth": 2}
     whole = motet.MovingMesh(shapes.sphere_in_box(4, 4), **options)
     broken = motet.MovingMesh(shapes.sphere_in_box(4, 4), **options)
@@ -51,7 +51,7 @@ def test_it_goes_on_to_the_same_bytes(tmp_path):
         motet.MovingMesh.load(tmp_path / "state.vtu")
 
 
-def test_what_is_refined_follows_the_walls():
+def test_a_refined_mesh_follows_the_walls():
     moving = motet.MovingMesh(shapes.sphere_in_box(3, 3), smooth=2)
     moving.set_array("dye", np.ones(moving.mesh.n_cells), on="cells")
     [change] = moving.refine(ball=[((0.0, 0.0, 0.0), 1.4)])
@@ -63,7 +63,7 @@ def test_what_is_refined_follows_the_walls():
     assert step.complete and np.all(moving.mesh.cell_data["dye"] == 1.0)
 
 
-def test_what_is_off_is_told():
+def test_invalid_arguments_raise_an_error():
     mesh = shapes.sphere_in_box(3, 3)
     moving = motet.MovingMesh(mesh)
     still = np.zeros_like(moving.driven_places)

@@ -1,4 +1,4 @@
-"""Names of regions and patches: through PyVista and meshio and back, in memory and by files."""
+"""Names of regions and patches, passed to PyVista and meshio and back, in memory and by files."""
 import numpy as np
 import pytest
 from test_mesh import same
@@ -11,7 +11,10 @@ pyvista = pytest.importorskip("pyvista")
 
 
 def two_regions():
-    """Two boxes side by side, one of tets and one of wedges and tets, with a region and a patch that have one name, and labels without a name."""
+    """Two bodies side by side, one of tets and one of wedges and tets.
+
+    A region and a patch have the same name, and some labels have none.
+    """
     first, second = shapes.box((2, 2, 2)), shapes.tube(n=1, slices=2, wall_layers=1, wall_cells="wedges")
     points = np.concatenate([first.points, second.points + [5.0, 0.0, 0.0]])
     cells, region, patch = [], [], []
@@ -37,7 +40,7 @@ def names(mesh):
 
 
 @pytest.mark.parametrize("shape", ALL)
-def test_in_memory(shape):
+def test_conversion_in_memory_preserves_names(shape):
     mesh = shape()
     assert mesh.patch_names
     for back in (motet.as_mesh(mesh.to_pyvista()), motet.as_mesh(mesh.to_meshio())):
@@ -48,7 +51,7 @@ def test_in_memory(shape):
 
 @pytest.mark.parametrize("shape", ALL)
 @pytest.mark.parametrize("ending", [".vtu", ".vtk"])
-def test_by_files_that_motet_writes(shape, ending, tmp_path):
+def test_files_written_by_motet_contain_the_names(shape, ending, tmp_path):
     mesh, path = shape(), tmp_path / f"mesh{ending}"
     mesh.save(path)
     assert names(motet.as_mesh(pyvista.read(path))) == names(mesh)
@@ -57,7 +60,7 @@ def test_by_files_that_motet_writes(shape, ending, tmp_path):
 
 
 @pytest.mark.parametrize("shape", ALL)
-def test_by_files_that_pyvista_writes(shape, tmp_path):
+def test_files_written_by_pyvista_contain_the_names(shape, tmp_path):
     mesh, path = shape(), tmp_path / "mesh.vtu"
     mesh.to_pyvista().save(path)
     for back in (motet.read(path), motet.as_mesh(pyvista.read(path)), motet.as_mesh(meshio.read(path))):
@@ -65,8 +68,8 @@ def test_by_files_that_pyvista_writes(shape, tmp_path):
         np.testing.assert_array_equal(back.cell_data["patch"], mesh.cell_data["patch"])
 
 
-def test_names_in_more_bytes_are_names(tmp_path):
-    """A program of numpy's default integers writes the labels so."""
+def test_labels_of_64_bits_have_names(tmp_path):
+    """Programs that use numpy's default integers write labels this way."""
     grid = shapes.aneurysm().to_pyvista()
     for name in grid.field_data.keys():
         grid.field_data[name] = np.asarray(grid.field_data[name], np.int64)
@@ -74,13 +77,13 @@ def test_names_in_more_bytes_are_names(tmp_path):
     assert names(motet.read(tmp_path / "mesh.vtu")) == names(shapes.aneurysm())
 
 
-def test_surfaces_of_pyvista_keep_names():
+def test_surfaces_of_pyvista_keep_their_names():
     surface = shapes.aneurysm().to_pyvista().extract_surface(algorithm="dataset_surface")
     surface.field_data["patch:inlet"] = np.array([2])
     assert motet.as_mesh(surface).patch_names[2] == "inlet"
 
 
-def test_field_data_that_are_no_names_stay():
+def test_other_field_data_are_preserved():
     mesh = shapes.box((1, 1, 1))
     mesh.field_data = {"time": np.array([0.25]), "pair": np.array([1, 2]), "patch": np.array([3]), "region:x": np.array([0.5]), "who": ["me", "you"]}
     for back in (motet.as_mesh(mesh.to_pyvista()), motet.as_mesh(mesh.to_meshio())):
@@ -89,7 +92,7 @@ def test_field_data_that_are_no_names_stay():
         assert back.field_data["who"] == ["me", "you"]
 
 
-def test_meshio_gets_sets_of_cells():
+def test_names_become_cell_sets_of_meshio():
     mesh = two_regions()
     given = mesh.to_meshio()
     starts = np.cumsum([0] + [len(block) for block in given.cells])
@@ -98,27 +101,27 @@ def test_meshio_gets_sets_of_cells():
     np.testing.assert_array_equal(cells("blood: outer"), np.flatnonzero(mesh.cell_data["region"] == 3))
     both = (mesh.cell_data["region"] == 7) | (mesh.cell_data["patch"] == 4)
     np.testing.assert_array_equal(cells("wall"), np.flatnonzero(both))
-    # Without the field data the sets alone bring the names back.
+    # Without field data, names are restored from the sets.
     given.field_data = {}
     assert names(motet.as_mesh(given)) == names(mesh)
 
 
-def test_sets_of_meshio_become_labels():
-    """As files of Abaqus have them: sets, but no labels."""
+def test_cell_sets_of_meshio_become_labels():
+    """Files of Abaqus, for example, have sets but no labels."""
     box = shapes.box((2, 1, 1))
     blocks = [("tetra", box.tets.astype(np.int64)), ("triangle", box.triangles.astype(np.int64))]
     n = len(box.tets)
     sets = {"all": [np.arange(n), np.arange(0)], "left": [np.arange(n // 2), None], "floor": [np.arange(0), np.array([0, 3])]}
     mesh = motet.as_mesh(meshio.Mesh(box.points, blocks, cell_sets=sets))
-    told = mesh.summary()
-    assert told.regions["left"].cells == n // 2 and told.regions["all"].cells == n - n // 2
-    assert told.patches["floor"].cells == 2
+    summary = mesh.summary()
+    assert summary.regions["left"].cells == n // 2 and summary.regions["all"].cells == n - n // 2
+    assert summary.patches["floor"].cells == 2
 
 
-def test_groups_of_gmsh(tmp_path):
-    """What meshio reads of a file with physical groups is what motet reads of it; and meshio writes such files from meshes that had groups."""
+def test_physical_groups_of_gmsh_are_the_same_for_meshio_and_motet(tmp_path):
+    """Both read the same names, and meshio writes files with groups from meshes that have them."""
     mesh, path = two_regions(), tmp_path / "mesh.msh"
-    # A name is one group for meshio, not one of each dimension.
+    # meshio knows only one group per name, not one for each dimension.
     mesh.patch_names[4] = "side"
     mesh.save(path)
     read = motet.read(path)

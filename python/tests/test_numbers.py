@@ -1,18 +1,18 @@
-"""Numbers that mean nothing are refused, whichever call they are given to: by an exception that names them, never by a result, a panic or an abort."""
+"""Invalid numbers raise an error in every call, and never give a result, a panic or an abort."""
 import inspect
 import math
 import re
 
 import numpy as np
 import pytest
-from test_words import public
+from test_keywords import public
 
 import motet
 from motet import shapes
 
 NAN, INF, HUGE = math.nan, math.inf, 1e120
 LENGTH = (NAN, INF, -1.0, HUGE)
-# No limit may be said as infinity.
+# Infinity means no limit.
 REACH = (NAN, -1.0)
 PART = (NAN, INF, -1.0, HUGE)
 COUNT = (NAN, INF, -1, -1.0)
@@ -22,27 +22,27 @@ def near():
     return [(shapes.ball(1, 1), 0.1)]
 
 
-def moved(**words):
-    return lambda value: motet.move(shapes.box((2, 2, 2)), translate={"xmax": (0.1, 0.0, 0.0)}, **{name: make(value) for name, make in words.items()})
+def moved(**options):
+    return lambda value: motet.move(shapes.box((2, 2, 2)), translate={"xmax": (0.1, 0.0, 0.0)}, **{name: make(value) for name, make in options.items()})
 
 
-def mover(**words):
-    return lambda value: motet.Mover(shapes.box((2, 2, 2)), **{name: make(value) for name, make in words.items()})
+def mover(**options):
+    return lambda value: motet.Mover(shapes.box((2, 2, 2)), **{name: make(value) for name, make in options.items()})
 
 
-def moving(**words):
-    return lambda value: motet.MovingMesh(shapes.box((2, 2, 2)), **{name: make(value) for name, make in words.items()})
+def moving(**options):
+    return lambda value: motet.MovingMesh(shapes.box((2, 2, 2)), **{name: make(value) for name, make in options.items()})
 
 
-def as_it_is(value):
+def unchanged(value):
     return value
 
 
-def of(text):
-    return lambda _: text
+def always(constant):
+    return lambda _: constant
 
 
-# Each option by call: how it is given, and the values that mean nothing there.
+# For each option of each call: a call with it, and its invalid values.
 OPTIONS = {
     "remesh.min_eas": (lambda x: motet.remesh(shapes.box(), min_eas=x), PART),
     "remesh.min_dihedral_deg": (lambda x: motet.remesh(shapes.box(), min_dihedral_deg=x), PART),
@@ -92,38 +92,38 @@ OPTIONS = {
     "move.rotate": (lambda x: motet.move(shapes.box(), rotate={"xmax": ((0, 0, 1), x)}), (NAN, INF)),
     "move.rotate, axis": (lambda x: motet.move(shapes.box(), rotate={"xmax": ((x, 0, 1), 5)}), (NAN, INF)),
     "move.displacement": (lambda x: motet.move(shapes.box(), displacement=np.full((125, 3), x)), (NAN, INF, HUGE)),
-    "move.steps": (moved(steps=as_it_is), COUNT),
-    "move.least": (moved(method=of("auto"), least=as_it_is), PART),
-    "Mover.smooth": (mover(smooth=as_it_is), COUNT),
-    "Mover.rigid_layer": (mover(rigid_layer=as_it_is), LENGTH),
-    "Mover.rigid_layer_cells": (mover(rigid_layer_cells=as_it_is), COUNT),
-    "Mover.slide_tolerance": (mover(slide_tolerance=as_it_is), PART),
-    "Mover.residual": (mover(method=of("laplace"), residual=as_it_is), PART),
-    "Mover.factor_gib": (mover(method=of("laplace"), factor_gib=as_it_is), REACH),
-    "Mover.factor_gib, unused": (mover(factor_gib=as_it_is), REACH),
-    "Mover.substeps": (mover(substeps=as_it_is), COUNT),
-    "Mover.threads": (mover(threads=as_it_is), COUNT),
+    "move.steps": (moved(steps=unchanged), COUNT),
+    "move.least": (moved(method=always("auto"), least=unchanged), PART),
+    "Mover.smooth": (mover(smooth=unchanged), COUNT),
+    "Mover.rigid_layer": (mover(rigid_layer=unchanged), LENGTH),
+    "Mover.rigid_layer_cells": (mover(rigid_layer_cells=unchanged), COUNT),
+    "Mover.slide_tolerance": (mover(slide_tolerance=unchanged), PART),
+    "Mover.residual": (mover(method=always("laplace"), residual=unchanged), PART),
+    "Mover.factor_gib": (mover(method=always("laplace"), factor_gib=unchanged), REACH),
+    "Mover.factor_gib, unused": (mover(factor_gib=unchanged), REACH),
+    "Mover.substeps": (mover(substeps=unchanged), COUNT),
+    "Mover.threads": (mover(threads=unchanged), COUNT),
     "Mover.also_moved": (lambda x: motet.Mover(shapes.box(), also_moved=[x]), COUNT),
     "PointMover.threads": (lambda x: motet.PointMover(shapes.box().points, shapes.box().points, threads=x), COUNT),
     "PointMover.nodes": (lambda x: motet.PointMover(np.full((9, 3), x), shapes.box().points), (NAN, INF, HUGE)),
     "PointMover.points": (lambda x: motet.PointMover(shapes.box().points, np.full((9, 3), x)), (NAN, INF, HUGE)),
     "Mover.step.displacement": (lambda x: stepped(x), (NAN, INF)),
     "Mover.advance.displacement": (lambda x: advanced(x), (NAN, INF, HUGE)),
-    "MovingMesh.smooth": (moving(smooth=as_it_is), COUNT),
-    "MovingMesh.rigid_layer": (moving(rigid_layer=as_it_is), LENGTH),
-    "MovingMesh.rigid_layer_cells": (moving(rigid_layer_cells=as_it_is), COUNT),
-    "MovingMesh.slide_tolerance": (moving(slide_tolerance=as_it_is), PART),
-    "MovingMesh.min_eas": (moving(min_eas=as_it_is), PART),
-    "MovingMesh.distance": (moving(surface=of("adapt"), distance=as_it_is), LENGTH),
-    "MovingMesh.margin": (moving(margin=as_it_is), PART),
-    "MovingMesh.floor": (moving(floor=as_it_is), PART),
-    "MovingMesh.improve_below": (moving(improve_below=as_it_is), PART),
-    "MovingMesh.warn": (moving(watch=of(["xmin", "xmax"]), warn=as_it_is), REACH),
-    "MovingMesh.within": (moving(watch=of(["xmin", "xmax"]), within=as_it_is), REACH),
-    "MovingMesh.horizon": (moving(watch=of(["xmin", "xmax"]), horizon=as_it_is), REACH),
-    "MovingMesh.hold": (moving(watch=of(["xmin", "xmax"]), hold=as_it_is), LENGTH),
-    "MovingMesh.remembered": (moving(remembered=as_it_is), COUNT),
-    "MovingMesh.threads": (moving(threads=as_it_is), COUNT),
+    "MovingMesh.smooth": (moving(smooth=unchanged), COUNT),
+    "MovingMesh.rigid_layer": (moving(rigid_layer=unchanged), LENGTH),
+    "MovingMesh.rigid_layer_cells": (moving(rigid_layer_cells=unchanged), COUNT),
+    "MovingMesh.slide_tolerance": (moving(slide_tolerance=unchanged), PART),
+    "MovingMesh.min_eas": (moving(min_eas=unchanged), PART),
+    "MovingMesh.distance": (moving(surface=always("adapt"), distance=unchanged), LENGTH),
+    "MovingMesh.margin": (moving(margin=unchanged), PART),
+    "MovingMesh.floor": (moving(floor=unchanged), PART),
+    "MovingMesh.improve_below": (moving(improve_below=unchanged), PART),
+    "MovingMesh.warn": (moving(watch=always(["xmin", "xmax"]), warn=unchanged), REACH),
+    "MovingMesh.within": (moving(watch=always(["xmin", "xmax"]), within=unchanged), REACH),
+    "MovingMesh.horizon": (moving(watch=always(["xmin", "xmax"]), horizon=unchanged), REACH),
+    "MovingMesh.hold": (moving(watch=always(["xmin", "xmax"]), hold=unchanged), LENGTH),
+    "MovingMesh.remembered": (moving(remembered=unchanged), COUNT),
+    "MovingMesh.threads": (moving(threads=unchanged), COUNT),
     "MovingMesh.advance.time": (lambda x: moved_on(x, 0.0), (NAN, INF, -1.0)),
     "MovingMesh.advance.displacement": (lambda x: moved_on(1.0, x), (NAN, INF, HUGE)),
     "MovingMesh.refine.size": (lambda x: motet.MovingMesh(shapes.box()).refine(size=x), (NAN, INF, -1.0)),
@@ -172,11 +172,11 @@ OPTIONS = {
     "shapes.coil.around": (lambda x: shapes.coil(around=x), (*COUNT, 0, 10**9, 2**63)),
     "shapes.coil.turns of no sides": (lambda x: shapes.coil(turns=x, around=0), (1e9, 1e15)),
 }
-# Options that are the same as of another call, by the code that they go through.
+# Options that are checked by the code of another call above.
 SAME = {f"move.{name}" for name in ("smooth", "slide_tolerance", "rigid_layer", "rigid_layer_cells", "residual", "factor_gib", "substeps", "threads", "also_moved")}
 SAME |= {f"MovingMesh.load.{key.removeprefix('MovingMesh.')}" for key in OPTIONS if key.startswith("MovingMesh.") and key.count(".") == 1}
 SAME |= {f"MovingMesh.refine.{key.removeprefix('refine.')}" for key in OPTIONS if key.startswith("refine.")} | {"MovingMesh.refine.hessian"}
-# Whatever number is given means something.
+# Every number is valid.
 FREE = {"Mover.weights.vertex", "SeriesWriter.add.time", "write_nodal.times", "refine.hessian"}
 
 
@@ -208,26 +208,26 @@ def moved_on(time, value):
 
 
 @pytest.mark.parametrize("option", OPTIONS)
-def test_what_is_no_number_of_this_kind_is_refused(option):
+def test_invalid_numbers_raise_an_error(option):
     call, wrong = OPTIONS[option]
     for value in wrong:
-        # Whole numbers are judged by Python itself where they are none.
+        # Python itself rejects values that are not integers.
         with pytest.raises((motet.Error, TypeError, OverflowError, ValueError)) as error:
             call(value)
         assert not isinstance(error.value, motet.InternalError), error.value
 
 
-def test_every_number_that_a_call_takes_stands_above():
+def test_every_numeric_parameter_is_tested():
     for name, call in public().items():
         name = name.removesuffix(".__init__")
-        for word, parameter in inspect.signature(call).parameters.items():
+        for keyword, parameter in inspect.signature(call).parameters.items():
             kind = re.sub(r"str \| int|Mapping\[int, str\]", "", str(parameter.annotation))
-            if word != "self" and re.search(r"\b(int|float)\b", kind):
-                key = f"{name}.{word}"
+            if keyword != "self" and re.search(r"\b(int|float)\b", kind):
+                key = f"{name}.{keyword}"
                 assert key in OPTIONS or key in SAME | FREE, f"{key}: {kind}"
 
 
-def test_a_volume_that_is_no_number_is_told():
+def test_non_finite_points_are_reported_and_refused():
     mesh = shapes.box((1, 1, 1))
     mesh.points[0] = NAN
     assert any(defect.name == "non_finite_point" for defect in mesh.summary().defects)

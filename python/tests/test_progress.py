@@ -1,4 +1,4 @@
-"""Long calls: what they are at is told, what is raised meanwhile ends them, other threads go on."""
+"""Long calls report progress, are stopped by exceptions, and let other threads run."""
 import signal
 import subprocess
 import sys
@@ -31,30 +31,32 @@ class Enough(Exception):
 
 
 @pytest.mark.parametrize("verb", LONG)
-def test_what_it_is_at_is_told_and_may_end_it(verb):
-    call, mesh, words = LONG[verb]
-    came, told = mesh.copy(), []
+def test_progress_is_reported_and_an_exception_ends_the_call(verb):
+    call, mesh, options = LONG[verb]
+    before, reports = mesh.copy(), []
 
     def enough(stage, done, of):
-        told.append((stage, done, of))
+        reports.append((stage, done, of))
         raise Enough
 
     with pytest.raises(Enough):
-        call(mesh, **words, progress=enough)
-    [(stage, done, of)] = told
+        call(mesh, **options, progress=enough)
+    [(stage, done, of)] = reports
     assert stage and done >= 0 and (of == 0 or done <= of)
-    np.testing.assert_array_equal(mesh.points, came.points)
-    np.testing.assert_array_equal(mesh.connectivity, came.connectivity)
+    np.testing.assert_array_equal(mesh.points, before.points)
+    np.testing.assert_array_equal(mesh.connectivity, before.connectivity)
 
 
-def test_what_comes_out_does_not_depend_on_who_looks():
-    told = []
-    watched = motet.remesh(BOX, sizes=0.06, progress=lambda *words: told.append(words))
-    assert {stage for stage, *_ in told} <= {"splitting long edges", "collapsing short edges", "repairing tets", "removing superfluous vertices", "improving tets"} and told
+def test_results_do_not_depend_on_progress_reports():
+    reports = []
+    watched = motet.remesh(BOX, sizes=0.06, progress=lambda *report: reports.append(report))
+    assert reports and {stage for stage, *_ in reports} <= {
+        "splitting long edges", "collapsing short edges", "repairing tets", "removing superfluous vertices", "improving tets",
+    }  # fmt: skip
     np.testing.assert_array_equal(watched.mesh.points, motet.remesh(BOX, sizes=0.06).mesh.points)
 
 
-def test_other_threads_go_on():
+def test_other_threads_run_during_a_call():
     is_over, n = threading.Event(), 0
 
     def count():
@@ -72,19 +74,19 @@ def test_other_threads_go_on():
     assert n > 20 * seconds
 
 
-def test_ctrl_c_ends_it():
-    # Where the tests run in the background of a shell, Ctrl-C is ignored, and by whatever they start.
+def test_ctrl_c_ends_a_call():
+    # If the tests run in the background of a shell, they and their child processes ignore Ctrl-C by default.
     ready = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\nimport motet\nprint('here', flush=True)\n"
     script = ready + "motet.remesh(motet.shapes.box((8, 8, 8)), sizes=0.012)"
     running = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     running.stdout.readline()
     time.sleep(0.5)
     running.send_signal(signal.SIGINT)
-    _, told = running.communicate(timeout=20)
-    assert running.returncode != 0 and "KeyboardInterrupt" in told
+    _, errors = running.communicate(timeout=20)
+    assert running.returncode != 0 and "KeyboardInterrupt" in errors
 
 
-def test_a_mover_that_was_stopped_goes_on_where_it_was():
+def test_a_mover_can_be_used_after_an_interrupted_call():
     mover = motet.Mover(BALL, method="laplace", residual=1e-13)
     far = np.zeros((len(mover.boundary), 3))
     size = np.abs(BALL.points).max()
@@ -105,5 +107,5 @@ def test_a_mover_that_was_stopped_goes_on_where_it_was():
     near = 0.1 * far
     points, certificate = mover.advance(near)
     assert certificate.complete
-    # An iterated solution depends on where it began, within its residual.
+    # An iterative solution depends on its initial guess, within the residual.
     np.testing.assert_allclose(points, mover.step(near), atol=1e-11)

@@ -1,4 +1,4 @@
-"""Refinement: criteria, marks of the caller's own, and the way back."""
+"""Refinement by criteria and by marks, and coarsening."""
 import numpy as np
 import pytest
 
@@ -6,7 +6,7 @@ import motet
 from motet import shapes
 
 
-def test_edges_are_short_at_a_device_and_all_goes_back():
+def test_refinement_at_a_device_can_be_undone():
     mesh, device = shapes.sphere_in_box(), shapes.coil((3.0, 0.0, 0.0))
     fine = motet.refine(mesh, near_size=[(device, 0.2, 0.5)])
     assert fine.complete and fine.mesh.n_points > mesh.n_points and fine.report.steps[0].step == "came"
@@ -17,7 +17,7 @@ def test_edges_are_short_at_a_device_and_all_goes_back():
     np.testing.assert_array_equal(back.mesh.connectivity, mesh.connectivity)
 
 
-def test_criteria_mark_what_they_say():
+def test_every_criterion_refines_the_mesh():
     mesh = shapes.box((4, 4, 4))
     x = mesh.points[:, 0]
     mesh.point_data["p"] = np.exp(8 * x)
@@ -32,11 +32,11 @@ def test_criteria_mark_what_they_say():
     assert len(set(counts)) > 8
 
 
-def test_marks_of_the_callers_own():
+def test_marked_tets_are_refined_and_coarsened():
     refinement = motet.Refinement(shapes.box((3, 3, 3)))
     first = refinement.mesh
     middle = first.points[first.tets].mean(axis=1)
-    history, told = refinement.refine(first.cell_ids("tetra")[np.linalg.norm(middle - 0.5, axis=1) < 0.2])
+    history, _ = refinement.refine(first.cell_ids("tetra")[np.linalg.norm(middle - 0.5, axis=1) < 0.2])
     assert refinement.mesh.n_cells > first.n_cells and refinement.generations.max() == 1
     cells = np.flatnonzero(refinement.generations == 1)
     refinement.coarsen(cells)
@@ -46,27 +46,27 @@ def test_marks_of_the_callers_own():
 
 
 @pytest.mark.parametrize(
-    "call, told",
+    "call, message",
     [
-        (dict(), "nothing says"),
+        (dict(), "no criterion is given"),
         (dict(where=["p<"]), "p<"),
         (dict(where=["none>3"]), "none"),
-        (dict(where="p>3"), "a list is expected"),
+        (dict(where="p>3"), "expected a list"),
         (dict(ball=[((9, 9, 9), 0.1)]), "no tet is marked"),
         (dict(hessian={"p": "some"}), "some"),
         (dict(size=-1.0), "above 0"),
         (dict(vorticity=["v<3"]), "ARRAY>VALUE"),
     ],
 )
-def test_what_means_nothing_is_told(call, told):
+def test_invalid_arguments_raise_an_error(call, message):
     mesh = shapes.box()
     mesh.point_data["p"] = mesh.points[:, 0].copy()
     with pytest.raises(ValueError) as error:
         motet.refine(mesh, **call)
-    assert isinstance(error.value, motet.Error) and told in str(error.value)
+    assert isinstance(error.value, motet.Error) and message in str(error.value)
 
 
-def test_marks_that_do_not_fit_are_told():
+def test_invalid_marks_raise_an_error():
     refinement = motet.Refinement(shapes.box())
     with pytest.raises(motet.InputError, match="marks"):
         refinement.refine(np.zeros(3, bool))

@@ -1,4 +1,4 @@
-"""The types that the package promises are those that it has."""
+"""Type annotations and documentation of the package."""
 import subprocess
 import sys
 from pathlib import Path
@@ -10,17 +10,17 @@ import motet
 PROJECT = Path(__file__).parents[1] / "pyproject.toml"
 
 
-def mypy(module, *words, cwd):
-    call = subprocess.run([sys.executable, "-m", module, *words], capture_output=True, text=True, cwd=cwd)
+def mypy(module, *arguments, cwd):
+    call = subprocess.run([sys.executable, "-m", module, *arguments], capture_output=True, text=True, cwd=cwd)
     assert call.returncode == 0, call.stdout + call.stderr
 
 
-def test_the_stub_is_what_is_there(tmp_path):
+def test_the_stub_matches_the_native_module(tmp_path):
     pytest.importorskip("mypy")
     mypy("mypy.stubtest", "motet._motet", "--mypy-config-file", str(PROJECT), cwd=tmp_path)
 
 
-def test_the_package_has_no_wrong_type(tmp_path):
+def test_the_package_passes_mypy(tmp_path):
     pytest.importorskip("mypy")
     mypy("mypy", "--config-file", str(PROJECT), "-p", "motet", cwd=tmp_path)
 

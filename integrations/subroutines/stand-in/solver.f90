@@ -1,5 +1,5 @@
-! Stands in for a solver that calls a user's Fortran subroutine once a step with its own arrays, as CFX and CFD-ACE+ do: what
-! user_grid.f90 needs of one, and a tiny mesh to call it with. Not theirs.
+! A stand-in for a solver, such as CFX or CFD-ACE+, that calls a user subroutine in Fortran once per step with
+! its own arrays. Calls user_grid.f90 with a small mesh. Contains no code of these solvers.
 program solver
   use, intrinsic :: iso_c_binding
   implicit none
@@ -16,7 +16,7 @@ program solver
     end subroutine
   end interface
 
-  ! Two octahedra, of radius 1 and 4, and a node between.
+  ! Two octahedra, of radius 1 and 4, and a node in between.
   x = 0
   do i = 1, 3
     x(i, 2 * i - 1) = 1
@@ -26,6 +26,6 @@ program solver
   x(1, 13) = 2.5
   on_walls = [(i, i = 1, n_walls)]
   call user_grid(n_points, x, n_walls, on_walls, 0.25_c_double)
-  write (*, '(a,3f8.3)') 'body, node between, wall: ', x(1, 1), x(1, 13), x(1, 7)
+  write (*, '(a,3f8.3)') 'body, node in between, wall: ', x(1, 1), x(1, 13), x(1, 7)
   if (abs(x(1, 1) - 1.5) > 1e-6 .or. abs(x(1, 13) - 2.75) > 1e-6 .or. abs(x(1, 7) - 4) > 0) error stop 'the node did not follow'
 end program

@@ -1,4 +1,5 @@
-/* Stands in for Fluent's udf.h: what fluent_udf.c uses of it, so that the example is known to compile. Not Fluent's, and of no use in it. */
+/* A stand-in for Fluent's udf.h with what fluent_udf.c needs to compile. Contains no code of Fluent, and is not
+ * for use in it. */
 #ifndef STAND_IN_UDF_H
 #define STAND_IN_UDF_H
 

@@ -1,12 +1,13 @@
-"""motet keeps tetrahedral meshes good while the world in them moves.
+"""Tetrahedral meshes that stay valid and well shaped while their boundaries move.
 
 >>> import motet
 >>> mesh = motet.read("vessel.vtu")                               # doctest: +SKIP
 >>> mover = motet.Mover(mesh, slide=["inlet"], smooth=2)          # doctest: +SKIP
 >>> points, certificate = mover.advance(displacement)             # doctest: +SKIP
 
-Verbs take a :class:`Mesh`, a path, a ``meshio.Mesh`` or a PyVista data set, and give back new meshes; what they are given stays as it was.
-Handles (:class:`Mover`, :class:`MovingMesh`, :class:`Refinement`, :class:`Contact`) are set up once and used step after step.
+Functions accept a :class:`Mesh`, a file path, a ``meshio.Mesh`` or a PyVista data set and return new meshes;
+they never modify their arguments. :class:`Mover`, :class:`MovingMesh`, :class:`Refinement` and
+:class:`Contact` are set up once and then used step after step.
 """
 from . import shapes
 from ._motet import __version__, formats

@@ -1,4 +1,4 @@
-"""The command line: ``python -m motet``, and the ``motet`` that is installed with the package."""
+"""The command line: ``python -m motet``, also installed as the script ``motet``."""
 from __future__ import annotations
 
 import signal
@@ -8,8 +8,8 @@ from ._motet import command
 
 
 def main() -> int:
-    """Runs the words of the call; the exit status."""
-    # The interpreter is not asked while motet works: Ctrl-C has to end the process by itself.
+    """Run the command line with ``sys.argv`` and return its exit status."""
+    # Python handles no signals during the native call, so Ctrl-C must end the process directly.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return command(["motet", *sys.argv[1:]])
 

@@ -1,4 +1,4 @@
-"""Open rims of surfaces closed by caps."""
+"""Closing the open rims of surfaces with caps."""
 from __future__ import annotations
 
 import os
@@ -10,7 +10,7 @@ import numpy as np
 from . import _motet
 from ._mesh import Mesh, MeshLike, as_mesh, read
 from ._series import read_series
-from ._words import checked
+from ._keywords import checked
 from .errors import InputError
 
 
@@ -24,26 +24,30 @@ def cap(surfaces: Sequence[MeshLike]) -> list[Mesh]: ...
 def cap(surfaces: Any) -> Any: ...
 @checked
 def cap(surfaces: Any) -> Any:
-    """Closes the open rims of a surface, or of every frame of one that moves; as ``motet cap``.
+    """Close the open rims of a surface, or of every frame of a moving surface.
 
-    Each rim gets a cap of triangles about as long as the rim's edges: a patch ``cap_1``, ``cap_2``, .., the longest rim first. Triangles without a patch
-    become the patch ``wall``. Points of the surface come first and stay to the bit. The caps of all frames have the same triangles, and follow the rims.
+    Each rim is closed by a cap of triangles about as large as the edges of the rim. The caps are patches
+    ``cap_1``, ``cap_2``, ..., starting at the longest rim. Triangles without a patch form the patch ``wall``.
+    The points of the surface come first and keep their exact coordinates. The caps of all frames have the
+    same triangles and follow the rims. Equivalent to ``motet cap`` on the command line.
 
     Parameters
     ----------
-    surfaces : a surface; a sequence of frames; or the path of a series (``.pvd``)
-        A surface is a mesh, path, meshio.Mesh or PyVista data set. All frames have the same points in the same order; those after the first may be arrays
-        (n, 3) of their points alone.
+    surfaces : MeshLike, sequence, or path of a series
+        A surface (a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set), a sequence of frames, or
+        the path of a ``.pvd`` series. All frames must have the same points in the same order. Frames after
+        the first may be arrays of points only, shape (n, 3).
 
     Returns
     -------
-    Mesh
-        The closed surface; of a sequence a list with the closed frames, of a series a list of pairs: the time and the closed frame.
+    Mesh, list of Mesh, or list of (float, Mesh)
+        The closed surface. For a sequence, the list of closed frames; for a series, the list of pairs of time
+        and closed frame.
 
     Raises
     ------
     InputError
-        There is no open rim, rims touch, or a frame has another number of points.
+        If there is no open rim, if rims touch, or if the number of points differs between frames.
     """
     if isinstance(surfaces, (str, os.PathLike)) and _motet.is_series(surfaces):
         times = read_series(surfaces)
@@ -58,11 +62,11 @@ def _closed(frames: Iterable[Any]) -> list[Mesh]:
     for given in frames:
         if isinstance(given, np.ndarray):
             if first is None:
-                raise InputError("the first frame is an array of points alone: give it as a surface, with its triangles")
+                raise InputError("the first frame is an array of points: pass a surface with triangles")
             frame = first.copy()
             frame.points = given
             if frame.n_points != first.n_points:
-                raise InputError(f"a frame of {frame.n_points} points, the first one has {first.n_points}")
+                raise InputError(f"a frame has {frame.n_points} points, but the first frame has {first.n_points}")
         else:
             frame = as_mesh(given)
         if caps is None:

@@ -1,4 +1,4 @@
-"""Verbs that change a mesh: bad tets repaired, devices implanted, surfaces filled."""
+"""Functions that change or create a mesh: repair, implantation of devices, meshing of surfaces."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -12,57 +12,82 @@ from . import _motet
 from .errors import OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, named, point
 from ._report import Progress, Report, report
-from ._words import checked, checked_class
+from ._keywords import checked, checked_class
 
 Carry = Literal["mean", "linear", "inherit", "drop"]
 
 
 @checked_class
 class History:
-    """Where everything in a new mesh came from; carries any array of the old mesh along, at any later time."""
+    """The origin of each vertex and cell of a changed mesh, used to transfer arrays from the old mesh.
+
+    A history can be used at any later time, with any array of the old mesh. It can be pickled.
+    """
 
     def __init__(self, native: Any):
         self._native = native
 
     @property
     def vertex_to_old(self) -> NDArray[np.int64]:
-        """For each new vertex the old one that it is, to the bit; -1 for those that came."""
+        """The old vertex that each new vertex is an exact copy of, shape (n,); -1 for all others."""
         return _signed(self._native.vertex_to_old)
 
     @property
     def cell_to_old(self) -> NDArray[np.int64]:
-        """For each new cell the old one that it is; -1 for those that came."""
+        """The old cell that each new cell is a copy of, shape (m,); -1 for all others."""
         return _signed(self._native.cell_to_old)
 
     @property
     def vertex_to_main(self) -> NDArray[np.int64]:
-        """For each new vertex the old one that it is or has most of."""
+        """The old vertex of each new vertex, or the one with the largest share in it, shape (n,)."""
         return _signed(self._native.vertex_to_main)
 
     @property
     def cell_to_main(self) -> NDArray[np.int64]:
-        """For each new cell the old one that it is or has most of."""
+        """The old cell of each new cell, or the one with the largest share in it, shape (m,)."""
         return _signed(self._native.cell_to_main)
 
     @property
     def ledger(self) -> Report:
-        """How well the volumes of old and new tets fit, by region."""
+        """How well the volumes of old and new tets agree, by region."""
         return report(self._native.ledger)
 
     def transfer(
         self, array: ArrayLike, *, on: Literal["points", "cells"], rule: Literal["mean", "linear", "inherit"] | None = None, name: str = "array"
     ) -> Any:
-        """An array of the old mesh on the new one; what did not change goes over bit for bit.
+        """Transfer an array of the old mesh to the new mesh.
+
+        Values at unchanged vertices and cells are copied exactly.
 
         Parameters
         ----------
-        array : array (n, ..)
-            A row for each old point, or cell.
+        array : array_like, shape (n, ...)
+            Values with one row per point or per cell of the old mesh. A list of strings is allowed.
         on : {"points", "cells"}
-        rule : {"mean", "linear", "inherit"}
-            ``mean``: on points interpolated (exact for quadratic fields off walls, between the values around), on cells averaged by volume, so that integrals stay.
-            ``linear``: on points linear in each old tet. ``inherit``: the value of what has the largest share.
-            None: real numbers get their mean; whole numbers, texts, directions (by ``name`` or by their lengths) are inherited.
+            What the rows of `array` belong to.
+        rule : {"mean", "linear", "inherit"}, optional
+            How values are computed where the mesh changed:
+
+            - ``"mean"``: point values are interpolated, exactly for quadratic fields away from walls, and
+              limited to the range of the surrounding values. Cell values are averaged by volume, which
+              preserves integrals.
+            - ``"linear"``: point values are interpolated linearly in each old tet.
+            - ``"inherit"``: the value of the old vertex or cell with the largest share is copied.
+
+            By default, floating-point values use ``"mean"``. Integers, strings and directions (recognised by
+            `name` or by their lengths) use ``"inherit"``.
+        name : str, default "array"
+            Name of the array, used in messages and to recognise directions.
+
+        Returns
+        -------
+        ndarray or list of str
+            The values on the new mesh, one row per point or cell.
+
+        Raises
+        ------
+        InputError
+            If the number of rows does not match the old mesh.
         """
         given = array if isinstance(array, list) else np.asarray(array)
         shape = np.shape(given)[1:]
@@ -70,7 +95,23 @@ class History:
         return np.reshape(new, (-1, *shape)) if len(shape) > 1 else new
 
     def then(self, later: History) -> History:
-        """This change and a later one, as one."""
+        """Combine this change with a later one that starts from its resulting mesh.
+
+        Parameters
+        ----------
+        later : History
+            The history of the later change.
+
+        Returns
+        -------
+        History
+            The history from the old mesh of this change to the new mesh of `later`.
+
+        Raises
+        ------
+        InputError
+            If `later` does not start from the mesh that this change produced.
+        """
         return History(self._native.then(later._native))
 
     def __repr__(self) -> str:
@@ -92,16 +133,27 @@ def _signed(old: NDArray[np.uint32]) -> NDArray[np.int64]:
 
 @dataclass(repr=False)
 class Changed:
-    """What a verb made of a mesh."""
+    """The result of a function that changes or creates a mesh.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        The new mesh.
+    history : History or None
+        The origin of its vertices and cells; None for a mesh created from surfaces.
+    report : Report
+        Statistics. ``quality`` summarises all tets: EAS (equi-angle quality) as ``worst``, ``p1``, ``p5``
+        (percentiles), ``median`` and ``mean``, and the mean of the mean ratios as ``mean_ratio``. It is given
+        once for a mesh created from surfaces, for host and result of an implantation, in ``before`` and
+        ``after`` of a repair, and in each of the ``steps`` of a refinement.
+    not_reached : str or None
+        Why the requested result was not reached; None if it was.
+    """
 
     mesh: Mesh
     history: History | None
-    """Where everything came from; None for a mesh that was made of surfaces."""
     report: Report
-    """What was done. ``quality`` tells how good all tets are (``worst``, ``p1``, ``p5``, ``median``, ``mean`` EAS, ``mean_ratio``): of a mesh made of surfaces; of host and mesh
-    where something was implanted; in ``before`` and ``after`` of a repair; in each of ``steps`` of a refinement."""
     not_reached: str | None = None
-    """Why the requested result was not reached; None where it was. The report has the details."""
 
     @property
     def complete(self) -> bool:
@@ -113,8 +165,8 @@ class Changed:
 
 
 def _changed(native: tuple) -> Changed:
-    parts, history, told, not_reached = native
-    return Changed(Mesh._of(parts), History(history), report(told), not_reached)
+    parts, history, reported, not_reached = native
+    return Changed(Mesh._of(parts), History(history), report(reported), not_reached)
 
 
 @checked
@@ -134,36 +186,48 @@ def remesh(
     threads: int = 0,
     progress: Progress | None = None,
 ) -> Changed:
-    """Finds the bad tets of a mesh and repairs them, and only them (after Moyle and Ventikos 2008).
+    """Repair the bad tets of a mesh and leave all other tets unchanged (after Moyle and Ventikos 2008).
 
     Parameters
     ----------
-    mesh : mesh, path, meshio.Mesh or PyVista data set
-    min_eas : float
-        A tet below this equi-angle quality is bad.
-    min_dihedral_deg : float
-        A tet with a dihedral angle below this is bad, too.
-    goal : {"repair", "best"}
-        ``best``: the worst tets as good as they get, everywhere.
-    surface : {"keep", "adapt", "loose"}
-        ``keep``: to the bit. ``adapt``: it may change within ``distance``, features kept. ``loose``: features too, where nothing else helps.
-    distance : float
-        In units of the mesh; a thousandth of its largest extent if None.
-    keep_layers : bool
-        Whether thin tets of boundary layers stay as they are.
-    hold : sequence of names or labels of regions and patches
-        Tets of these regions and triangles of these patches stay to the bit, with their vertices.
-    sizes : float, name of a point array, or array (n,)
-        How long edges are to be.
-    carry : mapping from array to {"mean", "linear", "inherit", "drop"}
-        What becomes of arrays where the mesh changes.
-    progress : callable
-        Gets what is being done, how much of it is done and how much there is (0 where that is not known), some times a second. What it raises ends the
-        call and comes out of it, as Ctrl-C does; the mesh stays as it was.
+    mesh : MeshLike
+        Mesh of tets: a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
+    min_eas : float, default 0.2
+        Tets with an equi-angle quality below this are bad. Range 0 to 1.
+    min_dihedral_deg : float, default 0.0
+        Tets with a dihedral angle below this, in degrees, are also bad. Range 0 to 70.5.
+    goal : {"repair", "best"}, default "repair"
+        ``"repair"`` removes bad tets with as few changes as possible; ``"best"`` makes the worst tets
+        everywhere as good as possible.
+    surface : {"keep", "adapt", "loose"}, default "keep"
+        What may happen to boundaries, interfaces and labelled facets. ``"keep"`` leaves them exactly
+        unchanged. ``"adapt"`` allows changes within `distance` and keeps features such as creases.
+        ``"loose"`` also allows changes of features where nothing else helps.
+    distance : float, optional
+        How far the surface may deviate, in units of the mesh. Default: 1e-3 of its largest extent.
+    keep_layers : bool, default True
+        Whether to leave thin tets of boundary layers unchanged.
+    hold : sequence of str or int, optional
+        Names or labels of regions whose tets, and of patches whose triangles, stay exactly unchanged,
+        including their vertices.
+    sizes : float, str or array_like of shape (n,), optional
+        Target edge length, in units of the mesh: one value, the name of a point array, or one value per
+        point. By default edge lengths are not adapted.
+    rounds : int, default 20
+        Maximum number of passes over the bad tets.
+    carry : mapping of str to {"mean", "linear", "inherit", "drop"}, optional
+        How to transfer each named array where the mesh changes; see :meth:`History.transfer`. ``"drop"``
+        removes the array.
+    threads : int, default 0
+        Number of threads; 0 uses all cores. The result does not depend on it.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+        exception that it raises, or Ctrl-C, ends the call.
 
     Returns
     -------
     Changed
+        The new mesh with its history and report; ``complete`` is False if bad tets remain.
     """
     given = as_mesh(mesh)
     if isinstance(sizes, str):
@@ -200,34 +264,60 @@ def implant(
     threads: int = 0,
     progress: Progress | None = None,
 ) -> Changed:
-    """Puts devices into a mesh of tets: one conforming mesh, whose regions and patches are named after the devices.
+    """Insert devices into a mesh of tets and return one conforming mesh.
+
+    The regions and patches of the devices have the names of the devices.
 
     Parameters
     ----------
-    host : mesh, path, meshio.Mesh or PyVista data set
-        Of tets.
-    devices : one of these, a sequence, or a mapping from names
-        Closed surfaces, or meshes of tets. Files are named after themselves, others ``device``, ``device_2`` and so on.
-    inside : {"own", "fill", "hollow"}
-        ``own``: devices keep their tets, surfaces are filled. ``hollow``: their room is left out.
-    interface : {"match", "conform"}
-        ``match``: each triangle of a device is a facet of the mesh. ``conform``: a new surface within ``tolerance``, for devices that touch or cross themselves.
-    outside : {"cut", "keep"}
-        What becomes of what lies outside of the host.
-    stray : float
-        How far surfaces may stray where a device meets a wall; a twentieth of the device's edges if None.
-    adapt, size, growth : str, float, float
-        What of the host is refined first, how long edges are beside the devices, how much they grow per unit of distance.
-    carve, reach : float
-        What is nearer than ``carve`` edges is replaced, what is farther than ``reach`` stays to the bit.
-    values : mapping from array to its components
-        What arrays begin with in the devices; what the host had there if not named.
-    progress : callable
-        As of :func:`remesh`.
+    host : MeshLike
+        Mesh of tets: a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
+    devices : MeshLike, sequence of MeshLike, or mapping of str to MeshLike
+        Closed surfaces or meshes of tets. Devices without a name are named after their file, or ``device``,
+        ``device_2``, ...
+    inside : {"own", "fill", "hollow"}, default "own"
+        ``"own"`` keeps the tets of devices that have them and fills the others; ``"fill"`` fills all devices
+        with new tets; ``"hollow"`` leaves the interior of devices empty.
+    interface : {"match", "conform"}, default "match"
+        ``"match"`` makes each triangle of a device a facet of the mesh. ``"conform"`` creates a new surface
+        within `tolerance`, for devices that touch or cross themselves, have open ends or bad triangles.
+    tolerance : float, optional
+        For ``interface="conform"``: largest distance between old and new surface, in units of the host.
+        Default: a fifth of the radius of a round wire as thick as the device.
+    outside : {"cut", "keep"}, default "cut"
+        Whether to cut off or keep the parts of devices that lie outside the host.
+    stray : float, optional
+        How far surfaces may deviate where a device meets a wall, in units of the host. Default: a twentieth
+        of the edge length of the device.
+    adapt : {"none", "walls", "all"}, default "walls"
+        Which part of the host is refined near the devices before the insertion.
+    size : float, optional
+        Edge length next to the devices where the host is refined, and on new surfaces, in units of the host.
+        Default: that of the devices, and what `tolerance` requires.
+    growth : float, default 0.5
+        Increase of edge length per unit of distance from the devices. Above 0, at most 0.7.
+    carve : float, default 1.0
+        Host tets closer to a device than this multiple of their edge length are replaced.
+    reach : float, default 3.0
+        Host tets farther from all devices than this multiple of their edge length stay exactly unchanged.
+    min_eas : float, default 0.2
+        New tets with an equi-angle quality below this are repaired.
+    values : mapping of str to array_like, optional
+        Initial value of each named array inside the devices: a number, or one per component. Other arrays
+        keep the values of the host.
+    carry : mapping of str to {"mean", "linear", "inherit", "drop"}, optional
+        How to transfer each named array where the mesh changes; see :meth:`History.transfer`. ``"drop"``
+        removes the array.
+    threads : int, default 0
+        Number of threads; 0 uses all cores. The result does not depend on it.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+        exception that it raises, or Ctrl-C, ends the call.
 
     Returns
     -------
     Changed
+        The new mesh with its history and report.
     """
     by_name = named(devices, "device")
     native = _motet.implant(
@@ -240,11 +330,13 @@ def implant(
 
 
 Layers = tuple[int, float, float]
-"""How many layers, how thick the first one, how many times as thick each next one."""
+"""Boundary layers: number, thickness of the first, and ratio of each thickness to the previous."""
 
 
 @dataclass
 class _Filling:
+    """Options of :func:`mesh` for the native module."""
+
     size: float | None
     surface: str
     is_graded: bool
@@ -285,54 +377,70 @@ def mesh(
     threads: int = 0,
     progress: Progress | None = None,
 ) -> Changed:
-    """Fills closed surfaces with tets: every triangle is a facet of the mesh, or divided where it is far coarser than ``size``.
+    """Fill closed surfaces with tets.
+
+    Every triangle becomes a facet of the mesh, unless it is far coarser than `size` and therefore divided.
 
     Parameters
     ----------
-    surfaces : a surface, a sequence, or a mapping from names
-        Each closed, or together with others that end at the same edges. Nested, side by side, sharing triangles: what each encloses is a region.
-    membranes : sequence
+    surfaces : MeshLike, sequence of MeshLike, or mapping of str to MeshLike
+        Surfaces that are closed, each alone or together with others that end at the same edges. They may be
+        nested, adjacent or share triangles; each enclosed space becomes a region.
+    membranes : sequence of MeshLike, optional
         Surfaces that may end inside the others, such as a flap.
-    size : float or "auto"
-        How long edges inside are; ``auto``: as those of the surface, growing inwards. None: no points inside but those that are needed.
-    surface : "auto", "divide" or "keep"
-        Whether triangles of the surfaces are divided to ``size`` in their own planes, creases kept: where most are far coarser or narrow, all, or none.
-    growth : float
-        How much sizes grow from the surface per unit of distance, up to ``size``.
-    size_array : str
-        An array of the surfaces with the sizes there.
-    seeds : mapping from name to place
-        Names the regions that hold these places.
-    holes : sequence of places
-        What encloses one of them is left out.
-    min_eas : float
-        Tets below this are repaired; 0.2 with sizes, none without, if None.
-    layers : (count, first, growth), or a mapping from patch to these
-        Thin layers on walls.
-    keep_prisms : bool
-        Whether layers stay wedges and pyramids.
-    repair, merge, hole_edges : bool, float, int
-        Mends the surfaces first: vertices on edges (T-junctions) and faces that lie on each other, duplicates, orientation, points nearer than ``merge``, holes of at most
-        so many edges.
-    cut : bool
-        Whether surfaces that go through each other, or touch, are divided where they do: each room between them is a region.
-    voids : bool
-        Whether what closed surfaces turned inward enclose is left out.
-    progress : callable
-        As of :func:`remesh`.
+    size : float or "auto", optional
+        Edge length inside, in units of the surfaces. ``"auto"`` starts from the edge length of the surface
+        and grows inwards. By default only points that are required are inserted inside.
+    surface : {"auto", "divide", "keep"}, default "auto"
+        Whether triangles are divided to `size` in their own planes; creases are kept. ``"auto"`` divides
+        surfaces of which most triangles are far coarser than `size` or narrow, ``"divide"`` divides all
+        surfaces and ``"keep"`` none.
+    growth : float, optional
+        Increase of edge length per unit of distance from the surface, up to `size`. Above 0, at most 0.7.
+        Default: 0.3 if sizes are graded.
+    size_array : str, optional
+        Name of an array of the surfaces with the edge length there.
+    seeds : mapping of str to array_like of shape (3,), optional
+        Names for regions, each with the coordinates of a point inside the region.
+    holes : sequence of array_like of shape (3,), optional
+        Points inside spaces to leave empty.
+    min_eas : float, optional
+        Tets with an equi-angle quality below this are repaired. Default: 0.2 if sizes are given, otherwise
+        no repair.
+    layers : (int, float, float) or mapping of str to (int, float, float), optional
+        Boundary layers: their number, the thickness of the first in units of the surfaces, and the ratio of
+        each thickness to the previous. A mapping gives them by patch.
+    keep_prisms : bool, default False
+        Whether boundary layers remain wedges and pyramids instead of being divided into tets.
+    repair : bool, default False
+        Whether to repair the surfaces first: vertices on edges (T-junctions), overlapping faces, duplicates,
+        orientation, points closer than `merge`, and small holes.
+    merge : float, default 0.0
+        With `repair`: merge points closer than this, in units of the surfaces.
+    hole_edges : int, default 32
+        With `repair`: close holes of at most this many edges.
+    cut : bool, default False
+        Whether to divide surfaces where they cross or touch; each space between them becomes a region.
+    voids : bool, default False
+        Whether to leave empty what is enclosed by closed surfaces that are turned inward.
+    threads : int, default 0
+        Number of threads; 0 uses all cores. The result does not depend on it.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+        exception that it raises, or Ctrl-C, ends the call.
 
     Returns
     -------
     Changed
-        Without a history.
+        The new mesh and its report; ``history`` is None.
 
     Raises
     ------
     InputError
-        The first thing that stops a surface from being filled, with its place.
+        If a surface cannot be filled; the message gives the first fault and its position.
     """
     if isinstance(size, str) and size != "auto":
-        raise OptionsError(f"size={size!r} means nothing: a length is expected, or 'auto'")
+        raise OptionsError(f"size={size!r} is not valid: expected a length or 'auto'")
     given = [(as_mesh(one), name, False) for name, one in named(surfaces, "surface").items()]
     given += [(as_mesh(one), name, True) for name, one in named(list(membranes), "membrane").items()]
     request = _Filling(
@@ -341,5 +449,5 @@ def mesh(
         layers=None if isinstance(layers, Mapping) else layers, layers_on=dict(layers) if isinstance(layers, Mapping) else {},
         keep_prisms=keep_prisms, repair=repair, cut=cut, voids=voids, merge=merge, hole_edges=hole_edges,
     )  # fmt: skip
-    parts, told, not_reached = _motet.mesh(given, request, threads, progress)
-    return Changed(Mesh._of(parts), None, report(told), not_reached)
+    parts, reported, not_reached = _motet.mesh(given, request, threads, progress)
+    return Changed(Mesh._of(parts), None, report(reported), not_reached)

@@ -1,4 +1,4 @@
-"""The mesh: points, cells of any kinds and the arrays on them, all of it numpy arrays."""
+"""The mesh: points, cells of any kind and data arrays, all as numpy arrays."""
 from __future__ import annotations
 
 import os
@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from . import _motet
 from .errors import InputError
 from ._report import Report, report
-from ._words import checked, checked_class
+from ._keywords import checked, checked_class
 
-# Names of kinds of cells, as meshio has them, and VTK's numbers.
+# meshio's names of cell kinds, with VTK's numbers.
 KINDS = _motet.cell_kinds()
 NAMES = {number: name for name, number in KINDS.items()}
-# Kinds by how many vertices a row has, where only an array is given.
+# The kind of cells given as an array, by its number of columns.
 BY_COLUMNS = {2: "line", 3: "triangle", 4: "tetra"}
 
 Cells = Union[ArrayLike, Mapping[str, ArrayLike], Sequence[tuple[str, ArrayLike]]]
@@ -25,31 +25,46 @@ Cells = Union[ArrayLike, Mapping[str, ArrayLike], Sequence[tuple[str, ArrayLike]
 
 @checked_class
 class Mesh:
-    """Points, cells of any kinds, and the arrays on them: all that a file holds.
+    """A mesh: points, cells of any kind, and data arrays.
+
+    Functions of the package copy the arrays and never modify a mesh that they are given.
 
     Parameters
     ----------
-    points : array (n, 3)
+    points : array_like, shape (n, 3)
         Coordinates, in any unit of length.
-    cells : array (m, 4), or mapping or sequence of pairs from a kind to an array
-        The vertices of each cell, from 0, in VTK's order. An array of four columns is tets, of three triangles, of two lines; other kinds go by
-        meshio's names: ``{"tetra": (m, 4), "wedge": (k, 6), "triangle": (s, 3)}``.
-    point_data, cell_data, field_data : mapping from names to arrays
-        Arrays with a row for each point, a row for each cell (of all kinds, in their order), and about the whole.
-    region_names, patch_names : mapping from label to name
-        What the labels in the cell arrays ``region`` (of volume cells) and ``patch`` (of surface cells) are called.
+    cells : array_like, mapping of str to array_like, or sequence of (str, array_like)
+        Vertex ids of each cell, starting at 0, in VTK's order. An array with four columns contains tets, with
+        three columns triangles, and with two columns lines. Otherwise the keys are meshio's names of cell
+        kinds, such as ``{"tetra": tets, "wedge": wedges, "triangle": triangles}``.
+    point_data : mapping of str to array_like, optional
+        Arrays with one row per point.
+    cell_data : mapping of str to array_like, optional
+        Arrays with one row per cell, over all kinds in the order of `cells`.
+    field_data : mapping of str to array_like, optional
+        Arrays that belong to the mesh as a whole.
+    region_names : mapping of int to str, optional
+        Names of the labels in the cell array ``region`` (of volume cells).
+    patch_names : mapping of int to str, optional
+        Names of the labels in the cell array ``patch`` (of surface cells).
 
     Attributes
     ----------
-    points : float64 array (n, 3)
-    kinds : uint8 array (m,)
+    points : float64 array, shape (n, 3)
+        Coordinates.
+    kinds : uint8 array, shape (m,)
         VTK's number of the kind of each cell.
-    offsets, connectivity : uint32 arrays (m + 1,) and (k,)
+    offsets : uint32 array, shape (m + 1,)
         The vertices of cell ``i`` are ``connectivity[offsets[i]:offsets[i + 1]]``.
+    connectivity : uint32 array, shape (k,)
+        Vertex ids of all cells, one cell after the other.
     faces : uint32 array
-        For each polyhedron its number of faces, and for each of these its number of vertices and the vertices; empty without polyhedra.
-
-    Verbs copy what they are given and never change it.
+        For each polyhedron its number of faces, then for each face its number of vertices and the vertices;
+        empty if there are no polyhedra.
+    point_data, cell_data, field_data : dict of str to ndarray
+        Data arrays by name.
+    region_names, patch_names : dict of int to str
+        Names of labels.
     """
 
     def __init__(
@@ -96,24 +111,41 @@ class Mesh:
 
     @property
     def n_points(self) -> int:
+        """Number of points."""
         return len(self.points)
 
     @property
     def n_cells(self) -> int:
+        """Number of cells."""
         return len(self.kinds)
 
     @property
     def tets(self) -> NDArray[np.uint32]:
-        """The vertices of the tets, (m, 4)."""
+        """Vertex ids of the tets, shape (m, 4)."""
         return self.cells("tetra")
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
-        """The vertices of the triangles among the cells, (m, 3)."""
+        """Vertex ids of the triangular cells, shape (m, 3)."""
         return self.cells("triangle")
 
     def cells(self, kind: str) -> NDArray[np.uint32]:
-        """The vertices of the cells of a kind, a row each; of a kind whose cells differ in their number of vertices none can be told this way."""
+        """Return the vertex ids of the cells of one kind, one row per cell.
+
+        Parameters
+        ----------
+        kind : str
+            meshio's name of the kind, such as ``"tetra"``.
+
+        Returns
+        -------
+        uint32 array, shape (number of cells, vertices per cell)
+
+        Raises
+        ------
+        InputError
+            If the kind is unknown, or its cells have different numbers of vertices.
+        """
         ids = self.cell_ids(kind)
         if not len(ids):
             return np.zeros((0, {"triangle": 3, "tetra": 4}.get(kind, 0)), np.uint32)
@@ -125,13 +157,23 @@ class Mesh:
         return self.connectivity[self.offsets[ids].astype(np.int64)[:, None] + np.arange(counts[0])]
 
     def cell_ids(self, kind: str) -> NDArray[np.int64]:
-        """Which cells are of a kind."""
+        """Return the ids of the cells of one kind, ascending.
+
+        Parameters
+        ----------
+        kind : str
+            meshio's name of the kind, such as ``"tetra"``.
+
+        Returns
+        -------
+        int64 array, shape (number of cells,)
+        """
         if kind not in KINDS:
-            raise InputError(f"unknown cell kind {kind!r}; there are {', '.join(KINDS)}")
+            raise InputError(f"unknown cell kind {kind!r}; known kinds: {', '.join(KINDS)}")
         return np.flatnonzero(self.kinds == KINDS[kind])
 
     def copy(self) -> Mesh:
-        """A copy that shares nothing with this one."""
+        """Return a deep copy."""
         new = Mesh.__new__(Mesh)
         for name, value in self.__dict__.items():
             shared = isinstance(value, dict)
@@ -139,58 +181,102 @@ class Mesh:
         return new
 
     def summary(self) -> Report:
-        """Counts, bounds, volume, regions, patches, quality, and all that is wrong with it; as ``motet info --json``."""
+        """Return counts, bounds, volume, regions, patches, quality and defects of the mesh.
+
+        The contents are those of ``motet info --json`` on the command line.
+
+        Returns
+        -------
+        Report
+        """
         return report(_motet.summary(self))
 
     def quality(self, measure: str = "eas") -> NDArray[np.float64]:
-        """A measure of each cell, NaN where it is no tet.
+        """Return a quality measure of each tet.
 
-        ``eas`` (1 regular, 0 flat, negative inverted, bad below 0.2), ``mean_ratio``, ``min_dihedral_deg``, ``max_dihedral_deg``, ``edge_ratio``, ``volume``.
+        Parameters
+        ----------
+        measure : str, default "eas"
+            ``"eas"`` (equi-angle quality: 1 regular, 0 flat, negative inverted; bad below 0.2),
+            ``"mean_ratio"``, ``"min_dihedral_deg"``, ``"max_dihedral_deg"``, ``"edge_ratio"`` or
+            ``"volume"``.
+
+        Returns
+        -------
+        float64 array, shape (m,)
+            One value per cell; NaN for cells that are not tets.
         """
         return _motet.quality(self, measure)
 
     def save(self, path: str | os.PathLike[str]) -> list[str]:
-        """Writes the mesh; the format goes by the ending. What it cannot hold is warned of, and returned, a sentence each."""
+        """Write the mesh to a file.
+
+        Parameters
+        ----------
+        path : path-like
+            Name of the file. Its extension determines the format; see :func:`formats`.
+
+        Returns
+        -------
+        list of str
+            What the format cannot store, one sentence each. These are also issued as warnings.
+        """
         import warnings
 
         lost = _motet.write(path, self)
-        for what in lost:
-            warnings.warn(what, stacklevel=3)
+        for sentence in lost:
+            warnings.warn(sentence, stacklevel=3)
         return lost
 
     def patch_vertices(self, patch: str | int) -> NDArray[np.uint32]:
-        """The vertices of a patch, by its name or label, rising."""
+        """Return the vertex ids of a patch, ascending.
+
+        Parameters
+        ----------
+        patch : str or int
+            Name or label of the patch.
+
+        Returns
+        -------
+        uint32 array, shape (k,)
+        """
         return _motet.patch_vertices(self, [patch])
 
     @classmethod
     def from_meshio(cls, mesh: Any) -> Mesh:
-        """From a ``meshio.Mesh``."""
-        from ._doors import from_meshio
+        """Create a mesh from a ``meshio.Mesh``."""
+        from ._convert import from_meshio
 
         return from_meshio(mesh)
 
     def to_meshio(self) -> Any:
-        """As a ``meshio.Mesh``."""
-        from ._doors import to_meshio
+        """Convert the mesh to a ``meshio.Mesh``."""
+        from ._convert import to_meshio
 
         return to_meshio(self)
 
     @classmethod
     def from_pyvista(cls, mesh: Any) -> Mesh:
-        """From any data set of PyVista or VTK that has cells."""
-        from ._doors import from_pyvista
+        """Create a mesh from any PyVista or VTK data set with cells."""
+        from ._convert import from_pyvista
 
         return from_pyvista(mesh)
 
     def to_pyvista(self) -> Any:
-        """As a ``pyvista.UnstructuredGrid``."""
-        from ._doors import to_pyvista
+        """Convert the mesh to a ``pyvista.UnstructuredGrid``."""
+        from ._convert import to_pyvista
 
         return to_pyvista(self)
 
-    def plot(self, **words: Any) -> Any:
-        """Shows it by PyVista, whose ``plot`` gets the words."""
-        return self.to_pyvista().plot(**words)
+    def plot(self, **kwargs: Any) -> Any:
+        """Show the mesh with PyVista.
+
+        Parameters
+        ----------
+        **kwargs
+            Keyword arguments of ``pyvista.UnstructuredGrid.plot``.
+        """
+        return self.to_pyvista().plot(**kwargs)
 
     def __repr__(self) -> str:
         numbers, counts = np.unique(self.kinds, return_counts=True)
@@ -200,12 +286,31 @@ class Mesh:
 
 
 MeshLike = Any
-"""A :class:`Mesh`, a path of a file, a ``meshio.Mesh``, or a data set of PyVista or VTK."""
+"""A :class:`Mesh`, a file path, a ``meshio.Mesh``, or a PyVista or VTK data set."""
 
 
 @checked
 def read(path: str | os.PathLike[str]) -> Mesh:
-    """Reads a mesh; the format goes by the ending. What of the file could not be used is warned of."""
+    """Read a mesh from a file.
+
+    Parts of the file that cannot be used are reported as warnings.
+
+    Parameters
+    ----------
+    path : path-like
+        Name of the file. Its extension determines the format; see :func:`formats`.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    FileError
+        If the file cannot be opened.
+    InputError
+        If its contents are not valid.
+    """
     import warnings
 
     parts, notes = _motet.read(path)
@@ -216,8 +321,24 @@ def read(path: str | os.PathLike[str]) -> Mesh:
 
 @checked
 def as_mesh(mesh: MeshLike) -> Mesh:
-    """A mesh from whatever is one: see :data:`MeshLike`."""
-    from ._doors import from_meshio, from_pyvista
+    """Convert an object to a mesh.
+
+    Parameters
+    ----------
+    mesh : MeshLike
+        A :class:`Mesh`, which is returned as it is, a file path, a ``meshio.Mesh``, or a PyVista or VTK data
+        set.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    InputError
+        If the object is not a mesh, or cannot be converted.
+    """
+    from ._convert import from_meshio, from_pyvista
 
     if isinstance(mesh, Mesh):
         return mesh
@@ -227,17 +348,17 @@ def as_mesh(mesh: MeshLike) -> Mesh:
         return from_pyvista(mesh)
     if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
         return from_meshio(mesh)
-    raise InputError(f"{type(mesh).__name__} is no mesh: a motet.Mesh, a path, a meshio.Mesh or a data set of PyVista is expected")
+    raise InputError(f"{type(mesh).__name__} is not a mesh: expected a motet.Mesh, a path, a meshio.Mesh or a PyVista data set")
 
 
-def named(meshes: Any, word: str) -> Mapping[str, Any]:
-    """Meshes by names, each once: those that they come with, those of files, else the word."""
+def named(meshes: Any, default: str) -> Mapping[str, Any]:
+    """Return meshes by unique names: the given names, file names, or `default` with a number."""
     if isinstance(meshes, Mapping):
         return meshes
     several = meshes if isinstance(meshes, (list, tuple)) else [meshes]
     by_name: dict[str, Any] = {}
     for mesh in several:
-        base = Path(mesh).stem if isinstance(mesh, (str, os.PathLike)) else word
+        base = Path(mesh).stem if isinstance(mesh, (str, os.PathLike)) else default
         name, k = base, 2
         while name in by_name:
             name, k = f"{base}_{k}", k + 1
@@ -246,22 +367,22 @@ def named(meshes: Any, word: str) -> Mapping[str, Any]:
 
 
 def ids(array: ArrayLike, what: str) -> NDArray[np.uint32]:
-    """Ids as they are passed on: whole numbers that fit."""
+    """Convert ids to uint32; raise InputError for values that are not integers or out of range."""
     given = np.asarray(array)
     if given.dtype == np.uint32:
         return np.ascontiguousarray(given)
     if given.size and not np.issubdtype(given.dtype, np.integer):
-        raise InputError(f"{what} of type {given.dtype}, expected whole numbers")
+        raise InputError(f"{what} of type {given.dtype}, expected integers")
     if given.size and (given.min() < 0 or given.max() >= 2**32 - 1):
         raise InputError(f"{what} from {given.min()} to {given.max()}, expected 0 or more, below 2^32 - 1")
     return np.ascontiguousarray(given, np.uint32)
 
 
 def point(values: ArrayLike) -> list[float]:
-    """Three numbers."""
+    """Convert a position or vector to a list of three numbers."""
     numbers = np.asarray(values, np.float64)
     if numbers.shape != (3,):
-        raise InputError(f"{values!r} is no place or vector of three numbers")
+        raise InputError(f"{values!r} is not a position or vector of three numbers")
     return numbers.tolist()
 
 
@@ -278,10 +399,10 @@ def _blocks(cells: Any) -> Iterator[tuple[str, NDArray[np.uint32]]]:
         pairs = list(cells)
     for kind, rows in pairs:
         if kind not in KINDS:
-            raise InputError(f"unknown cell kind {kind!r}; there are {', '.join(KINDS)}")
+            raise InputError(f"unknown cell kind {kind!r}; known kinds: {', '.join(KINDS)}")
         rows = ids(rows, f"cells of kind {kind}")
         if rows.ndim != 2:
-            raise InputError(f"cells of kind {kind}: an array of shape {rows.shape}, expected a row for each")
+            raise InputError(f"cells of kind {kind}: an array of shape {rows.shape}, expected one row per cell")
         yield kind, rows
 
 

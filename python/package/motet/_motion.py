@@ -1,4 +1,4 @@
-"""Mesh motion: boundary displacement in, volume mesh out."""
+"""Mesh motion: the volume mesh follows displacements of its boundary."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -12,15 +12,15 @@ from . import _motet
 from .errors import InputError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, ids, point
 from ._report import Progress, Report, report
-from ._words import NotPickled, checked, checked_class
+from ._keywords import NotPickled, checked, checked_class
 
 Patch = Union[str, int, ArrayLike]
-"""A patch by its name or label, or facets as an array of vertex ids, a row each."""
+"""A patch given by name or label, or by its facets: an array of vertex ids with one row per facet."""
 
 
 @dataclass
-class _Asked:
-    """What the native mover is told."""
+class _Request:
+    """Options of a mover for the native module."""
 
     method: str
     bodies: list
@@ -37,16 +37,16 @@ class _Asked:
     substeps: int
 
 
-def _asked(given: Mapping[str, Any]) -> _Asked:
-    """What the native mover is told, by the words of a call that has them all."""
+def _request(given: Mapping[str, Any]) -> _Request:
+    """Return the options of a mover from the keywords of a call, which must include all of them."""
     if given["rigid_layer"] is not None and given["rigid_layer_cells"] is not None:
         raise OptionsError("rigid_layer is a distance and rigid_layer_cells a number of cells: give one of them")
-    words = {field.name: given[field.name] for field in fields(_Asked)}
+    options = {field.name: given[field.name] for field in fields(_Request)}
     for patches in ("bodies", "rigid_layer_at", "slide"):
-        words[patches] = _facets(words[patches])
-    if words["also_moved"] is not None:
-        words["also_moved"] = ids(words["also_moved"], "also_moved")
-    return _Asked(**words)
+        options[patches] = _facets(options[patches])
+    if options["also_moved"] is not None:
+        options["also_moved"] = ids(options["also_moved"], "also_moved")
+    return _Request(**options)
 
 
 def _facet(patch: Patch) -> Any:
@@ -54,13 +54,13 @@ def _facet(patch: Patch) -> Any:
         return patch if isinstance(patch, str) else int(patch)
     rows = ids(patch, "facets")
     if rows.ndim != 2 or rows.shape[1] < 3:
-        raise InputError(f"facets of shape {rows.shape}, expected a row of three vertices or more for each")
+        raise InputError(f"facets of shape {rows.shape}, expected rows of three vertices or more")
     return rows.ravel(), rows.shape[1]
 
 
 def _facets(patches: Sequence[Patch]) -> list:
     if isinstance(patches, (str, int)):
-        raise OptionsError(f"{patches!r} is one patch, a list of patches is expected: [{patches!r}]")
+        raise OptionsError(f"{patches!r} is a single patch, expected a list of patches: [{patches!r}]")
     return [_facet(patch) for patch in patches]
 
 
@@ -73,55 +73,71 @@ def _vectors(array: ArrayLike, n: int, what: str) -> NDArray[np.float64]:
 
 @checked_class
 class Mover(NotPickled):
-    """Moves the vertices of one mesh after its boundary: set up once, a weighted sum a step.
+    """Moves the vertices of a mesh so that they follow its boundary.
 
-    The Delaunay graph of the boundary (Liu, Qin, Xia 2006) and what goes past it; a step depends on the displacement alone, never on the steps
-    before it, so that a wall that comes back brings every vertex back to the same bits.
+    The set-up is done once; a step is then a weighted sum, by default in the Delaunay graph of the boundary
+    (Liu, Qin, Xia 2006). A step depends only on the displacement and never on previous steps, so a wall that
+    returns to its initial position brings every vertex back exactly.
 
     Parameters
     ----------
-    mesh : mesh, path, meshio.Mesh or PyVista data set
-        Volume cells of any kind.
-    method : {"delaunay", "bodies", "guided", "elastic", "laplace", "idw", "rbf"}
-        ``delaunay``: weights in the graph of the boundary, the cheapest. ``bodies``: rigid bodies carry along what is round them, for parts that turn
-        or shift far. ``guided``: nodes inside with rotations, for walls that bend. The others are there to compare with.
-    bodies : sequence of patches
-        The rigid bodies of ``method="bodies"``; where none is named, each part of the walls that hangs together is one, but for the outer one. Walls are
-        the boundary, and interfaces inside that are moved: what one encloses goes along rigidly.
-    within_walls : bool
-        Whether the graph keeps within the walls, so that no vertex follows the wall of another lumen or the far side of a flap.
-    smooth : int
-        Sweeps over the vertices of bad tets after each step.
-    also_moved : array of ids
-        Vertices inside that are moved, too, such as those of an interface.
-    rigid_layer, rigid_layer_cells : float, int
-        Vertices so near to the wall, in units of the mesh or in cells, keep their place relative to it.
-    rigid_layer_at : sequence of patches
-        The wall of the rigid layer, and where ``laplace`` is stiff; all of the boundary that does not slide, if empty.
-    slide : sequence of patches
-        Flat patches whose vertices slide in their plane, where two planes meet along their line.
-    slide_tolerance : float
-        How far vertices of such a patch may be off its plane, as a part of its radius; they stay as far off.
-    residual : float
-        When an iterated linear system (``elastic``, ``laplace``) is solved.
-    factor_gib : float
-        A factor of that system is kept where it takes no more gibibytes than this.
-    substeps : int
-        At most so many sub-steps in :meth:`advance`.
-    threads : int
-        0 for all cores. The outcome does not depend on it.
-    progress : callable
-        As of :func:`remesh`, while it is set up.
+    mesh : MeshLike
+        Mesh with volume cells of any kind: a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
+    method : {"delaunay", "bodies", "guided", "elastic", "laplace", "idw", "rbf"}, default "delaunay"
+        How interior vertices follow:
+
+        - ``"delaunay"``: by weights in the graph of the boundary; the cheapest.
+        - ``"bodies"``: rigid bodies carry along the mesh around them, for large rotations and translations.
+        - ``"guided"``: by a graph with interior nodes that rotate, for walls that bend.
+        - ``"elastic"``, ``"laplace"``: by linear elasticity or a Laplace equation, one system per step.
+        - ``"idw"``, ``"rbf"``: by inverse distance weighting or radial basis functions.
+
+        The last four are provided for comparison.
+    bodies : sequence of patches, optional
+        The rigid bodies of ``method="bodies"``: names, labels or facet arrays. By default each connected part
+        of the walls is a body, except the outermost. Walls are the boundary and interior interfaces that are
+        moved; the space that an interface encloses moves along rigidly.
+    within_walls : bool, default False
+        Whether the graph stays inside the walls, so that no vertex follows the wall of another lumen or the
+        far side of a flap.
+    smooth : int, default 0
+        Number of smoothing sweeps over the vertices of bad tets after each step.
+    also_moved : array_like of int, shape (k,), optional
+        Ids of interior vertices that are moved as well, such as those of an interface.
+    rigid_layer : float, optional
+        Vertices within this distance of the wall, in units of the mesh, keep their position relative to it.
+    rigid_layer_cells : int, optional
+        Thickness of that layer in cells, instead of `rigid_layer`.
+    rigid_layer_at : sequence of patches, optional
+        The wall of the rigid layer; ``method="laplace"`` is stiff near the same wall. Default: all of the
+        boundary that does not slide.
+    slide : sequence of patches, optional
+        Flat patches whose vertices slide in their plane, and along the line where two such planes meet.
+    slide_tolerance : float, default 0.05
+        How far vertices of a sliding patch may be off its plane, as a fraction of its radius; they keep that
+        distance.
+    residual : float, default 1e-6
+        Relative residual at which iterative solvers (``"elastic"``, ``"laplace"``) stop.
+    factor_gib : float, default 0.0
+        Memory limit in GiB for keeping a factorization of the linear system. If the factorization does not
+        fit, the system is solved iteratively.
+    substeps : int, default 50
+        Maximum number of sub-steps in :meth:`advance`.
+    threads : int, default 1
+        Number of threads; 0 uses all cores. The result does not depend on it.
+    progress : callable, optional
+        Called during the set-up as ``progress(stage, done, total)`` several times per second; ``total`` is 0
+        if unknown. An exception that it raises, or Ctrl-C, ends the call.
 
     Raises
     ------
     InputError
-        The mesh has no volume cells, or a boundary that spans no space.
+        If the mesh has no volume cells, or its boundary does not span a volume.
     OptionsError
-        A patch that is not there, a method that is none.
+        If a patch or the method does not exist.
     """
 
-    _instead = "pickle the mesh and the options, and set another one up"
+    _instead = "pickle the mesh and the options, and create a new Mover from them"
 
     def __init__(
         self,
@@ -143,7 +159,7 @@ class Mover(NotPickled):
         threads: int = 1,
         progress: Progress | None = None,
     ):
-        self._mover = _motet.Mover(as_mesh(mesh), _asked(locals()), threads, progress)
+        self._mover = _motet.Mover(as_mesh(mesh), _request(locals()), threads, progress)
         self._method = method
         self._boundary = self._mover.boundary
         self._reference = self._mover.reference
@@ -151,40 +167,54 @@ class Mover(NotPickled):
 
     @property
     def boundary(self) -> NDArray[np.uint32]:
-        """The vertices that the caller moves, rising: those of the boundary, and ``also_moved``; read-only."""
+        """Ids of the driven vertices, shape (k,), ascending: the boundary and ``also_moved``. Read-only."""
         return self._boundary
 
     @property
     def reference(self) -> NDArray[np.float64]:
-        """The points of the mesh in its first place, (n, 3); read-only."""
+        """The initial points of the mesh, shape (n, 3). Read-only."""
         return self._reference
 
     @property
     def setup(self) -> Report:
-        """What setting up found, and how long it took."""
+        """Statistics and timings of the set-up."""
         return report(self._mover.setup)
 
     def __repr__(self) -> str:
         return f"motet.Mover: {len(self._reference)} points after {len(self._boundary)} of the boundary, method {self._method}"
 
     def weights(self, vertex: int) -> tuple[tuple[int, ...], tuple[float, ...]] | None:
-        """The four vertices that a vertex follows, and their weights; None where it follows something else."""
+        """Return the four vertices that a vertex follows in the graph, and their weights.
+
+        Parameters
+        ----------
+        vertex : int
+            Id of the vertex.
+
+        Returns
+        -------
+        (tuple of int, tuple of float) or None
+            Vertex ids and weights; None if the vertex does not follow the graph.
+        """
         found = self._mover.weights(vertex)
         return found and (tuple(found[0]), tuple(found[1]))
 
     def step(self, displacement: ArrayLike, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
-        """Moves the mesh from its first place; nothing is checked.
+        """Move the mesh from its initial position, without checking the cells.
 
         Parameters
         ----------
-        displacement : array (k, 3)
-            Of each vertex of :attr:`boundary`, from its first place. Contiguous float64 is read where it lies, all else is copied.
-        out : float64 array (n, 3), contiguous
-            Where the points go; a new array if None. It shares no memory with ``displacement``.
+        displacement : array_like, shape (k, 3)
+            Displacement of each vertex of :attr:`boundary` from its initial position. A contiguous float64
+            array is read in place, others are copied.
+        out : float64 array, shape (n, 3), optional
+            Contiguous array that receives the points. It must not share memory with `displacement`. By
+            default a new array is created.
 
         Returns
         -------
-        The points, ``out`` itself where it was given.
+        float64 array, shape (n, 3)
+            The points; `out` itself if given.
         """
         given = self._displacement(displacement)
         out = _checked_out(out, self._reference.shape, given)
@@ -192,16 +222,28 @@ class Mover(NotPickled):
         return out
 
     def advance(self, displacement: ArrayLike, out: NDArray[np.float64] | None = None) -> tuple[NDArray[np.float64], Report]:
-        """Moves the mesh there in sub-steps if need be, and certifies what it reached: no cell that was upright at first is inverted.
+        """Move the mesh in sub-steps if necessary, and certify the quality of the result.
 
-        Parameters as for :meth:`step`.
+        No cell is inverted unless it was inverted initially.
+
+        Parameters
+        ----------
+        displacement : array_like, shape (k, 3)
+            Displacement of each vertex of :attr:`boundary` from its initial position. A contiguous float64
+            array is read in place, others are copied.
+        out : float64 array, shape (n, 3), optional
+            Contiguous array that receives the points. It must not share memory with `displacement`. By
+            default a new array is created.
 
         Returns
         -------
-        points : array (n, 3)
+        points : float64 array, shape (n, 3)
+            The points; `out` itself if given.
         certificate : Report
-            ``complete``, ``fraction`` of the way that was reached, ``inverted``, ``bad``, ``worst_eas`` with cell and place, ``quality`` of all tets, ``substeps``, ``seconds``; with quadratic cells
-            ``worst_curved_jacobian``, the least scaled Jacobian with cell and place.
+            ``complete``; ``fraction`` of the motion that was reached; ``inverted`` and ``bad``, numbers of
+            cells; ``worst_eas`` with cell and position; ``quality`` of all tets; ``substeps``; ``seconds``.
+            For quadratic cells also ``worst_curved_jacobian``, the smallest scaled Jacobian, with cell and
+            position.
         """
         given = self._displacement(displacement)
         out = _checked_out(out, self._reference.shape, given)
@@ -214,24 +256,27 @@ class Mover(NotPickled):
 
 @checked_class
 class PointMover(NotPickled):
-    """Moves any points after nodes by their Delaunay graph, without a mesh: for processes that have a part of it each.
+    """Moves arbitrary points by the Delaunay graph of a set of nodes, without a mesh.
 
-    All give the nodes of the whole boundary, in any order, and their own points. Cells are not known, so nothing is certified.
+    Intended for parallel processes that each hold a part of a mesh: every process passes the nodes of the
+    whole boundary, in any order, and its own points. Cells are unknown, so quality is not checked.
 
     Parameters
     ----------
-    nodes : array (m, 3)
-    points : array (n, 3)
-    threads : int
-        0 for all cores.
+    nodes : array_like, shape (m, 3)
+        Initial positions of the nodes.
+    points : array_like, shape (n, 3)
+        Initial positions of the points.
+    threads : int, default 1
+        Number of threads; 0 uses all cores. The result does not depend on it.
 
     Raises
     ------
     InputError
-        The nodes do not span space.
+        If the nodes do not span a volume.
     """
 
-    _instead = "pickle the nodes and the points, and set another one up"
+    _instead = "pickle the nodes and the points, and create a new PointMover from them"
 
     def __init__(self, nodes: ArrayLike, points: ArrayLike, *, threads: int = 1):
         self._n_nodes = len(np.asarray(nodes))
@@ -243,11 +288,26 @@ class PointMover(NotPickled):
 
     @property
     def n_outside(self) -> int:
-        """How many points lie outside of the graph: they follow the nearest place of it."""
+        """Number of points outside the graph; they follow the nearest point of it."""
         return self._native.n_outside
 
     def step(self, displacement: ArrayLike, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
-        """Moves the points from their first place; parameters as for :meth:`Mover.step`."""
+        """Move the points from their initial positions.
+
+        Parameters
+        ----------
+        displacement : array_like, shape (m, 3)
+            Displacement of each node from its initial position. A contiguous float64 array is read in place,
+            others are copied.
+        out : float64 array, shape (n, 3), optional
+            Contiguous array that receives the points. It must not share memory with `displacement`. By
+            default a new array is created.
+
+        Returns
+        -------
+        float64 array, shape (n, 3)
+            The points; `out` itself if given.
+        """
         given = _vectors(displacement, self._n_nodes, "displacement")
         out = _checked_out(out, (self._n_points, 3), given)
         self._native.step(given, out)
@@ -259,27 +319,35 @@ def _checked_out(out: NDArray[np.float64] | None, shape: tuple[int, ...], given:
         return np.empty(shape)
     fits = isinstance(out, np.ndarray) and out.dtype == np.float64 and out.shape == shape
     if not fits or not out.flags.c_contiguous or not out.flags.writeable:
-        raise InputError(f"out is to be a contiguous, writeable array of float64 of shape {shape}")
-    # Both are contiguous: where their bounds overlap, they do.
+        raise InputError(f"out must be a contiguous, writeable float64 array of shape {shape}")
+    # Both arrays are contiguous, so they overlap exactly if their bounds do.
     if np.may_share_memory(out, given):
-        raise InputError("out shares memory with displacement: give it memory of its own, or none")
+        raise InputError("out shares memory with displacement: pass a separate array, or None")
     return out
 
 
 @dataclass(repr=False)
 class Moved:
-    """What a motion came to."""
+    """The result of a motion.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        The mesh at the position that was reached, with the point array ``displacement``.
+    certificate : Report
+        How much of the motion was completed, and the quality of the cells; see :meth:`Mover.advance`.
+    choice : Report or None
+        For ``method="auto"``: the chosen ``method``, the bound ``least``, and the result of each method in
+        ``tried``.
+    """
 
     mesh: Mesh
-    """The mesh where it was reached, with the point array ``displacement``."""
     certificate: Report
-    """How far it got, and how good the cells are there."""
     choice: Report | None = None
-    """With ``method="auto"``: the method, the bound, and what each method came to."""
 
     @property
     def complete(self) -> bool:
-        """Whether the mesh is where it was asked to be."""
+        """Whether the mesh reached the requested position."""
         return self.certificate.complete
 
     def __repr__(self) -> str:
@@ -287,7 +355,7 @@ class Moved:
 
     @property
     def not_reached(self) -> str | None:
-        """Why the mesh is not where it was requested to be; None where it is."""
+        """Why the mesh did not reach the requested position; None if it did."""
         return self.certificate.not_reached
 
 
@@ -319,35 +387,43 @@ def move(
     threads: int = 0,
     progress: Progress | None = None,
 ) -> Moved:
-    """Moves a mesh after its boundary, once. For motion step after step keep a :class:`Mover`.
+    """Move a mesh once so that it follows its boundary. For repeated motion use a :class:`Mover`.
 
     Parameters
     ----------
-    mesh : mesh, path, meshio.Mesh or PyVista data set
-    displacement : str or array
-        A point array of the mesh by its name, or an array (n, 3) of all points. Inside, values move the interfaces of
-        regions and of labelled facets on which they are not zero; others are not looked at. Boundary vertices of no displacement stay.
-    translate : mapping from patch to vector
-        A patch may lie inside, such as the surface of a device. Patches that share vertices must move them alike.
-    rotate : mapping from patch to (axis, degrees) or (axis, degrees, centre)
-        The centre is the middle of the patch where none is given. A patch that turns and shifts turns first.
-    steps : int
-        In so many equal parts; a turn goes along the arc.
-    method : str
-        As for :class:`Mover`, or ``auto``: the cheapest that keeps the worst cell at ``least``.
-    least : float
-        The bound of ``auto``: the EAS that no tet may be below. Half of the worst one that came, at most 0.1, if None.
-    bodies, within_walls, smooth, also_moved, rigid_layer, rigid_layer_cells, rigid_layer_at, slide, slide_tolerance, residual, factor_gib, substeps
-        As for :class:`Mover`.
-    threads : int
-        0 for all cores.
-    progress : callable
-        As of :func:`remesh`.
+    mesh : MeshLike
+        Mesh with volume cells of any kind: a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
+    displacement : str or array_like of shape (n, 3), optional
+        Displacement of every point, or the name of a point array with it. In the interior only non-zero
+        values on interfaces between regions and on labelled facets are used. Boundary vertices with zero
+        displacement stay.
+    translate : mapping of str or int to array_like of shape (3,), optional
+        Translation vector by patch. A patch may be interior, such as the surface of a device. Patches that
+        share vertices must move these equally.
+    rotate : mapping of str or int to (axis, degrees) or (axis, degrees, centre), optional
+        Rotation by patch. Default centre: the middle of the patch. A patch that is also translated is rotated
+        first.
+    steps : int, default 1
+        Number of equal parts in which the motion is done; rotations follow the arc.
+    method : str, default "delaunay"
+        A method of :class:`Mover`, or ``"auto"`` for the cheapest that keeps the worst cell at `least`.
+    least : float, optional
+        For ``method="auto"``: lower bound on the EAS of tets. Default: half of the worst EAS of the mesh, at
+        most 0.1.
+    bodies, within_walls, smooth, also_moved, rigid_layer, rigid_layer_cells, rigid_layer_at
+        Options of :class:`Mover`.
+    slide, slide_tolerance, residual, factor_gib, substeps
+        Options of :class:`Mover`.
+    threads : int, default 0
+        Number of threads; 0 uses all cores. The result does not depend on it.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+        exception that it raises, or Ctrl-C, ends the call.
 
     Returns
     -------
     Moved
-        With the mesh and its certificate. A motion that does not get all the way is no error: see ``complete``.
+        The mesh and its certificate. An incomplete motion is not an error: see ``complete``.
     """
     given = as_mesh(mesh)
     if steps < 1:
@@ -358,13 +434,13 @@ def move(
         if len(inside):
             also = [] if also_moved is None else [ids(also_moved, "also_moved")]
             also_moved = np.unique(np.concatenate([inside, *also]))
-    told = {**(translate or {}), **(rotate or {})}
-    if told:
+    prescribed = {**(translate or {}), **(rotate or {})}
+    if prescribed:
         also = [] if also_moved is None else [ids(also_moved, "also_moved")]
-        also_moved = np.unique(np.concatenate([_motet.patch_vertices(given, _facets(list(told))), *also]))
+        also_moved = np.unique(np.concatenate([_motet.patch_vertices(given, _facets(list(prescribed))), *also]))
     auto = method == "auto"
     if least is not None and not auto:
-        raise OptionsError("least is a criterion for choosing a method, but the method is given: method='auto'")
+        raise OptionsError("least is an option of method='auto', but another method is given")
 
     def mover(name: str) -> Mover:
         return Mover(
@@ -377,7 +453,7 @@ def move(
     frames = _frames(given, first.boundary, displacement, translate, rotate, steps)
     choice = None
     if auto:
-        name, bound, tried = _motet.choose(given, _asked({**locals(), "method": "bodies"}), least, frames, threads, progress)
+        name, bound, tried = _motet.choose(given, _request({**locals(), "method": "bodies"}), least, frames, threads, progress)
         choice = report({"method": name, "least": bound, "tried": tried})
         if name != "delaunay":
             first = mover(name)
@@ -407,7 +483,7 @@ def _frames(given: Mesh, boundary, displacement, translate, rotate, steps) -> li
     fractions = [k / steps for k in range(1, steps + 1)]
     if displacement is not None:
         if translate or rotate:
-            raise OptionsError("displacement says where all goes: leave translate and rotate away")
+            raise OptionsError("displacement defines the whole motion: leave out translate and rotate")
         whole = _whole(given, displacement)[boundary]
         return [fraction * whole for fraction in fractions]
     if not translate and not rotate:
@@ -422,6 +498,21 @@ def _frames(given: Mesh, boundary, displacement, translate, rotate, steps) -> li
 
 @checked
 def mesh_velocity(before: ArrayLike, points: ArrayLike, dt: float) -> NDArray[np.float64]:
-    """The velocity of each point, (n, 3), by backward difference over a time."""
+    """Return the velocity of each point by backward difference.
+
+    Parameters
+    ----------
+    before : array_like, shape (n, 3)
+        Points at the beginning of the step.
+    points : array_like, shape (n, 3)
+        Points at the end of the step.
+    dt : float
+        Duration of the step, above 0.
+
+    Returns
+    -------
+    float64 array, shape (n, 3)
+        ``(points - before) / dt``.
+    """
     before = np.ascontiguousarray(before, np.float64)
     return _motet.mesh_velocity(before, _vectors(points, len(before), "points"), dt)

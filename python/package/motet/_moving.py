@@ -1,4 +1,4 @@
-"""The loop: a mesh that moves with its walls, step after step, and stays good."""
+"""The time loop: a mesh that follows its walls step by step and keeps its quality."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -14,13 +14,13 @@ from ._changing import Carry, History
 from ._mesh import Mesh, MeshLike, as_mesh
 from ._refinement import _criteria, several
 from ._report import Progress, Report, report
-from ._words import NotPickled, checked_class
+from ._keywords import NotPickled, checked_class
 from .errors import OptionsError
 
 
 @dataclass
-class _Asked:
-    """What the native handle is told."""
+class _Request:
+    """Options of a moving mesh for the native module."""
 
     method: str
     bodies: Sequence[str | int]
@@ -53,8 +53,8 @@ class _Asked:
     remembered: int
 
     @classmethod
-    def of(cls, given: Mapping[str, Any]) -> _Asked:
-        """By the words of a call that has them all."""
+    def of(cls, given: Mapping[str, Any]) -> _Request:
+        """Return the options from the keywords of a call, which must include all of them."""
         return cls(**{field.name: given[field.name] for field in fields(cls)})
 
     def __post_init__(self) -> None:
@@ -67,49 +67,93 @@ class _Asked:
 
 @checked_class
 class MovingMesh(NotPickled):
-    """A mesh that moves with its walls and stays good: moved, certified, repaired, refined, watched, its arrays carried along.
+    """A mesh that follows its walls and keeps its quality.
 
-    Displacements are always given for the walls as they came, counted from there, whatever the mesh becomes; what becomes bad is repaired while it still has
-    a volume, and maps lead from any step to the present one.
+    In each step the mesh is moved, checked and repaired, and its arrays are transferred; it can also be
+    refined, and gaps between patches can be watched. Displacements always refer to the walls of the initial
+    mesh, no matter how the mesh has changed since. Bad tets are repaired while they still have positive
+    volume. :meth:`history_since` transfers arrays from any earlier step to the current mesh.
 
     Parameters
     ----------
-    mesh : mesh, path, meshio.Mesh or PyVista data set
-    method, within_walls, smooth, rigid_layer, rigid_layer_cells, slide_tolerance : as of :class:`Mover`
-    bodies, inside, slide, rigid_layer_at : sequences of names or labels of patches
-        ``inside``: patches inside the volume that are driven, such as a flap. The others as of :class:`Mover`.
-    strain : "even", "band" or None
-        Where the method ``bodies`` puts the strain: over all that lies between a body and the walls that stay (None: even), or in a band beside the body, for bodies that keep moving.
-    repair : bool
-        Whether bad tets are repaired; if not, a step ends where a cell would turn over.
-    min_eas, surface, distance : as of :func:`remesh`
-    hold_names : sequence of names or labels of regions and patches
-        What repair leaves as it is, as ``hold`` of :func:`remesh`. (``hold`` here is a distance between walls, see ``watch``.)
-    margin, floor : float
-        Repaired are tets to ``min_eas + margin``; no step takes one that can be repaired below ``floor``.
-    improve_below : float
-        Where a repair changes the mesh, tets below this EAS are made better, too: those near it, and those that are not as they were at first; and as many vertices inside are kept as
-        there were at first. 0: bad tets are repaired, and nothing else is done.
-    returns : bool
-        Whether the walls come back to where they were at first, again and again. Then what is improved is to be good there, too: otherwise each cycle undoes what the last one did.
-        A mesh that still changes in each cycle, and loses, is replaced by the first one when the walls are back: a change whose ``why`` is "return".
-        Harmful where walls go on, such as a body that turns.
-    valid_at_start : bool
-        Whether a repair that brings tets without volume where their vertices were as the step began is made again with the tets that they replace held. See
-        ``inverted_at_start`` of a step.
-    contents : sequence of names
-        Cell arrays that are densities of something that stays in its cell: their integrals are kept while cells move.
-    carry : mapping from names to "mean", "linear", "inherit" or "drop"
-        What becomes of arrays where the mesh changes.
-    watch : sequence of patches
-        Their gaps are measured at each step; ``warn``, ``within`` as of :class:`Contact`, ``horizon``: how far ahead is looked, in units of time; ``hold``: walls stop
-        at this distance, wherever they are requested to go: each patch gives way to those after it.
-    remembered : int
-        So many changes are remembered for :meth:`history_since`.
-    threads : int
-        0 for all cores. The outcome does not depend on it.
-    progress : callable
-        As of :func:`remesh`, while it is set up.
+    mesh : MeshLike
+        Initial mesh: a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
+    method : str, default "delaunay"
+        How interior vertices follow the walls; see :class:`Mover`.
+    bodies : sequence of str or int, optional
+        Names or labels of the patches that are rigid bodies; see :class:`Mover`.
+    strain : {"even", "band"}, optional
+        Where the method ``bodies`` puts the strain: over all that lies between a body and the walls that stay,
+        or in a band beside the body, for bodies that keep moving. Default: even.
+    within_walls : bool, default False
+        Whether vertices follow only walls that they can reach; see :class:`Mover`.
+    smooth : int, default 0
+        Number of smoothing sweeps over the vertices of bad tets after each step.
+    inside : sequence of str or int, optional
+        Names or labels of driven patches in the interior, such as a flap.
+    slide : sequence of str or int, optional
+        Names or labels of flat patches whose vertices slide in their plane; see :class:`Mover`.
+    slide_tolerance : float, default 0.05
+        How far vertices of a sliding patch may be off its plane, as a fraction of its radius.
+    rigid_layer : float, optional
+        Vertices within this distance of the wall, in units of the mesh, keep their position relative to it.
+    rigid_layer_cells : int, optional
+        Thickness of that layer in cells, instead of `rigid_layer`.
+    rigid_layer_at : sequence of str or int, optional
+        Names or labels of the patches of that wall. Default: all of the boundary that does not slide.
+    repair : bool, default True
+        Whether bad tets are repaired. If False, a step stops before a cell would be inverted.
+    min_eas : float, default 0.2
+        Tets with an equi-angle quality (EAS) below this are bad.
+    surface : {"keep", "adapt", "loose"}, default "keep"
+        What repair may do to walls; see :func:`remesh`.
+    distance : float, optional
+        How far walls may deviate, in units of the mesh; see :func:`remesh`.
+    hold_names : sequence of str or int, optional
+        Names or labels of regions and patches that repair leaves unchanged: the parameter ``hold`` of
+        :func:`remesh`. (Here `hold` is a distance.)
+    margin : float, default 0.05
+        Repaired tets are improved to an EAS of ``min_eas + margin``.
+    floor : float, default 0.05
+        Tets are repaired during a step before their EAS falls below this, if they can be.
+    improve_below : float, default 0.75
+        Where a repair changes the mesh, tets below this EAS are improved as well: those near the change, and
+        those that have deteriorated since the start. The number of interior vertices is kept. With 0 only bad
+        tets are repaired.
+    returns : bool, default False
+        Whether the walls return to their initial position periodically. Tets are then improved for that
+        position as well, so that a cycle does not undo the improvements of the previous one. A mesh that
+        still changes in every cycle and loses quality is replaced by the initial mesh when the walls return;
+        the ``why`` of this change is ``"return"``. Harmful if walls do not return, such as for a rotating
+        body.
+    valid_at_start : bool, default False
+        Whether a repair is repeated if new tets have no positive volume at the positions that their vertices
+        had at the beginning of the step; the tets that they replace are then held. See
+        ``inverted_at_start`` in the report of :meth:`advance`.
+    contents : sequence of str, optional
+        Names of cell arrays that are densities of a quantity that stays in its cell: their integrals are
+        preserved while cells move.
+    carry : mapping of str to {"mean", "linear", "inherit", "drop"}, optional
+        How to transfer each named array where the mesh changes; see :meth:`History.transfer`. ``"drop"``
+        removes the array.
+    watch : sequence of str or int, optional
+        Names or labels of patches whose gaps are measured in each step.
+    warn : float, optional
+        Gaps of watched patches below this distance give a warning.
+    within : float, default inf
+        Search range for gaps; larger gaps are infinite.
+    horizon : float, optional
+        Time span for which contact is predicted. Default: the duration of the last step.
+    hold : float, optional
+        Watched patches are stopped at this distance from each other; each gives way to those that follow it
+        in `watch`. By default a step ends where walls meet.
+    remembered : int, default 64
+        Number of changes remembered for :meth:`history_since`.
+    threads : int, default 0
+        Number of threads; 0 uses all cores. The result does not depend on it.
+    progress : callable, optional
+        Called during the set-up as ``progress(stage, done, total)`` several times per second; ``total`` is 0
+        if unknown. An exception that it raises, or Ctrl-C, ends the call.
     """
 
     _instead = "use save and load, or pickle its mesh"
@@ -150,7 +194,7 @@ class MovingMesh(NotPickled):
         threads: int = 0,
         progress: Progress | None = None,
     ):
-        self._native = _motet.MovingMesh(as_mesh(mesh), _Asked.of(locals()), threads, progress)
+        self._native = _motet.MovingMesh(as_mesh(mesh), _Request.of(locals()), threads, progress)
         self._mesh: Mesh | None = None
 
     @classmethod
@@ -189,19 +233,39 @@ class MovingMesh(NotPickled):
         remembered: int = 64,
         threads: int = 0,
     ) -> MovingMesh:
-        """Goes on from what :meth:`save` wrote, with the same options, to the same bytes. What changed before is not in it: see :meth:`history_since`.
+        """Continue from a state written by :meth:`save`, with identical results.
+
+        Earlier changes are not part of the state; see :meth:`history_since`.
+
+        Parameters
+        ----------
+        path : path-like
+            The file written by :meth:`save`.
+        method, bodies, ..., threads
+            Options of :class:`MovingMesh`. They must be those of the saved mesh, except `remembered` and
+            `threads`.
+
+        Returns
+        -------
+        MovingMesh
 
         Raises
         ------
         OptionsError
-            When options differ from those that it was saved with; ``remembered`` may. The message names them.
+            If options differ from those of the saved mesh; the message names them.
         """
         moving = cls.__new__(cls)
-        moving._native, moving._mesh = _motet.MovingMesh.load(path, _Asked.of(locals()), threads), None
+        moving._native, moving._mesh = _motet.MovingMesh.load(path, _Request.of(locals()), threads), None
         return moving
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes all that the next steps depend on, as a .vtu that ParaView opens."""
+        """Write everything that later steps depend on.
+
+        Parameters
+        ----------
+        path : path-like
+            A ``.vtu`` file, which ParaView can open.
+        """
         self._native.save(path)
 
     def __repr__(self) -> str:
@@ -209,60 +273,76 @@ class MovingMesh(NotPickled):
 
     @property
     def driven_places(self) -> NDArray[np.float64]:
-        """(k, 3): where the driven vertices were at first. Displacements have a row for each of these."""
+        """Initial positions of the driven vertices, shape (k, 3); displacements have one row for each."""
         return self._native.driven_places
 
     @property
     def mesh(self) -> Mesh:
-        """The mesh as it is, with its arrays."""
+        """The current mesh, with its arrays."""
         if self._mesh is None:
             self._mesh = Mesh._of(self._native.mesh())
         return self._mesh
 
     @property
     def points(self) -> NDArray[np.float64]:
-        """(n, 3): where its vertices are."""
+        """Current positions of the vertices, shape (n, 3)."""
         return self._native.points()
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """(n, 3): the velocity of each vertex in the last step."""
+        """Velocity of each vertex in the last step, shape (n, 3)."""
         return self._native.velocity()
 
     @property
     def displacement(self) -> NDArray[np.float64]:
-        """(n, 3): how far each vertex is from where it was at first."""
+        """Displacement of each vertex from its initial position, shape (n, 3)."""
         return self._native.displacement()
 
     @property
     def time(self) -> float:
-        """The time that was reached."""
+        """The current time."""
         return self._native.time
 
     @property
     def step(self) -> int:
-        """How many steps were made."""
+        """The number of steps done."""
         return self._native.step
 
     def set_array(self, name: str, array: ArrayLike, *, on: str) -> None:
-        """Puts an array on the mesh, ``on`` its "points" or "cells", in place of one of that name; it is carried where the mesh changes."""
+        """Set an array of the mesh, replacing one of the same name. It is transferred where the mesh changes.
+
+        Parameters
+        ----------
+        name : str
+            Name of the array.
+        array : array_like, shape (n, ...)
+            Values with one row per point or cell.
+        on : {"points", "cells"}
+            What the rows of `array` belong to.
+        """
         self._native.set_array(name, np.asarray(array), on)
         self._mesh = None
 
     def advance(self, time: float, displacement: ArrayLike, *, progress: Progress | None = None) -> Report:
-        """Takes the walls to where they are at ``time``.
+        """Move the walls to their positions at `time`; the mesh follows and is repaired where necessary.
+
+        An incomplete motion is not an error: see ``complete`` in the report.
 
         Parameters
         ----------
         time : float
-            After :attr:`time`.
-        displacement : array (k, 3)
-            Of each of :attr:`driven_places`, counted from there.
+            The new time, later than :attr:`time`.
+        displacement : array_like, shape (k, 3)
+            Displacement of each of :attr:`driven_places` from there.
+        progress : callable, optional
+            Called as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+            exception that it raises, or Ctrl-C, ends the call; the mesh is then as before.
 
         Returns
         -------
         Report
-            ``complete``, ``fraction``, ``bad``, ``inverted``, ``worst``, ``changes`` (each with its time), ``gaps``, ``seconds``.
+            ``complete``; ``fraction`` of the motion that was completed; ``bad`` and ``inverted``, numbers of
+            tets; ``worst`` tet; ``changes`` of the mesh, each with its time; ``gaps``; ``seconds``.
         """
         self._mesh = None
         return report(self._native.advance(time, np.ascontiguousarray(displacement, np.float64), progress))
@@ -289,7 +369,51 @@ class MovingMesh(NotPickled):
         generations: int | None = None,
         coarsen: bool = False,
     ) -> list[Report]:
-        """Divides tets and takes divisions back, by the criteria of :func:`refine`; what changed, in order."""
+        """Refine and coarsen tets by criteria. A tet is marked for division if any criterion marks it.
+
+        Parameters
+        ----------
+        everything : bool, default False
+            Mark all tets.
+        near : sequence of (MeshLike, float), optional
+            Mark tets within a distance of a surface.
+        near_size : sequence of (MeshLike, float) or (MeshLike, float, float), optional
+            Surface, edge length ``h`` and growth (default 0.5): divide until no edge is longer than ``h`` at
+            the surface, and ``h + growth * distance`` away from it.
+        box : sequence of (low, high), optional
+            Mark tets whose centre lies in an axis-aligned box, given by two corners.
+        ball : sequence of (centre, radius), optional
+            Mark tets that are at least partly inside a ball.
+        region : sequence of str or int, optional
+            Mark tets of regions, given by name or label.
+        patch : sequence of str, int or (str or int, float), optional
+            Mark tets at patches, given by name or label, or within a distance of them.
+        size : float or str, optional
+            Divide until no edge is longer than this, or than the values of the named array.
+        where : sequence of str, optional
+            Mark tets where a condition on an array holds, such as ``"wss>4"``.
+        gradient, vorticity, q : sequence of str, optional
+            Mark tets where the gradient of an array, or the vorticity or the Q criterion of a velocity array,
+            exceeds a threshold: ``"ARRAY>VALUE"``.
+        jump, recovery : mapping of str to float or int, optional
+            Mark tets by an error estimate for a point array: gradient jumps or gradient recovery. A float is
+            the share of the total error to mark, an int the target number of tets.
+        hessian : mapping of str or tuple of str to float, str or int, optional
+            Divide by the second derivatives of one or more point arrays. The value is the interpolation error
+            to reach (float), the same as a percentage of the range (``"2%"``), or the target number of tets
+            (int).
+        smallest : float, optional
+            Smallest size that `hessian` requests, in units of the mesh.
+        generations : int, optional
+            Maximum number of divisions in this call. Default: 1, or as many as sizes require.
+        coarsen : bool, default False
+            Undo divisions where no criterion marks a tet.
+
+        Returns
+        -------
+        list of Report
+            The changes of the mesh, in order.
+        """
         criteria = _criteria(
             everything=everything, near=near, near_size=near_size, box=box, ball=ball, region=region, patch=patch, size=size, where=where,
             gradient=gradient, vorticity=vorticity, q=q, jump=jump, recovery=recovery, hessian=hessian, smallest=smallest,
@@ -298,32 +422,69 @@ class MovingMesh(NotPickled):
         return [report(change) for change in self._native.refine(criteria, generations, coarsen)]
 
     def coarsen(self, *, smallest: float = 0.0) -> Report | None:
-        """Takes back by lengths what ``refine`` cannot, since repairs have changed what was divided; None where nothing changed.
+        """Coarsen by edge length where :meth:`refine` cannot, because repairs have changed divided tets.
 
-        Edges are collapsed that are shorter than about a third of what they were there at first, and of the gap beside them where patches are watched; no
-        gap asks for less than ``smallest``. Vertices that walls had at first stay.
+        Edges are collapsed if they are shorter than about a third of the initial edge length at that place
+        and, where patches are watched, of the gap beside them. The initial vertices of walls are kept.
+
+        Parameters
+        ----------
+        smallest : float, default 0.0
+            Smallest edge length that a gap can require, in units of the mesh.
+
+        Returns
+        -------
+        Report or None
+            The change; None if nothing changed.
         """
         self._mesh = None
         change = self._native.coarsen(smallest)
         return None if change is None else report(change)
 
     def repair(self) -> Report | None:
-        """Repairs what is bad where the mesh is: of one that came, or was refined. A step does so by itself."""
+        """Repair bad tets at the current position.
+
+        Each step repairs automatically; an initial or refined mesh may need a repair before the first step.
+
+        Returns
+        -------
+        Report or None
+            The change; None if nothing changed.
+        """
         self._mesh = None
         change = self._native.repair()
         return None if change is None else report(change)
 
     def remembers(self, step: int) -> bool:
-        """Whether all changes since a step are known."""
+        """Return whether all changes since a step are known, so that :meth:`history_since` succeeds.
+
+        Parameters
+        ----------
+        step : int
+            Number of the step; 0 is the initial mesh.
+        """
         return self._native.remembers(step)
 
     def history_since(self, step: int) -> History | None:
-        """From the mesh after ``step`` (0: the first) to the present one: carries arrays of any time level in between. None where nothing changed.
+        """Return the history from the mesh after a step to the current mesh.
+
+        It transfers arrays of any time level in between.
+
+        Parameters
+        ----------
+        step : int
+            Number of the step; 0 is the initial mesh.
+
+        Returns
+        -------
+        History or None
+            None if the connectivity has not changed.
 
         Raises
         ------
         OptionsError
-            When changes since ``step`` are not known: those before a state that was loaded, and those before the last ``remembered``. See :meth:`remembers`.
+            If changes since `step` are not known, because they precede a loaded state or the last
+            `remembered` changes. See :meth:`remembers`.
         """
         found = self._native.history_since(step)
         return None if found is None else History(found)

@@ -1,4 +1,4 @@
-"""Adaptive refinement: tets divided where it matters, taken back where it does not."""
+"""Adaptive refinement and coarsening of tets."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -13,11 +13,13 @@ from ._changing import Carry, Changed, History, _changed
 from .errors import InputError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, ids, point
 from ._report import Progress, Report, report
-from ._words import checked, checked_class
+from ._keywords import checked, checked_class
 
 
 @dataclass
-class _Asked:
+class _Request:
+    """Options of :func:`refine` for the native module."""
+
     criteria: list
     coarsen: bool
     coarsen_where: list
@@ -61,65 +63,96 @@ def refine(
     threads: int = 0,
     progress: Progress | None = None,
 ) -> Changed:
-    """Divides whole tets, many generations deep, without loss of shape; and takes divisions back.
+    """Refine tets by regular division without loss of quality, and coarsen them again.
 
-    Several criteria mark what any of them does. The mesh remembers in arrays ``refine_*`` what was divided, so that a later call goes on.
+    A tet is marked for division if any criterion marks it. The divisions are stored in arrays ``refine_*`` of
+    the mesh, so that a later call can continue.
 
     Parameters
     ----------
-    mesh : mesh, path, meshio.Mesh or PyVista data set
-    everything : bool
-    near : sequence of (surface, distance)
-        Tets so near to a surface.
-    near_size : sequence of (surface, h) or (surface, h, growth)
-        Until no edge is longer than ``h`` at a surface, and ``growth`` (0.5) more per unit of distance from it.
-    box, ball : sequences of (low, high) and of (centre, radius)
-    region, patch : sequences of names or labels; a patch also with a distance
-    size : float or name of an array
-        Until no edge is longer.
-    where : sequence of conditions, such as ``"wss>4"``
-    gradient, vorticity, q : sequences of ``"ARRAY>VALUE"``
-    jump, recovery : mapping from point array to a share of the error (a float), or to a number of tets (an int)
-    hessian : mapping from one or more point arrays to an error (a float), a part of their range (``"2%"``), or a number of tets (an int)
-    generations : int
-        At most so often; once if None, for sizes as often as it takes. Where ``coarsen`` stands alone: so many divisions are taken back.
-    limit_generation, smallest, at_most : int, float, int
-        No tet is divided more often since the first mesh, none whose parts were shorter, no more than bring the mesh to so many tets.
-    coarsen, coarsen_where : bool, sequence of conditions
-        Takes divisions back where no criterion marks, or where a condition holds.
-    surface : mesh
-        The true surface: new points of the boundary are put on it.
-    forget : bool
-        The mesh as it is counts as the first one.
-    progress : callable
-        As of :func:`remesh`; it is heard between generations.
+    mesh : MeshLike
+        Mesh of tets: a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
+    everything : bool, default False
+        Mark all tets.
+    near : sequence of (MeshLike, float), optional
+        Mark tets within a distance of a surface.
+    near_size : sequence of (MeshLike, float) or (MeshLike, float, float), optional
+        Surface, edge length ``h`` and growth (default 0.5): divide until no edge is longer than ``h`` at the
+        surface, and ``h + growth * distance`` away from it.
+    box : sequence of (low, high), optional
+        Mark tets whose centre lies in an axis-aligned box, given by two corners.
+    ball : sequence of (centre, radius), optional
+        Mark tets that are at least partly inside a ball.
+    region : sequence of str or int, optional
+        Mark tets of regions, given by name or label.
+    patch : sequence of str, int or (str or int, float), optional
+        Mark tets at patches, given by name or label, or within a distance of them.
+    size : float or str, optional
+        Divide until no edge is longer than this, or than the values of the named array.
+    where : sequence of str, optional
+        Mark tets where a condition on an array holds, such as ``"wss>4"``.
+    gradient, vorticity, q : sequence of str, optional
+        Mark tets where the gradient of an array, or the vorticity or the Q criterion of a velocity array,
+        exceeds a threshold: ``"ARRAY>VALUE"``.
+    jump, recovery : mapping of str to float or int, optional
+        Mark tets by an error estimate for a point array: gradient jumps (Kelly et al. 1983) or gradient
+        recovery (Zienkiewicz and Zhu 1987). A float is the share of the total error to mark, an int the
+        target number of tets.
+    hessian : mapping of str or tuple of str to float, str or int, optional
+        Divide by the second derivatives of one or more point arrays. The value is the interpolation error to
+        reach (float), the same as a percentage of the range (``"2%"``), or the target number of tets (int).
+    generations : int, optional
+        Maximum number of divisions in this call. Default: 1, or as many as sizes require. If only `coarsen`
+        is given, the number of divisions to undo.
+    limit_generation : int, optional
+        Maximum number of divisions of a tet since the initial mesh.
+    smallest : float, optional
+        Do not divide tets whose parts would have a longest edge below this, in units of the mesh.
+    at_most : int, optional
+        Maximum number of tets; tets that are divided only for conformity are added to it.
+    coarsen : bool, default False
+        Undo divisions where no criterion marks a tet.
+    coarsen_where : sequence of str, optional
+        Undo divisions where a condition holds, such as ``"wss<1"``.
+    surface : MeshLike, optional
+        The exact surface, onto which new boundary points are projected.
+    carry : mapping of str to {"mean", "linear", "inherit", "drop"}, optional
+        How to transfer each named array where the mesh changes; see :meth:`History.transfer`. ``"drop"``
+        removes the array.
+    forget : bool, default False
+        Discard previous divisions: the given mesh becomes the initial one.
+    threads : int, default 0
+        Number of threads; 0 uses all cores. The result does not depend on it.
+    progress : callable, optional
+        Called as ``progress(stage, done, total)`` between generations; ``total`` is 0 if unknown. An
+        exception that it raises, or Ctrl-C, ends the call.
 
     Returns
     -------
     Changed
-        ``complete`` says whether all edges are as short as was asked for.
+        The new mesh with its history and report; ``complete`` is False if edges are longer than requested.
     """
     criteria = _criteria(
         everything=everything, near=near, near_size=near_size, box=box, ball=ball, region=region, patch=patch, size=size, where=where,
         gradient=gradient, vorticity=vorticity, q=q, jump=jump, recovery=recovery, hessian=hessian, smallest=smallest,
     )  # fmt: skip
     if not criteria and not coarsen and not coarsen_where:
-        raise OptionsError("nothing says what to divide: give a criterion, such as near_size=[(stent, 0.05)], or coarsen=True")
-    asked = _Asked(
+        raise OptionsError("no criterion is given: pass one, such as near_size=[(stent, 0.05)], or coarsen=True")
+    request = _Request(
         criteria, coarsen, several(coarsen_where), generations, limit_generation, smallest, at_most, None if surface is None else as_mesh(surface),
         dict(carry or {}), forget,
     )  # fmt: skip
-    return _changed(_motet.refined(as_mesh(mesh), asked, threads, progress))
+    return _changed(_motet.refined(as_mesh(mesh), request, threads, progress))
 
 
-def _criteria(smallest: float | None, **words: Any) -> list:
-    """What the criteria of :func:`refine` mark, by their names; those that are not given mark nothing."""
+def _criteria(smallest: float | None, **criteria: Any) -> list:
+    """Return native criteria for the keywords of :func:`refine` that are given."""
     make = _motet.Criterion
-    given = ((maker, words[name]) for name, maker in _MAKERS.items() if words.get(name) is not None)
-    return [criterion for maker, words in given for criterion in maker(make, words, smallest)]
+    given = ((maker, criteria[name]) for name, maker in _MAKERS.items() if criteria.get(name) is not None)
+    return [criterion for maker, value in given for criterion in maker(make, value, smallest)]
 
 
-# In the order in which they are asked.
+# In the order in which the criteria are evaluated.
 _MAKERS: dict[str, Callable[[Any, Any, float | None], list]] = {
     "everything": lambda make, given, _: [make.all()] if given else [],
     "near": lambda make, given, _: [make.near(as_mesh(one), distance) for one, distance in given],
@@ -139,17 +172,17 @@ _MAKERS: dict[str, Callable[[Any, Any, float | None], list]] = {
 }
 
 
-def several(words: Any) -> list:
-    if isinstance(words, (str, int)):
-        raise OptionsError(f"{words!r} is one, a list is expected: [{words!r}]")
-    return list(words)
+def several(values: Any) -> list:
+    if isinstance(values, (str, int)):
+        raise OptionsError(f"{values!r} is a single value, expected a list: [{values!r}]")
+    return list(values)
 
 
 def _hessian(arrays: str | tuple[str, ...], aim: float | str, smallest: float | None) -> Any:
     names = [arrays] if isinstance(arrays, str) else list(arrays)
     if isinstance(aim, str):
         if not aim.endswith("%"):
-            raise OptionsError(f"hessian: {aim!r} means nothing: an error, a part such as '2%', or a number of tets is expected")
+            raise OptionsError(f"hessian: {aim!r} is not valid: expected an error, a percentage such as '2%', or a number of tets")
         return _motet.Criterion.hessian(names, range_part=float(aim[:-1]) / 100, smallest=smallest)
     if isinstance(aim, (int, np.integer)) and not isinstance(aim, bool):
         return _motet.Criterion.hessian(names, tets=int(aim), smallest=smallest)
@@ -158,10 +191,18 @@ def _hessian(arrays: str | tuple[str, ...], aim: float | str, smallest: float | 
 
 @checked_class
 class Refinement:
-    """A mesh whose tets are divided and taken back, step after step, by marks of the caller's own.
+    """A mesh whose tets are refined and coarsened step by step, as marked by the caller.
 
-    Each cell that is divided is followed in its place by its parts; points that come are behind all others. The mesh is a function of the first one and of
-    what is asked to be divided: taking all back gives the first mesh, to the bit.
+    The parts of a divided cell take its place in the order of cells; new points are appended. The mesh
+    depends only on the initial mesh and on the requested divisions, so undoing all of them restores the
+    initial mesh exactly. A refinement can be pickled.
+
+    Parameters
+    ----------
+    mesh : MeshLike
+        Mesh of tets: a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
+    threads : int, default 0
+        Number of threads; 0 uses all cores. The result does not depend on it.
     """
 
     def __init__(self, mesh: MeshLike, *, threads: int = 0):
@@ -177,32 +218,67 @@ class Refinement:
 
     @property
     def mesh(self) -> Mesh:
-        """The mesh as it is now, with its arrays carried this far."""
+        """The current mesh, with its transferred arrays."""
         if self._mesh is None:
             self._mesh = Mesh._of(self._native.mesh(False))
         return self._mesh
 
     def with_memory(self) -> Mesh:
-        """The mesh with arrays ``refine_*`` that remember what was divided: what to save."""
+        """Return the mesh with arrays ``refine_*`` that store the divisions.
+
+        Save this mesh to continue the refinement later.
+
+        Returns
+        -------
+        Mesh
+        """
         return Mesh._of(self._native.mesh(True))
 
     @property
     def generations(self) -> NDArray[np.int16]:
-        """How often each cell was divided; -1 for those that are no tets."""
+        """Number of divisions that led to each cell, shape (m,); -1 for cells other than tets."""
         return self._native.generations()
 
     def refine(self, cells: ArrayLike, *, carry: Mapping[str, Carry] | None = None) -> tuple[History, Report]:
-        """Divides tets into eight, and what has to be so that all fit.
+        """Divide tets into eight, and others as required for conformity and quality.
 
         Parameters
         ----------
-        cells : bool array (m,), or ids
-            The tets to divide.
+        cells : bool array of shape (m,), or array_like of int
+            The tets to divide, as a mask or as cell ids.
+        carry : mapping of str to {"mean", "linear", "inherit", "drop"}, optional
+            How to transfer each named array where the mesh changes; see :meth:`History.transfer`.
+            ``"drop"`` removes the array.
+
+        Returns
+        -------
+        history : History
+            The history from the previous mesh to the new one.
+        report : Report
+            Numbers of ``tets``, and of tets that are ``promoted`` (divided without request), ``cut`` (divided
+            for conformity) or ``held`` (marked, but left unchanged).
         """
         return self._change(cells, False, carry)
 
     def coarsen(self, cells: ArrayLike, *, carry: Mapping[str, Carry] | None = None) -> tuple[History, Report]:
-        """Takes divisions back of which all eight parts are marked."""
+        """Undo divisions whose eight parts are all marked.
+
+        Parameters
+        ----------
+        cells : bool array of shape (m,), or array_like of int
+            The tets whose divisions may be undone, as a mask or as cell ids.
+        carry : mapping of str to {"mean", "linear", "inherit", "drop"}, optional
+            How to transfer each named array where the mesh changes; see :meth:`History.transfer`.
+            ``"drop"`` removes the array.
+
+        Returns
+        -------
+        history : History
+            The history from the previous mesh to the new one.
+        report : Report
+            Numbers of ``tets``, and of tets that are ``promoted`` (divided without request), ``cut`` (divided
+            for conformity) or ``held`` (marked, but left unchanged).
+        """
         return self._change(cells, True, carry)
 
     def _change(self, cells: ArrayLike, is_back: bool, carry: Mapping[str, Carry] | None) -> tuple[History, Report]:
@@ -213,9 +289,9 @@ class Refinement:
             if chosen.size and chosen.max() >= len(marks):
                 raise InputError(f"cells up to {chosen.max()}, but the mesh has {len(marks)}")
             marks[chosen] = True
-        history, told = self._native.change(np.ascontiguousarray(marks), is_back, dict(carry or {}))
+        history, reported = self._native.change(np.ascontiguousarray(marks), is_back, dict(carry or {}))
         self._mesh = None
-        return History(history), report(told)
+        return History(history), report(reported)
 
 
 def _restored(mesh: Mesh, threads: int) -> Refinement:

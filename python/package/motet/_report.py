@@ -1,4 +1,4 @@
-"""Reports: dictionaries that are read like objects, and show as tables in a notebook."""
+"""Reports: dictionaries with attribute access that are shown as tables in notebooks."""
 from __future__ import annotations
 
 import html
@@ -6,11 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 Progress = Callable[[str, int, int], object]
-"""Gets what is being done, how much of it is done and how much there is."""
+"""A function ``progress(stage, done, total)``; ``total`` is 0 if unknown."""
 
 
 class Report(dict):
-    """What a verb did: a dictionary whose entries are attributes, too.
+    """Statistics of a call: a dictionary whose entries are also attributes.
 
     >>> Report(before={"bad": 12}).before.bad
     12
@@ -32,16 +32,16 @@ class Report(dict):
         return table(self)
 
 
-def report(told: Any) -> Any:
-    """Dictionaries inside of anything as reports."""
-    if isinstance(told, dict):
-        return Report({name: report(value) for name, value in told.items()})
-    if isinstance(told, (list, tuple)):
-        return [report(value) for value in told]
-    return told
+def report(value: Any) -> Any:
+    """Convert all dictionaries in nested lists and dictionaries to reports."""
+    if isinstance(value, dict):
+        return Report({name: report(entry) for name, entry in value.items()})
+    if isinstance(value, (list, tuple)):
+        return [report(entry) for entry in value]
+    return value
 
 
-# How many entries of a list are shown.
+# Number of entries of a list that are shown.
 FIRST = 8
 
 
@@ -56,10 +56,10 @@ def short(value: Any) -> str:
     return str(value)
 
 
-def lines(told: dict, indent: str = "") -> list[str]:
-    width = max((len(str(name)) for name in told), default=0)
+def lines(entries: dict, indent: str = "") -> list[str]:
+    width = max((len(str(name)) for name in entries), default=0)
     all_lines = []
-    for name, value in told.items():
+    for name, value in entries.items():
         if isinstance(value, dict) and value:
             all_lines += [f"{indent}{name}", *lines(value, indent + "  ")]
         else:
@@ -67,9 +67,9 @@ def lines(told: dict, indent: str = "") -> list[str]:
     return all_lines
 
 
-def table(told: dict) -> str:
+def table(entries: dict) -> str:
     def row(name: Any, value: Any) -> str:
         inner = table(value) if isinstance(value, dict) and value else html.escape(short(value))
         return f"<tr><th style='text-align:left'>{html.escape(str(name))}</th><td style='text-align:left'>{inner}</td></tr>"
 
-    return "<table>" + "".join(row(name, value) for name, value in told.items()) + "</table>"
+    return "<table>" + "".join(row(name, value) for name, value in entries.items()) + "</table>"

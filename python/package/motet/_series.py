@@ -1,4 +1,4 @@
-"""What is over time: series of meshes, and of values of nodes."""
+"""Data over time: series of meshes, and values at nodes."""
 from __future__ import annotations
 
 import os
@@ -8,31 +8,62 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _motet
 from ._mesh import MeshLike, as_mesh
-from ._words import NotPickled, checked, checked_class
+from ._keywords import NotPickled, checked, checked_class
 from .errors import InputError
 
 
 @checked
 def read_series(path: str | os.PathLike[str]) -> list[tuple[float, str]]:
-    """The times of a series (``.pvd``), and the file of each."""
+    """Read the times and file names of a series of meshes.
+
+    Parameters
+    ----------
+    path : path-like
+        A ``.pvd`` file.
+
+    Returns
+    -------
+    list of (float, str)
+        Time and file name of each mesh.
+    """
     return _motet.read_series(path)
 
 
 @checked_class
 class SeriesWriter(NotPickled):
-    """Meshes over time, as ParaView plays them: a ``.pvd``, and a ``.vtu`` beside it for each time. Points and cells may differ from time to time.
+    """Writes meshes over time as a series that ParaView can play.
 
-    After each :meth:`add` the series on the disk is whole: there is nothing to close. In a ``with`` statement it works as files do.
+    The series is a ``.pvd`` file and one ``.vtu`` file per time. Points and cells may differ between times.
+    The series on disk is complete after each :meth:`add`; there is nothing to close. Can be used as a context
+    manager.
+
+    Parameters
+    ----------
+    path : path-like
+        Name of the ``.pvd`` file.
     """
 
-    _instead = "read the series that it wrote with motet.read_series"
+    _instead = "read the written series with motet.read_series"
 
     def __init__(self, path: str | os.PathLike[str]):
         self._native = _motet.SeriesWriter(path)
         self._path, self._n = os.fspath(path), 0
 
     def add(self, time: float, mesh: MeshLike) -> str:
-        """Writes a mesh and the series that ends with it; gives the mesh's file."""
+        """Write a mesh and add it to the series.
+
+        Parameters
+        ----------
+        time : float
+            Time of the mesh.
+        mesh : MeshLike
+            A :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
+
+        Returns
+        -------
+        str
+            Name of the file with the mesh.
+        """
         file, _ = self._native.add(time, as_mesh(mesh))
         self._n += 1
         return file
@@ -49,14 +80,23 @@ class SeriesWriter(NotPickled):
 
 @checked
 def read_nodal(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
-    """Values of nodes over time, such as displacements of a wall, from the text that svMultiPhysics has them in ("temporal and spatial values").
+    """Read values at nodes over time, such as displacements of a wall, from a file of svMultiPhysics.
+
+    The format is the text format "temporal and spatial values".
+
+    Parameters
+    ----------
+    path : path-like
+        Name of the file.
 
     Returns
     -------
-    times : array (t,), rising
-    ids : array (n,)
-        The nodes' ``GlobalNodeID``, or their numbers in the mesh counted from 1.
-    values : array (n, t, c)
+    times : float64 array, shape (t,)
+        Times, ascending.
+    ids : int64 array, shape (n,)
+        ``GlobalNodeID`` of each node, or its number in the mesh, starting at 1.
+    values : float64 array, shape (n, t, c)
+        Values by node, time and component.
     """
     times, ids, values = _motet.read_nodal(path)
     return np.array(times), np.array(ids, np.int64), values
@@ -64,7 +104,21 @@ def read_nodal(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArr
 
 @checked
 def write_nodal(path: str | os.PathLike[str], times: ArrayLike, ids: ArrayLike, values: ArrayLike) -> None:
-    """Writes what :func:`read_nodal` reads, with as many digits as bring each number back to the bit."""
+    """Write values at nodes over time in the format that :func:`read_nodal` reads.
+
+    Numbers have enough digits to be read back exactly.
+
+    Parameters
+    ----------
+    path : path-like
+        Name of the file.
+    times : array_like, shape (t,)
+        Times, ascending.
+    ids : array_like of int, shape (n,)
+        ``GlobalNodeID`` of each node, or its number in the mesh, starting at 1.
+    values : array_like, shape (n, t, c)
+        Values by node, time and component.
+    """
     shaped = np.asarray(values, np.float64)
     if shaped.ndim != 3:
         raise InputError(f"values of shape {shaped.shape}, expected (nodes, times, components)")

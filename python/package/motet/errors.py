@@ -1,21 +1,22 @@
-"""What can go wrong. Each error says what was expected and what came, in which file, where, and what to do."""
+"""Errors. Each states what was expected and found, in which file and where, and how to correct it."""
 from __future__ import annotations
 
 from pathlib import Path
 
 
 class Error(Exception):
-    """Any error of motet.
+    """Base class of all errors of motet.
 
     Attributes
     ----------
     what : str
-        What was expected and what came.
+        What was expected and what was found.
     file : pathlib.Path or None
+        The file concerned.
     place : str or None
-        Where in the file or the mesh: a line, a cell, an array.
+        Position in the file or the mesh: a line, a cell or an array.
     remedy : str or None
-        What can be done about it.
+        How to correct the error.
     """
 
     def __init__(self, message: str, what: str = "", file: Path | None = None, place: str | None = None, remedy: str | None = None):
@@ -27,16 +28,19 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """Data that cannot be read, or are not what is needed."""
+    """Input data cannot be read or are not valid."""
 
 
 class FileError(Error, OSError):
-    """The operating system refused a file."""
+    """The operating system could not open, read or write a file."""
 
 
 class InternalError(Error, RuntimeError):
-    """An internal error in motet: please report it, with the call. A handle may be left in a state that means nothing."""
+    """An internal error in motet: please report it, with the call.
+
+    Objects used in the call may be left in an invalid state.
+    """
 
 
 class OptionsError(Error, ValueError):
-    """Words of a call that mean nothing, or not together."""
+    """Options of a call are not valid, or contradict each other."""

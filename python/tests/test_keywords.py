@@ -1,4 +1,4 @@
-"""The words of calls: full signatures, the nearest of a word that is not known, what handles say of themselves, and what can be stored."""
+"""Keywords, representations and pickling of the public functions and classes."""
 import copy
 import inspect
 import pickle
@@ -9,12 +9,12 @@ import pytest
 import motet
 from motet import shapes
 
-# PyVista's words, which it judges itself.
+# Keywords that PyVista checks.
 PASSED_ON = {"Mesh.plot"}
 
 
 def public():
-    """All public functions and methods of the package that take words, by name."""
+    """All public functions and methods of the package, by name."""
     found = {}
     for owner, prefix in ((motet, ""), (shapes, "shapes.")):
         for name in getattr(owner, "__all__", [n for n in vars(owner) if inspect.isfunction(getattr(owner, n))]):
@@ -23,12 +23,12 @@ def public():
                 found[prefix + name] = thing
             elif inspect.isclass(thing) and not issubclass(thing, (Exception, dict)):
                 methods = inspect.getmembers(thing, lambda member: inspect.isfunction(member) or inspect.ismethod(member))
-                is_given = hasattr(thing, "__dataclass_fields__")
-                found |= {f"{name}.{m}": f for m, f in methods if not m.startswith("_") or m == "__init__" and not is_given}
+                is_dataclass = hasattr(thing, "__dataclass_fields__")
+                found |= {f"{name}.{m}": f for m, f in methods if not m.startswith("_") or m == "__init__" and not is_dataclass}
     return found
 
 
-def test_every_word_stands_in_its_signature():
+def test_signatures_name_every_keyword():
     calls = public()
     assert {"remesh", "cap", "shapes.coil", "Mover.__init__", "MovingMesh.load", "MovingMesh.refine"} <= calls.keys()
     for name, call in calls.items():
@@ -36,13 +36,13 @@ def test_every_word_stands_in_its_signature():
         assert inspect.Parameter.VAR_KEYWORD not in kinds or name in PASSED_ON, name
 
 
-def test_a_word_that_is_not_known_is_told_with_the_nearest():
+def test_unknown_keywords_raise_an_error_with_the_closest_known_one():
     for name, call in public().items():
         known = [p.name for p in inspect.signature(call).parameters.values() if p.name != "self"]
         if name in PASSED_ON or not known:
             continue
-        for word in known:
-            wrong = word + "s" if word + "s" not in known else word + "_x"
+        for keyword in known:
+            wrong = keyword + "s" if keyword + "s" not in known else keyword + "_x"
             with pytest.raises(TypeError, match=f"no keyword '{wrong}': did you mean '"):
                 call(**{wrong: 1})
     with pytest.raises(TypeError, match=r"remesh\(\) has no keyword 'min_aes': did you mean 'min_eas'\?"):
@@ -53,7 +53,7 @@ def test_a_word_that_is_not_known_is_told_with_the_nearest():
         motet.Refinement(shapes.box(), qqq=1)
 
 
-def test_what_is_loaded_takes_the_same_words():
+def test_load_and_move_have_the_options_of_the_classes():
     new, load = (inspect.signature(call).parameters for call in (motet.MovingMesh, motet.MovingMesh.load))
     others = ("mesh", "path", "progress")
     assert {n: p.default for n, p in new.items() if n not in others} == {n: p.default for n, p in load.items() if n not in others}
@@ -62,6 +62,7 @@ def test_what_is_loaded_takes_the_same_words():
 
 
 def handles(folder):
+    """Objects of all classes, by how their representations begin."""
     box = shapes.box((2, 2, 2))
     mover = motet.Mover(box)
     with motet.SeriesWriter(folder / "run.pvd") as writer:
@@ -80,26 +81,26 @@ def handles(folder):
     }  # fmt: skip
 
 
-STATELESS = (motet.Mover, motet.PointMover, motet.MovingMesh, motet.Contact, motet.SeriesWriter)
+NOT_PICKLED = (motet.Mover, motet.PointMover, motet.MovingMesh, motet.Contact, motet.SeriesWriter)
 
 
-def test_handles_say_what_they_are(tmp_path):
-    for told, handle in handles(tmp_path).items():
-        assert repr(handle).startswith(f"motet.{told}"), repr(handle)
+def test_representations_are_short_and_name_the_class(tmp_path):
+    for start, handle in handles(tmp_path).items():
+        assert repr(handle).startswith(f"motet.{start}"), repr(handle)
         assert len(repr(handle)) < 300
 
 
-def test_what_can_be_stored_is_the_same_after(tmp_path):
-    for told, handle in handles(tmp_path).items():
-        if isinstance(handle, STATELESS):
+def test_objects_are_equal_after_pickling_or_refuse_it(tmp_path):
+    for start, handle in handles(tmp_path).items():
+        if isinstance(handle, NOT_PICKLED):
             for store in (pickle.dumps, copy.copy, copy.deepcopy):
                 with pytest.raises(TypeError, match=f"motet.{type(handle).__name__} cannot be pickled"):
                     store(handle)
         else:
-            assert repr(pickle.loads(pickle.dumps(handle))) == repr(handle), told
+            assert repr(pickle.loads(pickle.dumps(handle))) == repr(handle), start
 
 
-def test_results_are_stored_to_the_bit():
+def test_pickling_preserves_results_exactly():
     mesh = shapes.box((4, 4, 4))
     mesh.points[62] += 0.12
     done = motet.remesh(mesh, goal="best")
@@ -111,19 +112,19 @@ def test_results_are_stored_to_the_bit():
     assert back.history.ledger == done.history.ledger
 
 
-def test_a_refinement_goes_on_after_it_was_stored():
-    here = motet.Refinement(shapes.box((2, 2, 2)))
-    here.refine([0, 1, 2])
-    there = pickle.loads(pickle.dumps(here))
-    np.testing.assert_array_equal(there.generations, here.generations)
-    for one in (here, there):
+def test_a_refinement_continues_after_pickling():
+    original = motet.Refinement(shapes.box((2, 2, 2)))
+    original.refine([0, 1, 2])
+    loaded = pickle.loads(pickle.dumps(original))
+    np.testing.assert_array_equal(loaded.generations, original.generations)
+    for one in (original, loaded):
         one.coarsen(np.flatnonzero(one.generations == 1))
-    np.testing.assert_array_equal(there.mesh.connectivity, here.mesh.connectivity)
-    np.testing.assert_array_equal(there.mesh.points, shapes.box((2, 2, 2)).points)
+    np.testing.assert_array_equal(loaded.mesh.connectivity, original.mesh.connectivity)
+    np.testing.assert_array_equal(loaded.mesh.points, shapes.box((2, 2, 2)).points)
 
 
 @pytest.mark.parametrize("call", [lambda: motet.read("none.vtu"), lambda: motet.remesh(shapes.box(), min_eas=-1), lambda: motet.Mesh([[0]], [])])
-def test_errors_are_stored(call):
+def test_pickling_preserves_errors(call):
     with pytest.raises(motet.Error) as error:
         call()
     back = pickle.loads(pickle.dumps(error.value))

@@ -1,4 +1,4 @@
-"""Meshes of meshio and PyVista: in and out, nothing lost."""
+"""Lossless conversion from and to meshes of meshio and PyVista."""
 import numpy as np
 import pytest
 from test_mesh import ALL, same
@@ -11,7 +11,7 @@ pyvista = pytest.importorskip("pyvista")
 
 
 @pytest.mark.parametrize("shape", ALL)
-def test_there_and_back(shape):
+def test_conversion_and_back_preserves_a_mesh(shape):
     mesh = shape()
     mesh.point_data["x"] = mesh.points[:, 0].copy()
     mesh.cell_data["eas"] = mesh.quality()
@@ -19,13 +19,13 @@ def test_there_and_back(shape):
     same(mesh, motet.Mesh.from_meshio(mesh.to_meshio()))
 
 
-def test_volumes_are_what_vtk_says():
+def test_volumes_agree_with_vtk():
     grid = shapes.mixed().to_pyvista()
     volume = grid.compute_cell_sizes(length=False, area=False)["Volume"].sum()
     assert motet.as_mesh(grid).summary().volume == pytest.approx(volume)
 
 
-def test_verbs_take_what_users_have(tmp_path):
+def test_functions_accept_meshes_paths_meshio_and_pyvista(tmp_path):
     path = tmp_path / "box.vtu"
     mesh = shapes.box()
     mesh.save(path)
@@ -37,12 +37,12 @@ def test_verbs_take_what_users_have(tmp_path):
     assert motet.as_mesh(flat).points.shape == (3, 3)
 
 
-def test_single_precision_of_pyvista_becomes_double():
+def test_single_precision_points_of_pyvista_become_double():
     assert pyvista.Sphere().points.dtype == np.float32
     assert motet.as_mesh(pyvista.Sphere()).points.dtype == np.float64
 
 
-def test_polyhedra_come_from_pyvista_and_go_into_files(tmp_path):
+def test_polyhedra_are_converted_from_pyvista_and_saved(tmp_path):
     corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
     faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
     stream = [6] + [v for face in faces for v in [4, *face]]
@@ -55,7 +55,7 @@ def test_polyhedra_come_from_pyvista_and_go_into_files(tmp_path):
         mesh.to_pyvista()
 
 
-def test_the_readme_has_the_example():
+def test_the_readme_contains_the_example():
     from pathlib import Path
 
     folder = Path(__file__).parents[1]
@@ -65,6 +65,6 @@ def test_the_readme_has_the_example():
 def test_the_example_runs(monkeypatch, capsys):
     from pathlib import Path
 
-    monkeypatch.setattr(pyvista.UnstructuredGrid, "plot", lambda grid, **words: grid["eas"])
+    monkeypatch.setattr(pyvista.UnstructuredGrid, "plot", lambda grid, **options: grid["eas"])
     exec((Path(__file__).parents[1] / "examples" / "story.py").read_text(), {})
     assert "0 after the repair" in capsys.readouterr().out

@@ -1,7 +1,8 @@
-"""Meshes of meshio and PyVista, in and out. Neither is needed otherwise.
+"""Conversion from and to meshes of meshio and PyVista, which are imported only here.
 
-Neither has names of labels. They go as field data ``region:NAME`` and ``patch:NAME``, whose value is the label, as in the files that motet writes; to meshio
-as sets of cells, too. From meshio come the names of Gmsh's physical groups as well (field data ``NAME: [label, dimension]``).
+Neither library stores names of labels. They are passed as field data ``region:NAME`` and ``patch:NAME`` with
+the label as value, as in files that motet writes, and to meshio also as cell sets. Names of Gmsh's physical
+groups (field data ``NAME: [label, dimension]``) are read from meshio meshes.
 """
 from __future__ import annotations
 
@@ -17,9 +18,9 @@ from ._mesh import KINDS, NAMES, Mesh, ids
 
 def from_meshio(mesh: Any) -> Mesh:
     names = {block.type for block in mesh.cells}
-    strange = sorted(name for name in names if name not in KINDS or name in ("polygon", "polyhedron"))
-    if strange:
-        raise InputError(f"cells of kind {', '.join(strange)} cannot come from meshio; write a file and read it with motet.read")
+    unsupported = sorted(name for name in names if name not in KINDS or name in ("polygon", "polyhedron"))
+    if unsupported:
+        raise InputError(f"cells of kind {', '.join(unsupported)} cannot be converted from meshio; write a file and read it with motet.read")
     blocks = [(block.type, block.data) for block in mesh.cells]
     cell_data = {name: np.concatenate(list(arrays)) for name, arrays in mesh.cell_data.items()}
     new = Mesh(_in_space(mesh.points), blocks, point_data=mesh.point_data, cell_data=cell_data)
@@ -36,7 +37,7 @@ def to_meshio(mesh: Mesh) -> Any:
 
     blocks: list[tuple[str, Any]] = []
     arrays: dict[str, list[Any]] = {name: [] for name in mesh.cell_data}
-    # Runs of one kind and one number of vertices are a block, so that the order stays.
+    # Consecutive cells of one kind and number of vertices form a block, which preserves the order.
     counts = np.diff(mesh.offsets.astype(np.int64))
     change = (np.diff(mesh.kinds.astype(int)) != 0) | (np.diff(counts) != 0)
     starts = [0, *(np.flatnonzero(change) + 1), mesh.n_cells]
@@ -45,7 +46,7 @@ def to_meshio(mesh: Mesh) -> Any:
             continue
         kind = NAMES.get(int(mesh.kinds[first]))
         if kind in (None, "polyhedron"):
-            raise InputError(f"cells of kind {kind or mesh.kinds[first]} cannot go to meshio; use save")
+            raise InputError(f"cells of kind {kind or mesh.kinds[first]} cannot be converted to meshio; use save")
         rows = mesh.connectivity[mesh.offsets[first] : mesh.offsets[last]].reshape(last - first, -1)
         blocks.append((kind, rows.astype(np.int64)))
         for name, array in mesh.cell_data.items():
@@ -55,14 +56,14 @@ def to_meshio(mesh: Mesh) -> Any:
     if mesh.region_names or mesh.patch_names:
         new.cell_sets = _sets(mesh, [len(block) for block in new.cells])
     if "gmsh:physical" in mesh.cell_data:
-        # As meshio has the names of physical groups, and writes them into files of Gmsh.
+        # This is how meshio stores the names of physical groups and writes them to Gmsh files.
         for names, dim in ((mesh.region_names, 3), (mesh.patch_names, 2)):
             new.field_data.update({name: np.array([label, dim]) for label, name in names.items() if name not in new.field_data})
     return new
 
 
 def _take_groups(new: Mesh, field_data: dict[str, Any]) -> None:
-    """Takes over the names of Gmsh's physical groups, which are field data of a label and a dimension."""
+    """Move the names of Gmsh's physical groups from field data (label, dimension) to the mesh."""
     names = {3: new.region_names, 2: new.patch_names}
     for name, values in list(field_data.items()):
         pair = np.asarray(values)
@@ -72,7 +73,7 @@ def _take_groups(new: Mesh, field_data: dict[str, Any]) -> None:
 
 
 def _take_field_data(new: Mesh, field_data: Mapping[str, Any]) -> None:
-    """Takes over field data: numbers, texts, and names of labels, which go where the mesh has them."""
+    """Copy numbers and strings from field data, and move names of labels to the mesh."""
     for name, values in field_data.items():
         array = np.asarray(values)
         if array.dtype.kind in "biuf":
@@ -92,8 +93,11 @@ def _is_label(array: Any) -> bool:
 
 
 def _take_sets(new: Mesh, mesh: Any) -> None:
-    """Takes over names of sets of cells. Where the mesh has labels, a set is the name of the label that all of its cells have and no other; else sets become
-    labels, of a cell in several sets the smallest."""
+    """Convert cell sets to names of labels.
+
+    If the mesh has labels, a set names the label whose cells are exactly those of the set. Otherwise sets
+    become labels; a cell in several sets belongs to the smallest.
+    """
     sets = {name: _members(lists, mesh.cells) for name, lists in mesh.cell_sets.items() if not name.startswith("gmsh:")}
     if not sets:
         return
@@ -118,7 +122,7 @@ def _take_sets(new: Mesh, mesh: Any) -> None:
 
 
 def _members(lists: Any, blocks: Any) -> np.ndarray:
-    """Which of all cells are in a set, that has the ids within each block."""
+    """Mark the cells of a set, given by their indices within each block, among all cells."""
     is_in = [np.zeros(len(block), bool) for block in blocks]
     for mine, ids_of_block in zip(is_in, lists):
         if ids_of_block is not None:
@@ -127,7 +131,7 @@ def _members(lists: Any, blocks: Any) -> np.ndarray:
 
 
 def _sets(mesh: Mesh, lengths: list[int]) -> dict[str, list[np.ndarray]]:
-    """The cells of each name, block by block. A region and a patch of one name are one set."""
+    """Return the cells of each name, block by block. A region and a patch of the same name form one set."""
     regions, patches = _motet.labels(mesh)
     ends = np.cumsum(lengths)[:-1]
     members: dict[str, np.ndarray] = {}
@@ -141,7 +145,7 @@ def _sets(mesh: Mesh, lengths: list[int]) -> dict[str, list[np.ndarray]]:
 
 
 def _field_data(mesh: Mesh) -> dict[str, Any]:
-    """Field data with the names of labels."""
+    """Return the field data including the names of labels."""
     names = {name: np.array([label], np.int32) for name, label in _motet.name_fields(mesh.region_names, mesh.patch_names)}
     others = {name: values if isinstance(values, list) else np.asarray(values) for name, values in mesh.field_data.items()}
     return {**others, **names}
@@ -167,7 +171,7 @@ def from_pyvista(mesh: Any) -> Mesh:
 
 
 def _faces(grid: Any) -> np.ndarray:
-    """The faces of each polyhedron: how many, and of each how many vertices, and these."""
+    """Return for each polyhedron its number of faces, then each face as its number of vertices and these."""
     stream: list[int] = []
     for cell in np.flatnonzero(grid.celltypes == KINDS["polyhedron"]):
         of_cell = grid.get_cell(int(cell))
@@ -181,7 +185,7 @@ def to_pyvista(mesh: Mesh) -> Any:
     import pyvista
 
     if (mesh.kinds == KINDS["polyhedron"]).any():
-        raise InputError("polyhedra cannot go to PyVista; use save")
+        raise InputError("polyhedra cannot be converted to PyVista; use save")
     counts = np.diff(mesh.offsets.astype(np.int64))
     cells = np.insert(mesh.connectivity.astype(np.int64), mesh.offsets[:-1].astype(np.int64), counts)
     grid = pyvista.UnstructuredGrid(cells, mesh.kinds, mesh.points.copy())

@@ -1,4 +1,4 @@
-"""The cases of testdata through every door: Rust, Python, C and Fortran give the same numbers."""
+"""The cases of testdata: the interfaces in Rust, Python, C and Fortran give the same numbers."""
 import os
 import tomllib
 from pathlib import Path
@@ -12,8 +12,8 @@ CLIENTS = Path(os.environ.get("CARGO_TARGET_DIR") or ROOT / "target") / "capi" /
 CASES = sorted((ROOT / "testdata").glob("*.toml"))
 
 
-def made(shape, scale=1.0, **words):
-    mesh = getattr(motet.shapes, shape)(**words)
+def made(shape, scale=1.0, **options):
+    mesh = getattr(motet.shapes, shape)(**options)
     mesh.points = mesh.points * scale
     return mesh
 
@@ -22,8 +22,8 @@ def numbers(lines):
     return {name: float(value) for name, value in (line.split() for line in lines.splitlines())}
 
 
-def tell(mesh):
-    # One after the other, as the other languages add.
+def mesh_numbers(mesh):
+    # Sequential sums, as in the other languages.
     x, y, z = (np.cumsum(column)[-1] for column in mesh.points.T)
     worst = np.nanmin(mesh.quality())
     return {"points": mesh.n_points, "tets": len(mesh.tets), "sum_x": x, "sum_y": y, "sum_z": z, "worst_eas": worst}
@@ -37,14 +37,14 @@ def repair(path, patch, dx, dy, dz, smooth):
     carried = done.history.transfer(moved.mesh.points[:, 0], on="points")
     return {
         "complete": certificate.complete, "bad_after_motion": certificate.bad, "worst_after_motion": certificate.worst_eas.value,
-        "repaired": done.complete, **tell(done.mesh), "sum_carried": np.cumsum(carried)[-1],
+        "repaired": done.complete, **mesh_numbers(done.mesh), "sum_carried": np.cumsum(carried)[-1],
     }  # fmt: skip
 
 
 def implant(host, device, name):
     done = motet.implant(host, {name: device})
     labels = {label: name for name, label in done.mesh.region_names.items()}
-    return {"complete": done.complete, "region": labels[name], **tell(done.mesh)}
+    return {"complete": done.complete, "region": labels[name], **mesh_numbers(done.mesh)}
 
 
 def contact(first, second):
@@ -69,7 +69,7 @@ def loop(path, patch, dx, dy, dz, steps):
             moving.save(f"{path}.state.vtu")
             moving = motet.MovingMesh.load(f"{path}.state.vtu", **options)
     velocity = np.cumsum(moving.velocity[:, 0])[-1]
-    return {"changes": changes, "time": moving.time, "sum_velocity": velocity, "sum_carried": np.cumsum(x)[-1], **tell(moving.mesh)}
+    return {"changes": changes, "time": moving.time, "sum_velocity": velocity, "sum_carried": np.cumsum(x)[-1], **mesh_numbers(moving.mesh)}
 
 
 def surface(path):
@@ -81,28 +81,28 @@ PYTHON = {"repair": repair, "implant": implant, "contact": contact, "loop": loop
 
 
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
-def test_every_door_gives_the_same(path, tmp_path, example):
+def test_every_interface_gives_the_same_numbers(path, tmp_path, example):
     case = tomllib.loads(path.read_text())
     files = []
-    for k, words in enumerate(case["meshes"]):
+    for k, shape in enumerate(case["meshes"]):
         files.append(tmp_path / f"{k}.vtu")
-        made(**words).save(files[-1])
-    words = [*files, *case["words"]]
-    told = {"Rust": numbers(example("cases")(case["program"], *words).stdout)}
-    told["Python"] = {name: float(value) for name, value in PYTHON[case["program"]](*map(str, words)).items()}
-    for door in ("cases_c", "cases_f"):
-        if (CLIENTS / door).exists():
-            told[door] = numbers(Program(CLIENTS / door)(case["program"], *words).stdout)
-    for door, values in told.items():
-        assert values == told["Rust"], door
+        made(**shape).save(files[-1])
+    arguments = [*files, *case["words"]]
+    results = {"Rust": numbers(example("cases")(case["program"], *arguments).stdout)}
+    results["Python"] = {name: float(value) for name, value in PYTHON[case["program"]](*map(str, arguments)).items()}
+    for client in ("cases_c", "cases_f"):
+        if (CLIENTS / client).exists():
+            results[client] = numbers(Program(CLIENTS / client)(case["program"], *arguments).stdout)
+    for interface, values in results.items():
+        assert values == results["Rust"], interface
     for name, value in case["expected"].items():
-        assert told["Rust"][name] == pytest.approx(value, rel=1e-9), name
+        assert results["Rust"][name] == pytest.approx(value, rel=1e-9), name
     for name, value in case["about"].items():
-        assert told["Rust"][name] == pytest.approx(value, rel=0.02), name
+        assert results["Rust"][name] == pytest.approx(value, rel=0.02), name
 
 
-def test_the_clients_of_c_and_fortran_are_there():
-    missing = [door for door in ("cases_c", "cases_f") if not (CLIENTS / door).exists()]
+def test_the_clients_in_c_and_fortran_are_built():
+    missing = [client for client in ("cases_c", "cases_f") if not (CLIENTS / client).exists()]
     if missing and os.environ.get("MOTET_TEST_STRICT") != "1":
         pytest.skip(f"{', '.join(missing)} not built: crates/motet-capi/check")
     assert not missing

@@ -1,4 +1,4 @@
-"""Calls whose keywords are checked: one that is not known names the nearest that is."""
+"""Checks of keyword arguments: the error for an unknown keyword suggests the closest known one."""
 from __future__ import annotations
 
 import difflib
@@ -12,25 +12,25 @@ Class = TypeVar("Class", bound=type)
 
 
 def checked(function: Function) -> Function:
-    """The function, with a TypeError for unknown keywords that names the nearest known one."""
+    """Decorate a function so that unknown keywords raise a TypeError that suggests the closest known one."""
     known = [p.name for p in inspect.signature(function).parameters.values() if p.kind is not p.POSITIONAL_ONLY and p.name not in ("self", "cls")]
     allowed = frozenset(known)
 
     @functools.wraps(function)
-    def call(*args: Any, **words: Any) -> Any:
-        if not allowed.issuperset(words):
-            unknown = next(word for word in words if word not in allowed)
+    def call(*args: Any, **kwargs: Any) -> Any:
+        if not allowed.issuperset(kwargs):
+            unknown = next(name for name in kwargs if name not in allowed)
             name = function.__qualname__.removesuffix(".__init__")
             nearest = difflib.get_close_matches(unknown, known, n=1, cutoff=0.5)
             hint = f"did you mean {nearest[0]!r}?" if nearest else f"it takes {', '.join(known) or 'none'}"
             raise TypeError(f"{name}() has no keyword {unknown!r}: {hint}")
-        return function(*args, **words)
+        return function(*args, **kwargs)
 
     return call  # type: ignore[return-value]
 
 
 def checked_class(cls: Class) -> Class:
-    """A class whose constructor and public methods are :func:`checked`."""
+    """Decorate a class: its constructor and its public methods are :func:`checked`."""
     for name, member in list(vars(cls).items()):
         if name.startswith("_") and name != "__init__":
             continue
@@ -42,7 +42,7 @@ def checked_class(cls: Class) -> Class:
 
 
 class NotPickled:
-    """A handle that is not pickled, and says what can be stored instead."""
+    """Base of classes that cannot be pickled; the error says what can be stored instead."""
 
     _instead = ""
 
