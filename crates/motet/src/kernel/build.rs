@@ -6,13 +6,14 @@ use crate::base::{Error, Result, TetId, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::{ROUGH_EAS_ERROR, rough_eas};
 use crate::geometry::tet::FACETS;
-use crate::kernel::complex::{Complex, NO_TET, UNMEASURED};
+use crate::kernel::complex::{Complex, UNMEASURED};
 use crate::kernel::exempt::NONE_EXEMPT;
 use crate::kernel::hold::Hold;
 use crate::kernel::journal::Journal;
 use crate::kernel::lines::Lines;
 use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
 use crate::kernel::star::Star;
+use crate::kernel::tets::{NO_TET, Tets};
 use crate::mesh::TetMesh;
 use crate::mesh::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
@@ -49,10 +50,6 @@ impl Complex {
         let n_tets = tets.len();
         let mut vertex_to_n_tets = vec![0u32; points.len()];
         tets.as_flattened().iter().for_each(|v| vertex_to_n_tets[v.index()] += 1);
-        let mut vertex_to_tet = vec![NO_TET; points.len()];
-        for (t, tet) in tets.iter().enumerate() {
-            tet.iter().for_each(|v| vertex_to_tet[v.index()] = TetId::new(t));
-        }
         let mut fixed_edges = mesh.fixed_edges.clone();
         fixed_edges.iter_mut().for_each(|edge| edge.sort_unstable());
         fixed_edges.sort_unstable();
@@ -62,18 +59,15 @@ impl Complex {
             vertex_is_changed: vec![false; points.len()],
             vertex_is_inserted: vec![false; points.len()],
             points: points.clone(),
-            vertex_to_tet,
             vertex_to_n_tets,
-            is_new: vec![false; tets.len()],
-            tets,
-            links: joined.links,
+            is_new: vec![false; n_tets],
+            tets: Tets::new(tets, joined.links, points.len()),
             regions: regions.clone(),
             qualities: vec![Cell::new(UNMEASURED); n_tets],
             is_tangled: false,
             rough,
             walls: joined.walls,
             free_vertices: Vec::new(),
-            free_tets: Vec::new(),
             free_walls: Vec::new(),
             is_locked: Vec::new(),
             fixed_edges,
@@ -101,7 +95,7 @@ impl Complex {
                 self.holds[v.index()] = Hold::Surface;
             }
         }
-        for (hold, tet) in self.holds.iter_mut().zip(&self.vertex_to_tet) {
+        for (hold, tet) in self.holds.iter_mut().zip(self.tets.tets_of_vertices()) {
             if *tet == NO_TET {
                 *hold = Hold::Fixed;
             }
@@ -112,8 +106,8 @@ impl Complex {
     }
 
     fn has_flat_or_inverted(&self) -> bool {
-        let near_flat = (0..self.tets.len()).filter(|&t| f64::from(self.rough[t]) <= ROUGH_EAS_ERROR);
-        near_flat.map(|t| self.tets[t].map(|v| self.point(v))).any(|[a, b, c, d]| orient3d(a, b, c, d) <= 0)
+        let near_flat = self.tets().filter(|t| f64::from(self.rough[t.index()]) <= ROUGH_EAS_ERROR);
+        near_flat.map(|t| self.corners(t)).any(|[a, b, c, d]| orient3d(a, b, c, d) <= 0)
     }
 
     /// Whether the tets of a vertex at a wall are connected only by the vertex, or by an edge. This is so
@@ -226,7 +220,6 @@ impl Complex {
     /// The vertices of a facet, counter-clockwise seen from outside its tet.
     #[inline]
     pub fn facet(&self, half: HalfFacet) -> [VertexId; 3] {
-        let tet = self.vertices(half.tet());
-        FACETS[half.facet()].map(|place| tet[place])
+        self.tets.outward(half)
     }
 }

@@ -1,15 +1,16 @@
-//! The only code that writes connectivity.
+//! The changes of a complex made, as they were checked.
 
 use std::cell::Cell;
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::change::{Fill, NewLine, NewWall, VertexChange};
 use crate::kernel::check::{Checked, FillFacet, Joint};
-use crate::kernel::complex::{Complex, FREE, NO_TET};
+use crate::kernel::complex::Complex;
 use crate::kernel::hold::Hold;
 use crate::kernel::journal::{Entry, TetRecord, VertexRecord};
 use crate::kernel::lines::{Line, rising};
 use crate::kernel::link::{HalfFacet, Link, NO_TRIANGLE, Wall, WallId};
+use crate::kernel::tets::{FREE, NO_TET};
 
 impl Complex {
     /// Makes a checked change. `inserted` gets the ids of the tets of the fill, in their order.
@@ -92,15 +93,21 @@ impl Complex {
     pub(super) fn free_tet(&mut self, tet: TetId) {
         self.note_tet(tet);
         let i = tet.index();
-        self.set_vertices(tet, FREE);
+        self.count_vertices(tet, FREE);
+        self.tets.remove(tet);
         self.is_new[i] = true;
-        self.free_tets.push(tet);
         self.note(|_| Entry::FreedTet);
     }
 
     /// Sets the vertices of a slot, and updates the number of tets of each vertex.
     pub(super) fn set_vertices(&mut self, tet: TetId, vertices: [VertexId; 4]) {
-        let before = std::mem::replace(&mut self.tets[tet.index()], vertices);
+        self.count_vertices(tet, vertices);
+        self.tets.set_vertices(tet, vertices);
+    }
+
+    /// Updates the number of tets of each vertex before a slot gets these vertices.
+    fn count_vertices(&mut self, tet: TetId, vertices: [VertexId; 4]) {
+        let before = self.vertices(tet);
         if before != FREE {
             before.iter().for_each(|v| self.vertex_to_n_tets[v.index()] -= 1);
         }
@@ -113,8 +120,8 @@ impl Complex {
         self.note(|c| {
             let i = tet.index();
             let record = TetRecord {
-                vertices: c.tets[i],
-                links: c.links[i],
+                vertices: c.vertices(tet),
+                links: c.tets.links(tet),
                 region: c.regions[i],
                 quality: c.qualities[i].get(),
                 is_new: c.is_new[i],
@@ -127,19 +134,13 @@ impl Complex {
         let half = |part: FillFacet| HalfFacet::new(inserted[part.tet as usize], usize::from(part.facet));
         match joint {
             Joint::Inner([x, y]) => {
-                self.set_link(half(x), Link::tet(half(y)));
-                self.set_link(half(y), Link::tet(half(x)));
+                self.tets.set_link(half(x), Link::tet(half(y)));
+                self.tets.set_link(half(y), Link::tet(half(x)));
             }
             Joint::Outer(x, outside) => {
-                self.set_link(half(x), Link::tet(outside));
-                self.note(|c| {
-                    Entry::Link(
-                        outside.tet(),
-                        outside.facet() as u8,
-                        c.links[outside.tet().index()][outside.facet()],
-                    )
-                });
-                self.set_link(outside, Link::tet(half(x)));
+                self.tets.set_link(half(x), Link::tet(outside));
+                self.note(|c| Entry::Link(outside, c.tets.link(outside)));
+                self.tets.set_link(outside, Link::tet(half(x)));
             }
             Joint::AtWall(x, wall, before) => {
                 let mut sides = self.walls[wall.index()].sides;
@@ -164,10 +165,8 @@ impl Complex {
         self.note(|c| Entry::Wall(id, c.walls[id.index()]));
         self.walls[id.index()] = wall;
         for side in wall.sides.into_iter().filter(|side| !side.is_none()) {
-            self.note(|c| {
-                Entry::Link(side.tet(), side.facet() as u8, c.links[side.tet().index()][side.facet()])
-            });
-            self.set_link(side, Link::wall(id));
+            self.note(|c| Entry::Link(side, c.tets.link(side)));
+            self.tets.set_link(side, Link::wall(id));
         }
     }
 
@@ -198,30 +197,25 @@ impl Complex {
     }
 
     #[inline]
-    fn set_link(&mut self, half: HalfFacet, link: Link) {
-        self.links[half.tet().index()][half.facet()] = link;
-    }
-
-    #[inline]
     pub(super) fn set_tet_of(&mut self, vertex: VertexId, tet: TetId) {
-        if self.vertex_to_tet[vertex.index()] != tet {
-            self.note(|c| Entry::VertexToTet(vertex, c.vertex_to_tet[vertex.index()]));
-            self.vertex_to_tet[vertex.index()] = tet;
+        if self.tet_of(vertex) != tet {
+            self.note(|c| Entry::VertexToTet(vertex, c.tet_of(vertex)));
+            self.tets.set_tet_of(vertex, tet);
         }
     }
 
     fn take_tet_slot(&mut self) -> TetId {
-        if let Some(tet) = self.free_tets.pop() {
+        let n_before = self.n_slots();
+        let tet = self.tets.take_slot();
+        if tet.index() < n_before {
             self.note(|_| Entry::TookTet(tet));
             return tet;
         }
-        self.note(|c| Entry::TetSlots(c.tets.len()));
-        self.tets.push(FREE);
-        self.links.push([Link::tet(HalfFacet::NONE); 4]);
+        self.note(|_| Entry::TetSlots(n_before));
         self.regions.push(0);
         self.qualities.push(Cell::new(0.0));
         self.is_new.push(true);
-        TetId::new(self.tets.len() - 1)
+        tet
     }
 
     fn take_vertex_slot(&mut self) -> VertexId {
@@ -234,7 +228,7 @@ impl Complex {
         self.holds.push(Hold::Free);
         self.vertex_is_changed.push(true);
         self.vertex_is_inserted.push(true);
-        self.vertex_to_tet.push(NO_TET);
+        self.tets.resize_vertices(self.points.len());
         self.vertex_to_n_tets.push(0);
         VertexId::new(self.points.len() - 1)
     }

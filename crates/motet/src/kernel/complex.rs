@@ -9,7 +9,8 @@ use crate::geometry::quality::{ROUGH_EAS_ERROR, eas};
 use crate::kernel::hold::Hold;
 use crate::kernel::journal::Journal;
 use crate::kernel::lines::Lines;
-use crate::kernel::link::{Behind, HalfFacet, Link, Wall, WallId};
+use crate::kernel::link::{Behind, HalfFacet, Wall, WallId};
+use crate::kernel::tets::{NO_TET, Tets};
 
 /// Tets with neighbours, walls and labels, and a record of which of them are unchanged.
 ///
@@ -18,12 +19,9 @@ use crate::kernel::link::{Behind, HalfFacet, Link, Wall, WallId};
 pub struct Complex {
     pub(super) points: Vec<Point>,
     pub(super) holds: Vec<Hold>,
-    /// One tet of each vertex; [`NO_TET`] for vertices without tets.
-    pub(super) vertex_to_tet: Vec<TetId>,
     /// How many tets each vertex has: where tets overlap, more than are connected through facets at it.
     pub(super) vertex_to_n_tets: Vec<u32>,
-    pub(super) tets: Vec<[VertexId; 4]>,
-    pub(super) links: Vec<[Link; 4]>,
+    pub(super) tets: Tets,
     pub(super) regions: Vec<i32>,
     /// The quality of each tet; [`UNMEASURED`] until it is first requested.
     pub(super) qualities: Vec<Cell<f64>>,
@@ -37,7 +35,6 @@ pub struct Complex {
     pub(super) vertex_is_inserted: Vec<bool>,
     pub(super) walls: Vec<Wall>,
     pub(super) free_vertices: Vec<VertexId>,
-    pub(super) free_tets: Vec<TetId>,
     pub(super) free_walls: Vec<WallId>,
     /// Marks tets that no change may touch; empty if there are none.
     pub(super) is_locked: Vec<bool>,
@@ -66,20 +63,15 @@ pub struct Complex {
 /// The quality of a tet that has not been measured.
 pub(super) const UNMEASURED: f64 = f64::NAN;
 
-/// No tet.
-pub(crate) const NO_TET: TetId = TetId(u32::MAX);
-/// Vertices of a free slot.
-pub(super) const FREE: [VertexId; 4] = [VertexId(u32::MAX); 4];
-
 impl Complex {
     /// The number of tet slots, including free ones; tet ids are below it.
     pub fn n_slots(&self) -> usize {
-        self.tets.len()
+        self.tets.n_slots()
     }
 
     /// The number of tets.
     pub fn n_tets(&self) -> usize {
-        self.tets.len() - self.free_tets.len()
+        self.tets.n_slots() - self.tets.free_slots().len()
     }
 
     /// The number of vertex slots, including free ones; vertex ids are below it.
@@ -89,30 +81,30 @@ impl Complex {
 
     /// The number of vertices that belong to a tet.
     pub fn n_used_vertices(&self) -> usize {
-        self.vertex_to_tet.iter().filter(|&&t| t != NO_TET).count()
+        self.tets.tets_of_vertices().iter().filter(|&&t| t != NO_TET).count()
     }
 
     /// The number of free vertices that belong to a tet.
     pub fn n_free_vertices(&self) -> usize {
         let is_free = |(&tet, &hold): (&TetId, &Hold)| tet != NO_TET && hold == Hold::Free;
-        self.vertex_to_tet.iter().zip(&self.holds).filter(|pair| is_free(*pair)).count()
+        self.tets.tets_of_vertices().iter().zip(&self.holds).filter(|pair| is_free(*pair)).count()
     }
 
     /// The ids of all tets, in rising order.
     pub fn tets(&self) -> impl Iterator<Item = TetId> + Clone + '_ {
-        (0..self.tets.len()).map(TetId::new).filter(|&t| self.is_alive(t))
+        self.tets.iter().map(|(t, _)| t)
     }
 
     /// Whether a tet with this id exists.
     #[inline]
     pub fn is_alive(&self, tet: TetId) -> bool {
-        self.tets[tet.index()] != FREE
+        self.tets.is_alive(tet)
     }
 
     /// Whether a vertex belongs to a tet.
     #[inline]
     pub fn is_used(&self, vertex: VertexId) -> bool {
-        self.vertex_to_tet[vertex.index()] != NO_TET
+        self.tets.tet_of(vertex) != NO_TET
     }
 
     /// Whether a vertex is not one of the first mesh.
@@ -124,13 +116,13 @@ impl Complex {
     /// The vertices of a tet, in positive orientation unless the tet was given inverted.
     #[inline(always)]
     pub fn vertices(&self, tet: TetId) -> [VertexId; 4] {
-        self.tets[tet.index()]
+        self.tets.vertices(tet)
     }
 
     /// The positions of the vertices of a tet.
     #[inline]
     pub fn corners(&self, tet: TetId) -> [Point; 4] {
-        let [a, b, c, d] = self.tets[tet.index()];
+        let [a, b, c, d] = self.tets.vertices(tet);
         [self.points[a.index()], self.points[b.index()], self.points[c.index()], self.points[d.index()]]
     }
 
@@ -167,7 +159,7 @@ impl Complex {
     pub fn below(&self, bar: f64) -> Vec<TetId> {
         let limit = bar + ROUGH_EAS_ERROR;
         let is_doubtful = |t: &TetId| self.is_new[t.index()] || f64::from(self.rough[t.index()]) <= limit;
-        let all = (0..self.tets.len()).map(TetId::new).filter(is_doubtful);
+        let all = (0..self.tets.n_slots()).map(TetId::new).filter(is_doubtful);
         all.filter(|&t| self.is_alive(t) && self.quality(t) < bar).collect()
     }
 
@@ -197,7 +189,7 @@ impl Complex {
     /// What lies behind facet `i` of a tet.
     #[inline]
     pub fn behind(&self, tet: TetId, i: usize) -> Behind {
-        self.links[tet.index()][i].behind()
+        self.tets.link(HalfFacet::new(tet, i)).behind()
     }
 
     /// The facet of the tet behind a facet, through walls; [`HalfFacet::NONE`] beyond the boundary.
@@ -212,7 +204,7 @@ impl Complex {
     /// Whether a facet of a tet is a wall.
     #[inline]
     pub fn is_wall(&self, tet: TetId, i: usize) -> bool {
-        self.links[tet.index()][i].is_wall()
+        self.tets.link(HalfFacet::new(tet, i)).is_wall()
     }
 
     /// A wall.
@@ -229,7 +221,7 @@ impl Complex {
     /// A tet of a vertex; `NO_TET` if it has none.
     #[inline]
     pub fn tet_of(&self, vertex: VertexId) -> TetId {
-        self.vertex_to_tet[vertex.index()]
+        self.tets.tet_of(vertex)
     }
 
     /// The id that the next inserted vertex gets.
@@ -249,7 +241,7 @@ impl Complex {
     /// Forbids changes to touch a tet.
     pub fn lock(&mut self, tet: TetId) {
         if self.is_locked.is_empty() {
-            self.is_locked = vec![false; self.tets.len()];
+            self.is_locked = vec![false; self.n_slots()];
         }
         self.is_locked[tet.index()] = true;
     }
@@ -290,11 +282,6 @@ impl Complex {
     /// The local number of a vertex in a tet that has it.
     #[inline]
     pub fn place(&self, tet: TetId, vertex: VertexId) -> usize {
-        let vertices = self.tets[tet.index()];
-        debug_assert!(vertices.contains(&vertex));
-        // Not a search: three comparisons, no branch.
-        usize::from(vertices[1] == vertex)
-            + 2 * usize::from(vertices[2] == vertex)
-            + 3 * usize::from(vertices[3] == vertex)
+        self.tets.place(tet, vertex)
     }
 }

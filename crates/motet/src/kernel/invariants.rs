@@ -4,9 +4,10 @@ use std::collections::{HashMap, HashSet};
 
 use crate::base::{TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS};
-use crate::kernel::complex::{Complex, FREE, NO_TET};
+use crate::kernel::complex::Complex;
 use crate::kernel::lines::rising;
 use crate::kernel::link::{Behind, HalfFacet};
+use crate::kernel::tets::NO_TET;
 
 impl Complex {
     /// Checks all invariants, in time proportional to the size of the mesh.
@@ -22,10 +23,9 @@ impl Complex {
     }
 
     fn verify_slots(&self) -> Result<(), String> {
-        let mut free: Vec<_> = self.free_tets.clone();
+        let mut free = self.tets.free_slots().to_vec();
         free.sort_unstable();
-        let dead: Vec<_> =
-            (0..self.tets.len()).map(TetId::new).filter(|t| self.tets[t.index()] == FREE).collect();
+        let dead: Vec<_> = (0..self.n_slots()).map(TetId::new).filter(|&t| !self.is_alive(t)).collect();
         if free != dead {
             return Err(format!("{} tets on the free list, {} slots free", free.len(), dead.len()));
         }
@@ -132,6 +132,7 @@ impl Complex {
 mod tests {
     use super::*;
     use crate::kernel::link::{Link, Wall, WallId};
+    use crate::kernel::tets::FREE;
     use crate::mesh::shapes::box_grid;
     use crate::mesh::{TetMesh, TetPart};
 
@@ -153,18 +154,24 @@ mod tests {
         all.into_iter().find(|&(t, i)| c.is_wall(t, i) == is_wall).unwrap()
     }
 
+    fn set_vertex(c: &mut Complex, tet: TetId, place: usize, vertex: VertexId) {
+        let mut vertices = c.vertices(tet);
+        vertices[place] = vertex;
+        c.tets.set_vertices(tet, vertices);
+    }
+
     #[test]
     fn every_fault_is_found_and_named() {
         type Fault = (&'static str, fn(&mut Complex));
         let faults: [Fault; 16] = [
-            ("on the free list", |c| c.free_tets.push(TetId(0))),
-            ("on the free list", |c| c.tets[5] = FREE),
-            ("has the vertices", |c| c.tets[0][1] = c.tets[0][0]),
-            ("has the vertices", |c| c.tets[0][1] = VertexId::new(c.points.len())),
+            ("on the free list", |c| c.tets.put_back_slot(TetId(0))),
+            ("on the free list", |c| c.tets.set_vertices(TetId(5), FREE)),
+            ("has the vertices", |c| set_vertex(c, TetId(0), 1, c.vertices(TetId(0))[0])),
+            ("has the vertices", |c| set_vertex(c, TetId(0), 1, VertexId::new(c.points.len()))),
             ("has the quality", |c| c.qualities[3].set(0.25)),
             ("has nothing behind it", |c| {
                 let (t, i) = facet(c, false);
-                c.links[t.index()][i] = Link::tet(HalfFacet::NONE);
+                c.tets.set_link(HalfFacet::new(t, i), Link::tet(HalfFacet::NONE));
             }),
             ("lies between regions", |c| {
                 let (t, _) = facet(c, false);
@@ -172,20 +179,22 @@ mod tests {
             }),
             ("does not list it", |c| {
                 let (t, i) = facet(c, true);
-                c.links[t.index()][i] = Link::wall(WallId(c.walls.len() as u32 - 1));
+                c.tets.set_link(HalfFacet::new(t, i), Link::wall(WallId(c.walls.len() as u32 - 1)));
                 let (u, k) = facet(c, false);
-                c.links[u.index()][k] = Link::wall(WallId(0));
+                c.tets.set_link(HalfFacet::new(u, k), Link::wall(WallId(0)));
             }),
             ("does not lead back", |c| {
                 let (t, i) = facet(c, false);
                 let k = (0..4).find(|&k| k != i && !c.is_wall(t, k)).unwrap();
-                c.links[t.index()].swap(i, k);
+                let mut links = c.tets.links(t);
+                links.swap(i, k);
+                c.tets.set_links(t, links);
             }),
             ("from opposite sides", |c| {
                 c.points.push([0.3; 3]);
                 let (t, i) = facet(c, false);
                 let k = (0..4).find(|&k| k != i).unwrap();
-                c.tets[t.index()][k] = VertexId::new(c.points.len() - 1);
+                set_vertex(c, t, k, VertexId::new(c.points.len() - 1));
                 c.qualities[t.index()].set(c.measure(c.corners(t)));
             }),
             ("a side that is not linked to it", |c| {
@@ -206,10 +215,10 @@ mod tests {
                 c.lines.set(edge, Some(line));
             }),
             ("counted", |c| c.vertex_to_n_tets[4] += 1),
-            ("counted", |c| c.vertex_to_tet[4] = NO_TET),
+            ("counted", |c| c.tets.set_tet_of(VertexId(4), NO_TET)),
             ("is not in its tet", |c| {
                 let other = c.tets().find(|&t| !c.vertices(t).contains(&VertexId(4))).unwrap();
-                c.vertex_to_tet[4] = other;
+                c.tets.set_tet_of(VertexId(4), other);
             }),
             ("on the free list and used", |c| c.free_vertices.push(VertexId(4))),
         ];

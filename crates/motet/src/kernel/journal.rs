@@ -3,7 +3,7 @@
 use crate::base::{Point, TetId, VertexId};
 use crate::kernel::hold::Hold;
 use crate::kernel::lines::Line;
-use crate::kernel::link::{Link, Wall, WallId};
+use crate::kernel::link::{HalfFacet, Link, Wall, WallId};
 
 /// One recorded value.
 #[derive(Clone, Copy, Debug)]
@@ -11,7 +11,7 @@ pub(super) enum Entry {
     Tet(TetId, TetRecord),
     Vertex(VertexId, VertexRecord),
     Wall(WallId, Wall),
-    Link(TetId, u8, Link),
+    Link(HalfFacet, Link),
     VertexToTet(VertexId, TetId),
     TetSlots(usize),
     VertexSlots(usize),

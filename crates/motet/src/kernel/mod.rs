@@ -25,8 +25,10 @@ mod invariants;
 mod journal;
 mod lines;
 mod link;
+mod marks;
 mod peel;
 mod star;
+mod tets;
 mod undo;
 mod vertex_move;
 
@@ -40,3 +42,4 @@ pub use journal::Mark;
 pub use lines::Line;
 pub use link::{Behind, HalfFacet, Wall, WallId};
 pub use star::{Shell, Star};
+pub(crate) use tets::{NO_TET, Tets};

@@ -3,9 +3,10 @@
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::change::NewWall;
-use crate::kernel::complex::{Complex, FREE, NO_TET};
+use crate::kernel::complex::Complex;
 use crate::kernel::hold::Hold;
 use crate::kernel::link::{Behind, HalfFacet, NO_TRIANGLE, Wall};
+use crate::kernel::tets::NO_TET;
 
 impl Complex {
     /// Removes, one after the other, the tets of the first mesh that are folded over others and have no tet
@@ -61,12 +62,11 @@ impl Complex {
         self.free_tet(tet);
         self.add_wall([behind, HalfFacet::NONE], new);
         for vertex in vertices {
-            if self.vertex_to_tet[vertex.index()] == tet {
-                let has = |t: &TetId| self.tets[t.index()] != FREE && self.tets[t.index()].contains(&vertex);
+            if self.tet_of(vertex) == tet {
                 let other = if new.vertices.contains(&vertex) {
                     Some(behind.tet())
                 } else {
-                    (0..self.tets.len()).map(TetId::new).find(has)
+                    self.tets().find(|&t| self.vertices(t).contains(&vertex))
                 };
                 self.set_tet_of(vertex, other.unwrap_or(NO_TET));
                 if other.is_none() {

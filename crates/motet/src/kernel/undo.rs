@@ -38,7 +38,7 @@ impl Complex {
             Entry::Tet(t, record) => {
                 let i = t.index();
                 self.set_vertices(t, record.vertices);
-                self.links[i] = record.links;
+                self.tets.set_links(t, record.links);
                 self.regions[i] = record.region;
                 self.qualities[i].set(record.quality);
                 self.is_new[i] = record.is_new;
@@ -50,11 +50,10 @@ impl Complex {
                 self.vertex_is_inserted[v.index()] = record.is_inserted;
             }
             Entry::Wall(w, wall) => self.walls[w.index()] = wall,
-            Entry::Link(t, i, link) => self.links[t.index()][usize::from(i)] = link,
-            Entry::VertexToTet(v, t) => self.vertex_to_tet[v.index()] = t,
+            Entry::Link(half, link) => self.tets.set_link(half, link),
+            Entry::VertexToTet(v, t) => self.tets.set_tet_of(v, t),
             Entry::TetSlots(n) => {
                 self.tets.truncate(n);
-                self.links.truncate(n);
                 self.regions.truncate(n);
                 self.qualities.truncate(n);
                 self.is_new.truncate(n);
@@ -64,14 +63,14 @@ impl Complex {
                 self.holds.truncate(n);
                 self.vertex_is_changed.truncate(n);
                 self.vertex_is_inserted.truncate(n);
-                self.vertex_to_tet.truncate(n);
+                self.tets.resize_vertices(n);
                 self.vertex_to_n_tets.truncate(n);
             }
             Entry::WallSlots(n) => self.walls.truncate(n),
-            Entry::TookTet(t) => self.free_tets.push(t),
+            Entry::TookTet(t) => self.tets.put_back_slot(t),
             Entry::TookVertex(v) => self.free_vertices.push(v),
             Entry::TookWall(w) => self.free_walls.push(w),
-            Entry::FreedTet => drop(self.free_tets.pop()),
+            Entry::FreedTet => self.tets.keep_last_freed(),
             Entry::FreedVertex => drop(self.free_vertices.pop()),
             Entry::FreedWall => drop(self.free_walls.pop()),
             Entry::RemovedTriangle => drop(self.removed_triangles.pop()),
