@@ -4,6 +4,7 @@ use crate::base::{Point, TetId, VertexId};
 use crate::kernel::hold::Hold;
 use crate::kernel::lines::Line;
 use crate::kernel::link::{HalfFacet, Link, Wall, WallId};
+use crate::kernel::provenance::Origin;
 
 /// One recorded value.
 #[derive(Clone, Copy, Debug)]
@@ -40,8 +41,7 @@ pub(super) struct TetRecord {
 pub(super) struct VertexRecord {
     pub(super) point: Point,
     pub(super) hold: Hold,
-    pub(super) is_new: bool,
-    pub(super) is_inserted: bool,
+    pub(super) origin: Origin,
 }
 
 /// The entries; they are recorded while the journal is open.

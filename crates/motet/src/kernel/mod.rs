@@ -25,12 +25,18 @@ mod invariants;
 mod journal;
 mod lines;
 mod link;
+mod locks;
 mod marks;
+mod overlaps;
 mod peel;
+mod provenance;
+mod qualities;
 mod star;
 mod tets;
 mod undo;
 mod vertex_move;
+mod vertices;
+mod walls;
 
 pub use change::{Change, Fill, NewLine, NewWall, VertexChange};
 pub use check::{Checked, Reject};

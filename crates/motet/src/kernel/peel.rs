@@ -16,7 +16,7 @@ impl Complex {
     /// A tet that a motion has inverted stays, and so does one with a labelled triangle on an outer facet or
     /// with a fixed vertex that the remaining tet does not share: the boundary there was given.
     pub fn peel(&mut self) -> usize {
-        let mut folded = std::mem::take(&mut self.folded);
+        let mut folded = std::mem::take(&mut self.overlaps.folded);
         let n_folded = folded.len();
         loop {
             let before = folded.len();
@@ -70,7 +70,7 @@ impl Complex {
                 };
                 self.set_tet_of(vertex, other.unwrap_or(NO_TET));
                 if other.is_none() {
-                    self.free_vertices.push(vertex);
+                    self.vertices.free_slot(vertex);
                 }
             }
         }

@@ -144,7 +144,7 @@ impl Complex {
     /// Whether all tets of a vertex are connected through facets at it; `star` gathers them.
     pub fn is_one_star(&self, vertex: VertexId, star: &mut Star) -> bool {
         star.gather(self, vertex);
-        star.tets.len() == self.vertex_to_n_tets[vertex.index()] as usize
+        star.tets.len() == self.overlaps.n_tets(vertex)
     }
 }
 
@@ -158,7 +158,8 @@ impl Star {
             return;
         }
         let reached = (&mut self.tets, &mut self.marks);
-        flood(&complex.tets, start, reached, |opposite| opposite != vertex, |half| {
+        let is_at_vertex = |opposite: VertexId| opposite != vertex;
+        flood(&complex.tets, start, reached, is_at_vertex, |half| {
             self.has_walls |= complex.is_wall(half.tet(), half.facet());
             complex.across(half.tet(), half.facet())
         });
