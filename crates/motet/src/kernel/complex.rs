@@ -254,3 +254,14 @@ impl Complex {
         self.tets.place(tet, vertex)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_can_share_a_complex() {
+        const fn is_shared<T: Send + Sync>() {}
+        const { is_shared::<Complex>() }
+    }
+}

@@ -1,7 +1,9 @@
 //! The qualities of tets: measured when they are first requested, and kept.
+//!
+//! Threads that share a complex may measure the same tet at the same time; both then store the same bits.
 
-use std::cell::Cell;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use crate::base::TetId;
 
@@ -18,27 +20,55 @@ const NONE_EXEMPT: Range<f64> = f64::INFINITY..f64::INFINITY;
 #[derive(Clone, Debug)]
 pub(super) struct Qualities {
     /// [`UNMEASURED`] until the quality is first requested.
-    known: Vec<Cell<f64>>,
+    known: Vec<Kept>,
     /// Approximate qualities of the tets of the first mesh.
     rough: Vec<f32>,
     /// New tets of these qualities are exempt if walls force them.
     exempt_range: Range<f64>,
 }
 
+/// A number that threads may set while others read it.
+#[derive(Debug)]
+struct Kept(AtomicU64);
+
+impl Kept {
+    fn new(value: f64) -> Self {
+        Self(AtomicU64::new(value.to_bits()))
+    }
+
+    #[inline]
+    fn get(&self) -> f64 {
+        f64::from_bits(self.0.load(Relaxed))
+    }
+
+    #[inline]
+    fn set(&self, value: f64) {
+        self.0.store(value.to_bits(), Relaxed);
+    }
+}
+
+impl Clone for Kept {
+    fn clone(&self) -> Self {
+        Self::new(self.get())
+    }
+}
+
 impl Qualities {
     /// No quality of these tets is known, but for the approximate ones.
     pub(super) fn new(rough: Vec<f32>) -> Self {
-        Self { known: vec![Cell::new(UNMEASURED); rough.len()], rough, exempt_range: NONE_EXEMPT }
+        Self { known: vec![Kept::new(UNMEASURED); rough.len()], rough, exempt_range: NONE_EXEMPT }
     }
 
     /// The quality of a tet, from `measure` if it is not known yet.
     #[inline]
     pub(super) fn get(&self, tet: TetId, measure: impl FnOnce() -> f64) -> f64 {
         let known = &self.known[tet.index()];
-        if known.get().is_nan() {
-            known.set(measure());
+        let mut quality = known.get();
+        if quality.is_nan() {
+            quality = measure();
+            known.set(quality);
         }
-        known.get()
+        quality
     }
 
     /// The quality of a tet as far as it is known; NaN otherwise.
@@ -52,7 +82,7 @@ impl Qualities {
     pub(super) fn set(&mut self, tet: TetId, quality: f64) {
         match self.known.get_mut(tet.index()) {
             Some(known) => known.set(quality),
-            None => self.known.push(Cell::new(quality)),
+            None => self.known.push(Kept::new(quality)),
         }
     }
 
