@@ -82,6 +82,7 @@ impl Complex {
         self.note_tet(tet);
         self.overlaps.replace(self.vertices(tet), FREE);
         self.tets.remove(tet);
+        self.qualities.remove(tet);
         self.provenance.set_new(tet, true);
         self.note(|_| Entry::FreedTet);
     }
@@ -98,7 +99,7 @@ impl Complex {
                 vertices: c.vertices(tet),
                 links: c.tets.links(tet),
                 region: c.region(tet),
-                quality: c.qualities.known(tet),
+                quality: c.qualities.record(tet),
                 is_new: c.provenance.is_new(tet),
             };
             Entry::Tet(tet, record)

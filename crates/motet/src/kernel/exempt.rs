@@ -3,9 +3,8 @@
 //! Where two walls meet at an angle, the tet between them has that dihedral angle, whatever is done; a tet on
 //! a narrow wall has its narrow angle. Nothing can raise the quality of such a tet, and as the worst of every
 //! cavity around it, it would block each change that helps a neighbour. So such tets are exempted, each by
-//! its id: the quality stored for it marks it. A tet that replaces exempt ones is judged anew, by the walls
-//! it will have. The quality alone exempts nothing: another tet elsewhere can have the same value and need
-//! repair.
+//! its id. A tet that replaces exempt ones is judged anew, by the walls it will have. The quality alone
+//! exempts nothing: another tet elsewhere can have the same value and need repair.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::quality::dihedral;
@@ -75,8 +74,8 @@ impl Complex {
         self.qualities.is_exempt(tet)
     }
 
-    /// The quality of a new tet whose facets will be `sides`: its EAS, or the mark of an exempt tet if walls
-    /// force it and such tets are exempt.
+    /// What a new tet whose facets will be `sides` counts as: its EAS, or infinity if walls force it and such
+    /// tets are exempt.
     #[inline]
     pub fn judge(&self, corners: [Point; 4], sides: impl Fn(usize) -> Side) -> f64 {
         let quality = self.measure(corners);

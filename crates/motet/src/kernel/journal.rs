@@ -5,6 +5,7 @@ use crate::kernel::hold::Hold;
 use crate::kernel::lines::Line;
 use crate::kernel::link::{HalfFacet, Link, Wall, WallId};
 use crate::kernel::provenance::Origin;
+use crate::kernel::qualities::QualityRecord;
 
 /// One recorded value.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +34,7 @@ pub(super) struct TetRecord {
     pub(super) vertices: [VertexId; 4],
     pub(super) links: [Link; 4],
     pub(super) region: i32,
-    pub(super) quality: f64,
+    pub(super) quality: QualityRecord,
     pub(super) is_new: bool,
 }
 

@@ -39,7 +39,7 @@ impl Complex {
                 self.set_vertices(t, record.vertices);
                 self.tets.set_links(t, record.links);
                 self.regions[t.index()] = record.region;
-                self.qualities.set(t, record.quality);
+                self.qualities.restore(t, record.quality);
                 self.provenance.set_new(t, record.is_new);
             }
             Entry::Vertex(v, record) => {
