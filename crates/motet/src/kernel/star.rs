@@ -158,8 +158,8 @@ impl Star {
             return;
         }
         let reached = (&mut self.tets, &mut self.marks);
-        let is_at_vertex = |opposite: VertexId| opposite != vertex;
-        flood(&complex.tets, start, reached, is_at_vertex, |half| {
+        let has_vertex = |opposite: VertexId| opposite != vertex;
+        flood(&complex.tets, start, reached, has_vertex, |half| {
             self.has_walls |= complex.is_wall(half.tet(), half.facet());
             complex.across(half.tet(), half.facet())
         });
