@@ -170,8 +170,8 @@ impl Repair {
         }
     }
 
-    /// Offers to split an edge of a tet, with the tets `shell` around it, at its midpoint if it may be divided;
-    /// `hold` is the constraint on the new vertex.
+    /// Offers to split an edge of a tet, with the tets `shell` around it, at its midpoint if it may be
+    /// divided; `hold` is the constraint on the new vertex.
     pub(super) fn split_at_middle(&mut self, tet: TetId, shell: &Shell, edge: [VertexId; 2], hold: Hold) {
         let [a, b] = edge;
         if !self.complex.may_divide(a, b) {
