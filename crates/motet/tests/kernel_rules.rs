@@ -232,6 +232,34 @@ fn sides_of(walls: &[usize], i: usize) -> Side {
 }
 
 #[test]
+fn an_exemption_ends_with_its_tet_and_undo_restores_it() {
+    let ring = [0.0, 120.0, 240.0].map(|turn: f64| [turn.to_radians().cos(), turn.to_radians().sin(), 0.0]);
+    let points = [&[[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]][..], &ring].concat();
+    let around_the_edge = [[0, 1, 2, 3], [0, 1, 3, 4], [0, 1, 4, 2]].map(|tet| tet.map(VertexId));
+    let without_it = [[2, 3, 4, 1], [2, 4, 3, 0]].map(|tet| tet.map(VertexId));
+    let mut complex = Complex::new(&TetMesh::new(points, around_the_edge.to_vec())).unwrap();
+    let (mut change, mut inserted) = (Change::default(), Vec::new());
+    let all: Vec<TetId> = complex.tets().collect();
+    complex.exempt(&all, 0.2);
+    assert_eq!((complex.n_exempt(), complex.quality(all[2])), (3, f64::INFINITY));
+
+    let start = complex.mark();
+    for fill in [&without_it[..], &around_the_edge] {
+        change.clear();
+        change.cavity.extend(complex.tets());
+        fill.iter().for_each(|&tet| change.push(&complex, tet, 0));
+        let checked = complex.check_against(&change, 0.0).unwrap();
+        complex.commit(checked, &mut inserted);
+        assert_eq!(complex.n_exempt(), 0, "neither new tets nor slots used again are exempt");
+        assert!(inserted.iter().all(|&t| complex.quality(t) == eas(complex.corners(t))));
+        complex.verify().unwrap();
+    }
+    complex.undo(start);
+    assert_eq!((complex.n_exempt(), complex.quality(all[2])), (3, f64::INFINITY));
+    complex.verify().unwrap();
+}
+
+#[test]
 fn a_narrow_wall_forces_its_tet_only_where_it_is_firm() {
     // A needle-shaped facet with an angle of 5 degrees, and an apex high above it.
     let angle = 5f64.to_radians();

@@ -165,7 +165,7 @@ impl Objective for Sum {
 
 #[test]
 fn edge_removal_finds_the_triangulation_of_the_least_sum() {
-    let (mut removal, mut change) = (EdgeRemoval::default(), dirty());
+    let (mut removal, mut change, mut shell) = (EdgeRemoval::default(), dirty(), Shell::default());
     let mut numbers = Numbers(7);
     let mut n_removed = 0;
     for n in (3..=7).cycle().take(200) {
@@ -177,7 +177,8 @@ fn edge_removal_finds_the_triangulation_of_the_least_sum() {
         let least = triangulations(0, n - 1).iter().map(sum).fold(f64::INFINITY, f64::min);
         for start in (0..n).map(TetId::new) {
             let mut objective = Sum { limit: 1e9, bar: 0.1 };
-            let is_proposed = removal.propose_for(&complex, start, [A, B], &mut objective, &mut change);
+            shell.walk(&complex, start, A, B);
+            let is_proposed = removal.propose_for(&complex, &shell, [A, B], &mut objective, &mut change);
             assert_eq!(is_proposed, least.is_finite(), "{least}");
             if is_proposed {
                 n_removed += 1;
@@ -189,10 +190,7 @@ fn edge_removal_finds_the_triangulation_of_the_least_sum() {
         // No fill that costs as much as the limit is accepted.
         for (limit, is_below) in [(least - 1e-12, false), (least + 1e-12, least.is_finite())] {
             let mut objective = Sum { limit, bar: 0.1 };
-            assert_eq!(
-                removal.propose_for(&complex, TetId(0), [A, B], &mut objective, &mut change),
-                is_below
-            );
+            assert_eq!(removal.propose_for(&complex, &shell, [A, B], &mut objective, &mut change), is_below);
         }
     }
     assert!(n_removed > 100, "{n_removed}");

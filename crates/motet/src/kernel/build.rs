@@ -1,18 +1,22 @@
 //! The construction of a complex from plain arrays.
 
-use std::cell::Cell;
-
 use crate::base::{Error, Result, TetId, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::{ROUGH_EAS_ERROR, rough_eas};
 use crate::geometry::tet::FACETS;
-use crate::kernel::complex::{Complex, NO_TET, UNMEASURED};
-use crate::kernel::exempt::NONE_EXEMPT;
+use crate::kernel::complex::Complex;
 use crate::kernel::hold::Hold;
 use crate::kernel::journal::Journal;
 use crate::kernel::lines::Lines;
 use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
+use crate::kernel::locks::Locks;
+use crate::kernel::overlaps::Overlaps;
+use crate::kernel::provenance::Provenance;
+use crate::kernel::qualities::Qualities;
 use crate::kernel::star::Star;
+use crate::kernel::tets::{NO_TET, Tets};
+use crate::kernel::vertices::Vertices;
+use crate::kernel::walls::Walls;
 use crate::mesh::TetMesh;
 use crate::mesh::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
@@ -47,73 +51,43 @@ impl Complex {
             }
         }
         let n_tets = tets.len();
-        let mut vertex_to_n_tets = vec![0u32; points.len()];
-        tets.as_flattened().iter().for_each(|v| vertex_to_n_tets[v.index()] += 1);
-        let mut vertex_to_tet = vec![NO_TET; points.len()];
-        for (t, tet) in tets.iter().enumerate() {
-            tet.iter().for_each(|v| vertex_to_tet[v.index()] = TetId::new(t));
-        }
-        let mut fixed_edges = mesh.fixed_edges.clone();
-        fixed_edges.iter_mut().for_each(|edge| edge.sort_unstable());
-        fixed_edges.sort_unstable();
         let (lines, loose) = Lines::of(mesh);
         let mut complex = Self {
-            holds: vec![Hold::Free; points.len()],
-            vertex_is_changed: vec![false; points.len()],
-            vertex_is_inserted: vec![false; points.len()],
-            points: points.clone(),
-            vertex_to_tet,
-            vertex_to_n_tets,
-            is_new: vec![false; tets.len()],
-            tets,
-            links: joined.links,
+            overlaps: Overlaps::new(&tets, points.len(), folded),
+            provenance: Provenance::new(n_tets, points.len(), 2 * n_reversed > n_tets),
+            tets: Tets::new(tets, joined.links, points.len()),
             regions: regions.clone(),
-            qualities: vec![Cell::new(UNMEASURED); n_tets],
-            is_tangled: false,
-            rough,
-            walls: joined.walls,
-            free_vertices: Vec::new(),
-            free_tets: Vec::new(),
-            free_walls: Vec::new(),
-            is_locked: Vec::new(),
-            fixed_edges,
+            vertices: Vertices::new(points.clone()),
+            walls: Walls::new(joined.walls),
             lines,
-            is_fixed_wall: Vec::new(),
-            exempt_range: NONE_EXEMPT,
-            folded,
-            keeps_surface: true,
-            mostly_reversed: 2 * n_reversed > n_tets,
-            removed_triangles: Vec::new(),
+            locks: Locks::new(&mesh.fixed_edges),
+            qualities: Qualities::new(rough),
             journal: Journal::default(),
         };
         complex.constrain_walls(&mesh.fixed_vertices);
         complex.constrain_lines(&loose);
-        complex.is_tangled = complex.has_flat_or_inverted() || complex.has_disconnected_star();
+        complex.overlaps.is_tangled = complex.has_flat_or_inverted() || complex.has_disconnected_star();
         Ok(complex)
     }
 
     /// Constrains vertices of walls to the surface, and fixes vertices that are marked as fixed or have no
     /// tet.
     fn constrain_walls(&mut self, fixed_vertices: &[VertexId]) {
-        for i in 0..self.walls.len() {
-            let side = self.walls[i].sides[0];
-            for v in self.facet(side) {
-                self.holds[v.index()] = Hold::Surface;
-            }
+        for (_, wall) in self.walls.iter() {
+            let facet = self.tets.outward(wall.sides[0]);
+            facet.into_iter().for_each(|v| self.vertices.set_hold(v, Hold::Surface));
         }
-        for (hold, tet) in self.holds.iter_mut().zip(&self.vertex_to_tet) {
-            if *tet == NO_TET {
-                *hold = Hold::Fixed;
-            }
+        for v in self.vertices.slots().filter(|&v| self.tets.tet_of(v) == NO_TET) {
+            self.vertices.set_hold(v, Hold::Fixed);
         }
-        for v in fixed_vertices.iter().chain(self.fixed_edges.as_flattened()) {
-            self.holds[v.index()] = Hold::Fixed;
+        for &v in fixed_vertices.iter().chain(self.locks.edges().as_flattened()) {
+            self.vertices.set_hold(v, Hold::Fixed);
         }
     }
 
     fn has_flat_or_inverted(&self) -> bool {
-        let near_flat = (0..self.tets.len()).filter(|&t| f64::from(self.rough[t]) <= ROUGH_EAS_ERROR);
-        near_flat.map(|t| self.tets[t].map(|v| self.point(v))).any(|[a, b, c, d]| orient3d(a, b, c, d) <= 0)
+        let near_flat = self.tets().filter(|t| self.qualities.rough(*t) <= ROUGH_EAS_ERROR);
+        near_flat.map(|t| self.corners(t)).any(|[a, b, c, d]| orient3d(a, b, c, d) <= 0)
     }
 
     /// Whether the tets of a vertex at a wall are connected only by the vertex, or by an edge. This is so
@@ -121,15 +95,8 @@ impl Complex {
     /// others.
     fn has_disconnected_star(&self) -> bool {
         let mut star = Star::default();
-        let mut vertices = (0..self.points.len()).map(VertexId::new);
-        vertices.any(|v| {
-            self.holds[v.index()] != Hold::Free && self.is_used(v) && !self.is_one_star(v, &mut star)
-        })
-    }
-
-    /// Overrides the constraint on a vertex.
-    pub fn set_hold(&mut self, vertex: VertexId, hold: Hold) {
-        self.holds[vertex.index()] = hold;
+        let mut vertices = self.vertices.slots();
+        vertices.any(|v| self.hold(v) != Hold::Free && self.is_used(v) && !self.is_one_star(v, &mut star))
     }
 }
 
@@ -220,13 +187,4 @@ fn not_orientable(tet: usize) -> Error {
     Error::input("the tets around it cannot all be oriented consistently")
         .at(format!("tet {tet}"))
         .remedy("the mesh is not orientable: mesh it again")
-}
-
-impl Complex {
-    /// The vertices of a facet, counter-clockwise seen from outside its tet.
-    #[inline]
-    pub fn facet(&self, half: HalfFacet) -> [VertexId; 3] {
-        let tet = self.vertices(half.tet());
-        FACETS[half.facet()].map(|place| tet[place])
-    }
 }

@@ -149,12 +149,12 @@ impl Complex {
                 return Err(Reject::NotPositive(tet.vertices));
             }
         }
-        if !self.is_tangled && self.is_move(change) {
+        if !self.overlaps.is_tangled && self.is_move(change) {
             return Ok(self.join_as_before(change));
         }
         self.check_vertices(change)?;
         let lost_lines = self.check_edges(change)?;
-        if self.is_tangled {
+        if self.overlaps.is_tangled {
             self.check_existing(change)?;
         }
         Ok(Checked { lost_lines, ..self.join(change)? })
@@ -170,7 +170,7 @@ impl Complex {
             VertexChange::Move(v, _) | VertexChange::Remove(v) => Some(v),
             _ => None,
         };
-        let is_held = |v: VertexId| match self.keeps_surface {
+        let is_held = |v: VertexId| match self.keeps_surface() {
             true => self.hold(v) != Hold::Free,
             false => self.hold(v) == Hold::Fixed,
         };
@@ -179,9 +179,9 @@ impl Complex {
         }
         // Where tets overlap, the tets of a vertex may be connected by the vertex only: no walk through
         // facets finds all of them.
-        if let Some(v) = moved.filter(|_| self.is_tangled) {
+        if let Some(v) = moved.filter(|_| self.overlaps.is_tangled) {
             let n = change.cavity.iter().filter(|&&t| self.vertices(t).contains(&v)).count();
-            if n != self.vertex_to_n_tets[v.index()] as usize {
+            if n != self.overlaps.n_tets(v) {
                 return Err(Reject::Vertex(v));
             }
         }
@@ -261,7 +261,7 @@ impl Complex {
                 Joint::InnerWall(sides, *wall)
             }
             // Walls change only where the surface may.
-            _ if self.keeps_surface => return Err(self.refusal(uses)),
+            _ if self.keeps_surface() => return Err(self.refusal(uses)),
             [Use { role: AtWall(_, wall), .. }]
             | [Use { role: InnerWall(_, wall), .. }, Use { role: InnerWall(..), .. }] => {
                 if self.is_fixed_wall(*wall) {

@@ -1,15 +1,14 @@
-//! The only code that writes connectivity.
-
-use std::cell::Cell;
+//! The changes of a complex made, as they were checked.
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::change::{Fill, NewLine, NewWall, VertexChange};
 use crate::kernel::check::{Checked, FillFacet, Joint};
-use crate::kernel::complex::{Complex, FREE, NO_TET};
-use crate::kernel::hold::Hold;
+use crate::kernel::complex::Complex;
 use crate::kernel::journal::{Entry, TetRecord, VertexRecord};
 use crate::kernel::lines::{Line, rising};
 use crate::kernel::link::{HalfFacet, Link, NO_TRIANGLE, Wall, WallId};
+use crate::kernel::provenance::Origin;
+use crate::kernel::tets::{FREE, NO_TET};
 
 impl Complex {
     /// Makes a checked change. `inserted` gets the ids of the tets of the fill, in their order.
@@ -41,7 +40,7 @@ impl Complex {
         }
         if let VertexChange::Remove(v) = change.vertex {
             self.set_tet_of(v, NO_TET);
-            self.free_vertices.push(v);
+            self.vertices.free_slot(v);
             self.note(|_| Entry::FreedVertex);
         }
     }
@@ -52,72 +51,56 @@ impl Complex {
             VertexChange::Insert(point, hold) => {
                 let vertex = self.take_vertex_slot();
                 self.note_vertex(vertex);
-                self.points[vertex.index()] = point;
-                self.holds[vertex.index()] = hold;
-                self.vertex_is_changed[vertex.index()] = true;
-                self.vertex_is_inserted[vertex.index()] = true;
+                self.vertices.set_point(vertex, point);
+                self.vertices.set_hold(vertex, hold);
+                self.provenance.set_origin(vertex, Origin::Inserted);
             }
             VertexChange::Move(vertex, point) => {
                 self.note_vertex(vertex);
-                self.points[vertex.index()] = point;
-                self.vertex_is_changed[vertex.index()] = true;
+                self.vertices.set_point(vertex, point);
+                self.provenance.set_moved(vertex);
             }
         }
     }
 
     fn note_vertex(&mut self, v: VertexId) {
         self.note(|c| {
-            let i = v.index();
-            Entry::Vertex(
-                v,
-                VertexRecord {
-                    point: c.points[i],
-                    hold: c.holds[i],
-                    is_new: c.vertex_is_changed[i],
-                    is_inserted: c.vertex_is_inserted[i],
-                },
-            )
+            let record = VertexRecord { point: c.point(v), hold: c.hold(v), origin: c.provenance.origin(v) };
+            Entry::Vertex(v, record)
         });
     }
 
     fn write_tet(&mut self, tet: TetId, fill: &Fill) {
         self.note_tet(tet);
-        let i = tet.index();
         self.set_vertices(tet, fill.vertices);
-        self.regions[i] = fill.region;
-        self.qualities[i].set(fill.quality);
-        self.is_new[i] = true;
+        self.regions[tet.index()] = fill.region;
+        self.qualities.set(tet, fill.quality);
+        self.provenance.set_new(tet, true);
     }
 
     pub(super) fn free_tet(&mut self, tet: TetId) {
         self.note_tet(tet);
-        let i = tet.index();
-        self.set_vertices(tet, FREE);
-        self.is_new[i] = true;
-        self.free_tets.push(tet);
+        self.overlaps.replace(self.vertices(tet), FREE);
+        self.tets.remove(tet);
+        self.qualities.remove(tet);
+        self.provenance.set_new(tet, true);
         self.note(|_| Entry::FreedTet);
     }
 
     /// Sets the vertices of a slot, and updates the number of tets of each vertex.
     pub(super) fn set_vertices(&mut self, tet: TetId, vertices: [VertexId; 4]) {
-        let before = std::mem::replace(&mut self.tets[tet.index()], vertices);
-        if before != FREE {
-            before.iter().for_each(|v| self.vertex_to_n_tets[v.index()] -= 1);
-        }
-        if vertices != FREE {
-            vertices.iter().for_each(|v| self.vertex_to_n_tets[v.index()] += 1);
-        }
+        self.overlaps.replace(self.vertices(tet), vertices);
+        self.tets.set_vertices(tet, vertices);
     }
 
     fn note_tet(&mut self, tet: TetId) {
         self.note(|c| {
-            let i = tet.index();
             let record = TetRecord {
-                vertices: c.tets[i],
-                links: c.links[i],
-                region: c.regions[i],
-                quality: c.qualities[i].get(),
-                is_new: c.is_new[i],
+                vertices: c.vertices(tet),
+                links: c.tets.links(tet),
+                region: c.region(tet),
+                quality: c.qualities.record(tet),
+                is_new: c.provenance.is_new(tet),
             };
             Entry::Tet(tet, record)
         });
@@ -127,27 +110,21 @@ impl Complex {
         let half = |part: FillFacet| HalfFacet::new(inserted[part.tet as usize], usize::from(part.facet));
         match joint {
             Joint::Inner([x, y]) => {
-                self.set_link(half(x), Link::tet(half(y)));
-                self.set_link(half(y), Link::tet(half(x)));
+                self.tets.set_link(half(x), Link::tet(half(y)));
+                self.tets.set_link(half(y), Link::tet(half(x)));
             }
             Joint::Outer(x, outside) => {
-                self.set_link(half(x), Link::tet(outside));
-                self.note(|c| {
-                    Entry::Link(
-                        outside.tet(),
-                        outside.facet() as u8,
-                        c.links[outside.tet().index()][outside.facet()],
-                    )
-                });
-                self.set_link(outside, Link::tet(half(x)));
+                self.tets.set_link(half(x), Link::tet(outside));
+                self.note(|c| Entry::Link(outside, c.tets.link(outside)));
+                self.tets.set_link(outside, Link::tet(half(x)));
             }
             Joint::AtWall(x, wall, before) => {
-                let mut sides = self.walls[wall.index()].sides;
+                let mut sides = self.wall(wall).sides;
                 sides[usize::from(sides[0] != before)] = half(x);
-                self.set_wall(wall, Wall { sides, ..self.walls[wall.index()] });
+                self.set_wall(wall, Wall { sides, ..*self.wall(wall) });
             }
             Joint::InnerWall(sides, wall) => {
-                self.set_wall(wall, Wall { sides: sides.map(half), ..self.walls[wall.index()] });
+                self.set_wall(wall, Wall { sides: sides.map(half), ..*self.wall(wall) });
             }
             Joint::NewWall(x, y, new) => self.add_wall([half(x), y.map_or(HalfFacet::NONE, half)], new),
             Joint::Exposed(outside, x, new) => self.add_wall([outside, x.map_or(HalfFacet::NONE, half)], new),
@@ -161,25 +138,22 @@ impl Complex {
 
     /// Sets a wall, and the links of the tets at it.
     fn set_wall(&mut self, id: WallId, wall: Wall) {
-        self.note(|c| Entry::Wall(id, c.walls[id.index()]));
-        self.walls[id.index()] = wall;
+        self.note(|c| Entry::Wall(id, *c.wall(id)));
+        self.walls.set(id, wall);
         for side in wall.sides.into_iter().filter(|side| !side.is_none()) {
-            self.note(|c| {
-                Entry::Link(side.tet(), side.facet() as u8, c.links[side.tet().index()][side.facet()])
-            });
-            self.set_link(side, Link::wall(id));
+            self.note(|c| Entry::Link(side, c.tets.link(side)));
+            self.tets.set_link(side, Link::wall(id));
         }
     }
 
     pub(super) fn free_wall(&mut self, id: WallId) {
-        self.note(|c| Entry::Wall(id, c.walls[id.index()]));
-        let wall = std::mem::replace(&mut self.walls[id.index()], Wall::FREE);
+        self.note(|c| Entry::Wall(id, *c.wall(id)));
+        let wall = self.walls.remove(id);
+        self.note(|_| Entry::FreedWall);
         if !wall.is_new && wall.triangle != NO_TRIANGLE {
-            self.removed_triangles.push(wall.triangle);
+            self.provenance.remove_triangle(wall.triangle);
             self.note(|_| Entry::RemovedTriangle);
         }
-        self.free_walls.push(id);
-        self.note(|_| Entry::FreedWall);
     }
 
     fn remove_line(&mut self, edge: [VertexId; 2]) {
@@ -198,54 +172,48 @@ impl Complex {
     }
 
     #[inline]
-    fn set_link(&mut self, half: HalfFacet, link: Link) {
-        self.links[half.tet().index()][half.facet()] = link;
-    }
-
-    #[inline]
     pub(super) fn set_tet_of(&mut self, vertex: VertexId, tet: TetId) {
-        if self.vertex_to_tet[vertex.index()] != tet {
-            self.note(|c| Entry::VertexToTet(vertex, c.vertex_to_tet[vertex.index()]));
-            self.vertex_to_tet[vertex.index()] = tet;
+        if self.tet_of(vertex) != tet {
+            self.note(|c| Entry::VertexToTet(vertex, c.tet_of(vertex)));
+            self.tets.set_tet_of(vertex, tet);
         }
     }
 
     fn take_tet_slot(&mut self) -> TetId {
-        if let Some(tet) = self.free_tets.pop() {
+        let n_before = self.n_slots();
+        let tet = self.tets.take_slot();
+        if tet.index() < n_before {
             self.note(|_| Entry::TookTet(tet));
             return tet;
         }
-        self.note(|c| Entry::TetSlots(c.tets.len()));
-        self.tets.push(FREE);
-        self.links.push([Link::tet(HalfFacet::NONE); 4]);
+        self.note(|_| Entry::TetSlots(n_before));
         self.regions.push(0);
-        self.qualities.push(Cell::new(0.0));
-        self.is_new.push(true);
-        TetId::new(self.tets.len() - 1)
+        self.qualities.set(tet, 0.0);
+        self.provenance.set_new(tet, true);
+        tet
     }
 
     fn take_vertex_slot(&mut self) -> VertexId {
-        if let Some(vertex) = self.free_vertices.pop() {
+        let n_before = self.n_vertex_slots();
+        let vertex = self.vertices.take_slot();
+        if vertex.index() < n_before {
             self.note(|_| Entry::TookVertex(vertex));
             return vertex;
         }
-        self.note(|c| Entry::VertexSlots(c.points.len()));
-        self.points.push([0.0; 3]);
-        self.holds.push(Hold::Free);
-        self.vertex_is_changed.push(true);
-        self.vertex_is_inserted.push(true);
-        self.vertex_to_tet.push(NO_TET);
-        self.vertex_to_n_tets.push(0);
-        VertexId::new(self.points.len() - 1)
+        self.note(|_| Entry::VertexSlots(n_before));
+        self.provenance.set_origin(vertex, Origin::Inserted);
+        self.tets.resize_vertices(n_before + 1);
+        self.overlaps.resize(n_before + 1);
+        vertex
     }
 
     fn take_wall_slot(&mut self) -> WallId {
-        if let Some(wall) = self.free_walls.pop() {
-            self.note(|_| Entry::TookWall(wall));
-            return wall;
-        }
-        self.note(|c| Entry::WallSlots(c.walls.len()));
-        self.walls.push(Wall::FREE);
-        WallId(self.walls.len() as u32 - 1)
+        let n_before = self.walls.n_slots();
+        let wall = self.walls.take_slot();
+        self.note(|_| match wall.index() < n_before {
+            true => Entry::TookWall(wall),
+            false => Entry::WallSlots(n_before),
+        });
+        wall
     }
 }

@@ -11,17 +11,15 @@ use crate::kernel::lines::{Line, rising};
 impl Complex {
     /// Forbids changes to remove these edges; their vertices stay where they are.
     pub fn fix_edges(&mut self, edges: impl IntoIterator<Item = [VertexId; 2]>) {
-        for edge in edges {
-            self.fixed_edges.push(rising(edge));
-            edge.iter().for_each(|v| self.holds[v.index()] = Hold::Fixed);
-        }
-        self.fixed_edges.sort_unstable();
+        let edges: Vec<[VertexId; 2]> = edges.into_iter().collect();
+        edges.as_flattened().iter().for_each(|&v| self.set_hold(v, Hold::Fixed));
+        self.locks.add_edges(&edges);
     }
 
     /// Whether an edge must stay although it is not on a wall.
     #[inline]
     pub fn is_fixed_edge(&self, a: VertexId, b: VertexId) -> bool {
-        !self.fixed_edges.is_empty() && self.fixed_edges.binary_search(&[a.min(b), a.max(b)]).is_ok()
+        self.locks.has_edge(a, b)
     }
 
     /// Whether there are any lines.
@@ -78,22 +76,22 @@ impl Complex {
     /// Whether an edge may be divided: it is not fixed, and not a line if the surface is kept.
     #[inline]
     pub fn may_divide(&self, a: VertexId, b: VertexId) -> bool {
-        !(self.is_fixed_edge(a, b) || self.keeps_surface && self.line(a, b).is_some())
+        !(self.is_fixed_edge(a, b) || self.keeps_surface() && self.line(a, b).is_some())
     }
 
     /// Constrains the vertices of lines as features do; fixes those of lines that are not edges of a tet.
     pub(super) fn constrain_lines(&mut self, loose: &[VertexId]) {
         for v in self.lines().into_iter().flat_map(|(edge, _)| edge) {
-            self.holds[v.index()] = self.holds[v.index()].max(Hold::Edge);
+            self.set_hold(v, self.hold(v).max(Hold::Edge));
         }
-        loose.iter().for_each(|v| self.holds[v.index()] = Hold::Fixed);
+        loose.iter().for_each(|&v| self.set_hold(v, Hold::Fixed));
     }
 
     /// Checks that a change removes no edge that must stay; returns the edges of the lines that it removes,
     /// each once.
     pub(super) fn check_edges(&self, change: &Change) -> Result<Vec<[VertexId; 2]>, Reject> {
         let mut removed = Vec::new();
-        if self.fixed_edges.is_empty() && self.lines.is_empty() {
+        if self.locks.edges().is_empty() && self.lines.is_empty() {
             return Ok(removed);
         }
         let is_in_fill = |[a, b]: [VertexId; 2]| {
@@ -104,7 +102,7 @@ impl Complex {
                 if !self.is_kept_edge(edge[0], edge[1]) || is_in_fill(edge) {
                     continue;
                 }
-                if self.keeps_surface || self.is_fixed_edge(edge[0], edge[1]) {
+                if self.keeps_surface() || self.is_fixed_edge(edge[0], edge[1]) {
                     return Err(Reject::Edge(edge));
                 }
                 removed.push(rising(edge));

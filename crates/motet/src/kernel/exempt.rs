@@ -3,29 +3,20 @@
 //! Where two walls meet at an angle, the tet between them has that dihedral angle, whatever is done; a tet on
 //! a narrow wall has its narrow angle. Nothing can raise the quality of such a tet, and as the worst of every
 //! cavity around it, it would block each change that helps a neighbour. So such tets are exempted, each by
-//! its id: the quality stored for it marks it. A tet that replaces exempt ones is judged anew, by the walls
-//! it will have. The quality alone exempts nothing: another tet elsewhere can have the same value and need
-//! repair.
-
-use std::cell::Cell;
-use std::ops::Range;
+//! its id. A tet that replaces exempt ones is judged anew, by the walls it will have. The quality alone
+//! exempts nothing: another tet elsewhere can have the same value and need repair.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::quality::dihedral;
 use crate::geometry::tet::{EDGES, FACETS};
 use crate::geometry::triangle;
-use crate::kernel::complex::{Complex, UNMEASURED};
+use crate::kernel::complex::Complex;
 use crate::kernel::link::HalfFacet;
-
-/// The quality stored for an exempt tet: above that of any tet.
-const EXEMPT: f64 = f64::INFINITY;
+use crate::kernel::qualities::EXEMPT;
 
 /// A tet below this EAS is nearly flat, and never counts as good: two of its walls may come to lie on each
 /// other.
 pub const FLATTEST: f64 = 1e-6;
-
-/// The range of qualities of new tets that may be exempt when none may: empty.
-pub(super) const NONE_EXEMPT: Range<f64> = f64::INFINITY..f64::INFINITY;
 
 /// A quality within this of the highest that walls allow counts as reaching it.
 const NEARLY: f64 = 1e-6;
@@ -59,8 +50,7 @@ impl Complex {
     /// Cannot be undone by [`Self::undo`].
     pub fn exempt(&mut self, tets: &[TetId], limit: f64) {
         let worst = tets.iter().map(|&tet| self.measure(self.corners(tet))).fold(f64::INFINITY, f64::min);
-        self.exempt_range = worst.max(FLATTEST)..limit;
-        tets.iter().for_each(|tet| self.qualities[tet.index()].set(EXEMPT));
+        self.qualities.exempt(tets, worst.max(FLATTEST)..limit);
         self.forget();
     }
 
@@ -68,31 +58,28 @@ impl Complex {
     ///
     /// Cannot be undone by [`Self::undo`].
     pub fn end_exemptions(&mut self) {
-        self.exempt_range = NONE_EXEMPT;
-        let marked = self.qualities.iter_mut().filter(|quality| quality.get() == EXEMPT);
-        marked.for_each(|quality| *quality = Cell::new(UNMEASURED));
+        self.qualities.end_exemptions();
         self.forget();
     }
 
     /// How many tets are exempt.
     pub fn n_exempt(&self) -> usize {
-        if self.exempt_range == NONE_EXEMPT {
-            0
-        } else {
-            self.tets().filter(|&tet| self.is_exempt(tet)).count()
+        match self.qualities.exempts() {
+            true => self.tets().filter(|&tet| self.is_exempt(tet)).count(),
+            false => 0,
         }
     }
 
     pub(super) fn is_exempt(&self, tet: TetId) -> bool {
-        self.qualities[tet.index()].get() == EXEMPT
+        self.qualities.is_exempt(tet)
     }
 
-    /// The quality of a new tet whose facets will be `sides`: its EAS, or the mark of an exempt tet if walls
-    /// force it and such tets are exempt.
+    /// What a new tet whose facets will be `sides` counts as: its EAS, or infinity if walls force it and such
+    /// tets are exempt.
     #[inline]
     pub fn judge(&self, corners: [Point; 4], sides: impl Fn(usize) -> Side) -> f64 {
         let quality = self.measure(corners);
-        let may_be_exempt = self.exempt_range.contains(&quality);
+        let may_be_exempt = self.qualities.may_be_exempt(quality);
         if may_be_exempt && is_forced(corners, quality, sides) { EXEMPT } else { quality }
     }
 

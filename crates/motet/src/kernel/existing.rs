@@ -46,14 +46,14 @@ impl Stars<'_> {
     fn has_outside(&mut self, vertices: &[VertexId], change: &Change) -> bool {
         let complex = self.complex;
         // A new vertex is not in the lists yet, or has no tet.
-        let is_there = |v: &VertexId| v.index() < complex.points.len() && complex.is_used(*v);
+        let is_there = |v: &VertexId| v.index() < complex.n_vertex_slots() && complex.is_used(*v);
         if !vertices.iter().all(is_there) {
             return false;
         }
         let star = self.of(vertices[0]);
         let has_all = |tet: &TetId| vertices.iter().all(|v| complex.vertices(*tet).contains(v));
         star.iter().any(|tet| has_all(tet) && !change.cavity.contains(tet))
-            || star.len() != complex.vertex_to_n_tets[vertices[0].index()] as usize
+            || star.len() != complex.overlaps.n_tets(vertices[0])
     }
 
     fn of(&mut self, vertex: VertexId) -> &[TetId] {

@@ -3,6 +3,7 @@
 use crate::base::{Point, TetId, VertexId};
 use crate::kernel::complex::Complex;
 use crate::kernel::link::NO_TRIANGLE;
+use crate::kernel::provenance::Origin;
 use crate::mesh::TetMesh;
 
 /// Marks a row without a counterpart in the old mesh.
@@ -57,17 +58,18 @@ impl Complex {
         let old_to_new = self.extract_vertices(first.points.len(), &mut extract);
         let new_id = |v: VertexId| if old_to_new.is_empty() { v } else { old_to_new[v.index()] };
         let n_first = first.tets.len();
-        let is_kept = |t: &usize| !self.is_new[*t];
+        let is_kept = |t: &TetId| self.is_original(*t);
+        let first_tets = || (0..n_first).map(TetId::new);
         let tets = &mut extract.mesh.tets;
         tets.reserve_exact(self.n_tets());
-        for t in (0..n_first).filter(is_kept) {
-            tets.push(first.tets[t].map(new_id));
-            extract.mesh.regions.push(self.regions[t]);
-            extract.tet_to_old.push(t as u32);
+        for t in first_tets().filter(is_kept) {
+            tets.push(first.tets[t.index()].map(new_id));
+            extract.mesh.regions.push(self.region(t));
+            extract.tet_to_old.push(t.0);
         }
         for t in self.tets().filter(|&t| !self.is_original(t)) {
             let mut tet = self.vertices(t).map(new_id);
-            if self.mostly_reversed {
+            if self.provenance.mostly_reversed {
                 tet.swap(2, 3);
             }
             tets.push(tet);
@@ -75,7 +77,7 @@ impl Complex {
             extract.tet_to_old.push(NEW);
             extract.new_tets.push(t);
         }
-        extract.removed_tets = (0..n_first).filter(|t| !is_kept(t)).map(TetId::new).collect();
+        extract.removed_tets = first_tets().filter(|t| !is_kept(t)).collect();
         self.extract_triangles(first, new_id, &mut extract);
         self.extract_lines(first, new_id, &mut extract);
         extract.mesh.fixed_vertices = first.fixed_vertices.iter().map(|&v| new_id(v)).collect();
@@ -86,26 +88,25 @@ impl Complex {
     /// Extracts the points without removed ones; returns the new id of each vertex, or an empty list if none
     /// was removed.
     fn extract_vertices(&self, n_first: usize, extract: &mut Extract) -> Vec<VertexId> {
-        let mut is_removed = vec![false; if self.free_vertices.is_empty() { 0 } else { self.points.len() }];
-        self.free_vertices.iter().for_each(|v| is_removed[v.index()] = true);
+        let (all, free) = (self.vertices.points(), self.vertices.free_slots());
+        let mut is_removed = vec![false; if free.is_empty() { 0 } else { all.len() }];
+        free.iter().for_each(|v| is_removed[v.index()] = true);
         let mut old_to_new = Vec::new();
-        let mut points: Vec<Point> = Vec::with_capacity(self.points.len() - self.free_vertices.len());
-        for v in 0..self.points.len() {
+        let mut points: Vec<Point> = Vec::with_capacity(all.len() - free.len());
+        for v in self.vertices.slots() {
             let new_id = VertexId::new(points.len());
             if !is_removed.is_empty() {
                 old_to_new.push(new_id);
-                if is_removed[v] {
+                if is_removed[v.index()] {
                     continue;
                 }
             }
-            points.push(self.points[v]);
+            points.push(self.point(v));
             // A vertex that moved is still the same vertex; one in the slot of a removed vertex is not.
-            extract.vertex_to_old.push(if v < n_first && !self.vertex_is_inserted[v] {
-                v as u32
-            } else {
-                NEW
-            });
-            if self.vertex_is_changed[v] {
+            let origin = self.provenance.origin(v);
+            let is_of_first = v.index() < n_first && origin != Origin::Inserted;
+            extract.vertex_to_old.push(if is_of_first { v.0 } else { NEW });
+            if origin != Origin::First {
                 extract.changed_vertices.push(new_id);
             }
         }
@@ -145,9 +146,9 @@ impl Complex {
             extract.mesh.patches.push(patch);
             extract.triangle_to_old.push(old);
         };
-        let mut is_removed =
-            vec![false; if self.removed_triangles.is_empty() { 0 } else { first.triangles.len() }];
-        self.removed_triangles.iter().for_each(|&t| is_removed[t as usize] = true);
+        let removed = self.provenance.removed_triangles();
+        let mut is_removed = vec![false; if removed.is_empty() { 0 } else { first.triangles.len() }];
+        removed.iter().for_each(|&t| is_removed[t as usize] = true);
         for (t, &vertices) in first.triangles.iter().enumerate() {
             if !is_removed.get(t).copied().unwrap_or(false) {
                 push(vertices, first.patches[t], t as u32);

@@ -4,9 +4,10 @@ use std::collections::{HashMap, HashSet};
 
 use crate::base::{TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS};
-use crate::kernel::complex::{Complex, FREE, NO_TET};
+use crate::kernel::complex::Complex;
 use crate::kernel::lines::rising;
 use crate::kernel::link::{Behind, HalfFacet};
+use crate::kernel::tets::NO_TET;
 
 impl Complex {
     /// Checks all invariants, in time proportional to the size of the mesh.
@@ -22,17 +23,16 @@ impl Complex {
     }
 
     fn verify_slots(&self) -> Result<(), String> {
-        let mut free: Vec<_> = self.free_tets.clone();
+        let mut free = self.tets.free_slots().to_vec();
         free.sort_unstable();
-        let dead: Vec<_> =
-            (0..self.tets.len()).map(TetId::new).filter(|t| self.tets[t.index()] == FREE).collect();
+        let dead: Vec<_> = (0..self.n_slots()).map(TetId::new).filter(|&t| !self.is_alive(t)).collect();
         if free != dead {
             return Err(format!("{} tets on the free list, {} slots free", free.len(), dead.len()));
         }
         for t in self.tets() {
             let mut tet = self.vertices(t);
             tet.sort_unstable();
-            if tet.windows(2).any(|w| w[0] == w[1]) || tet[3].index() >= self.points.len() {
+            if tet.windows(2).any(|w| w[0] == w[1]) || tet[3].index() >= self.n_vertex_slots() {
                 return Err(format!("tet {t} has the vertices {tet:?}"));
             }
             let measured = self.measure(self.corners(t));
@@ -109,19 +109,19 @@ impl Complex {
     }
 
     fn verify_vertices(&self) -> Result<(), String> {
-        let mut n_tets = vec![0u32; self.points.len()];
+        let mut n_tets = vec![0usize; self.n_vertex_slots()];
         self.tets().flat_map(|t| self.vertices(t)).for_each(|v| n_tets[v.index()] += 1);
-        for v in (0..self.points.len()).map(VertexId::new) {
+        for v in self.vertices.slots() {
             let (tet, n) = (self.tet_of(v), n_tets[v.index()]);
-            if (n > 0) != (tet != NO_TET) || n != self.vertex_to_n_tets[v.index()] {
-                let counted = self.vertex_to_n_tets[v.index()];
+            if (n > 0) != (tet != NO_TET) || n != self.overlaps.n_tets(v) {
+                let counted = self.overlaps.n_tets(v);
                 return Err(format!("vertex {v} has the tet {tet} and {n} tets, counted: {counted}"));
             }
             if tet != NO_TET && !self.vertices(tet).contains(&v) {
                 return Err(format!("vertex {v} is not in its tet {tet}"));
             }
         }
-        match self.free_vertices.iter().find(|v| self.is_used(**v)) {
+        match self.vertices.free_slots().iter().find(|v| self.is_used(**v)) {
             Some(v) => Err(format!("vertex {v} is on the free list and used")),
             None => Ok(()),
         }
@@ -132,6 +132,7 @@ impl Complex {
 mod tests {
     use super::*;
     use crate::kernel::link::{Link, Wall, WallId};
+    use crate::kernel::tets::FREE;
     use crate::mesh::shapes::box_grid;
     use crate::mesh::{TetMesh, TetPart};
 
@@ -153,18 +154,30 @@ mod tests {
         all.into_iter().find(|&(t, i)| c.is_wall(t, i) == is_wall).unwrap()
     }
 
+    fn set_vertex(c: &mut Complex, tet: TetId, place: usize, vertex: VertexId) {
+        let mut vertices = c.vertices(tet);
+        vertices[place] = vertex;
+        c.tets.set_vertices(tet, vertices);
+    }
+
     #[test]
     fn every_fault_is_found_and_named() {
         type Fault = (&'static str, fn(&mut Complex));
         let faults: [Fault; 16] = [
-            ("on the free list", |c| c.free_tets.push(TetId(0))),
-            ("on the free list", |c| c.tets[5] = FREE),
-            ("has the vertices", |c| c.tets[0][1] = c.tets[0][0]),
-            ("has the vertices", |c| c.tets[0][1] = VertexId::new(c.points.len())),
-            ("has the quality", |c| c.qualities[3].set(0.25)),
+            ("on the free list", |c| c.tets.put_back_slot(TetId(0))),
+            ("on the free list", |c| c.tets.set_vertices(TetId(5), FREE)),
+            ("has the vertices", |c| {
+                let first = c.vertices(TetId(0))[0];
+                set_vertex(c, TetId(0), 1, first);
+            }),
+            ("has the vertices", |c| {
+                let none = c.next_vertex();
+                set_vertex(c, TetId(0), 1, none);
+            }),
+            ("has the quality", |c| c.qualities.set(TetId(3), 0.25)),
             ("has nothing behind it", |c| {
                 let (t, i) = facet(c, false);
-                c.links[t.index()][i] = Link::tet(HalfFacet::NONE);
+                c.tets.set_link(HalfFacet::new(t, i), Link::tet(HalfFacet::NONE));
             }),
             ("lies between regions", |c| {
                 let (t, _) = facet(c, false);
@@ -172,46 +185,46 @@ mod tests {
             }),
             ("does not list it", |c| {
                 let (t, i) = facet(c, true);
-                c.links[t.index()][i] = Link::wall(WallId(c.walls.len() as u32 - 1));
+                c.tets.set_link(HalfFacet::new(t, i), Link::wall(WallId(c.walls.n_slots() as u32 - 1)));
                 let (u, k) = facet(c, false);
-                c.links[u.index()][k] = Link::wall(WallId(0));
+                c.tets.set_link(HalfFacet::new(u, k), Link::wall(WallId(0)));
             }),
             ("does not lead back", |c| {
                 let (t, i) = facet(c, false);
                 let k = (0..4).find(|&k| k != i && !c.is_wall(t, k)).unwrap();
-                c.links[t.index()].swap(i, k);
+                let mut links = c.tets.links(t);
+                links.swap(i, k);
+                c.tets.set_links(t, links);
             }),
             ("from opposite sides", |c| {
-                c.points.push([0.3; 3]);
+                let vertex = c.vertices.take_slot();
+                c.vertices.set_point(vertex, [0.3; 3]);
                 let (t, i) = facet(c, false);
                 let k = (0..4).find(|&k| k != i).unwrap();
-                c.tets[t.index()][k] = VertexId::new(c.points.len() - 1);
-                c.qualities[t.index()].set(c.measure(c.corners(t)));
+                set_vertex(c, t, k, vertex);
+                c.qualities.set(t, c.measure(c.corners(t)));
             }),
             ("a side that is not linked to it", |c| {
                 let (t, i) = facet(c, false);
-                c.walls.push(Wall {
-                    sides: [HalfFacet::new(t, i), HalfFacet::NONE],
-                    patch: 0,
-                    triangle: 0,
-                    is_new: true,
-                });
+                let sides = [HalfFacet::new(t, i), HalfFacet::NONE];
+                let wall = c.walls.take_slot();
+                c.walls.set(wall, Wall { sides, patch: 0, triangle: 0, is_new: true });
             }),
             ("is not an edge of a tet", |c| {
                 let line = c.lines()[0].1;
-                let far = |p: &[f64; 3]| c.points.iter().position(|q| q == p).map(VertexId::new).unwrap();
+                let far = |p: &[f64; 3]| c.vertices.slots().find(|&v| c.vertices.point(v) == *p).unwrap();
                 let edge = rising([far(&[0.0; 3]), far(&[1.0; 3])]);
                 c.lines.set(edge, Some(line));
                 let edge = rising([far(&[0.0, 0.0, 1.0]), far(&[1.0, 1.0, 0.0])]);
                 c.lines.set(edge, Some(line));
             }),
-            ("counted", |c| c.vertex_to_n_tets[4] += 1),
-            ("counted", |c| c.vertex_to_tet[4] = NO_TET),
+            ("counted", |c| c.overlaps.replace(FREE, [VertexId(4); 4])),
+            ("counted", |c| c.tets.set_tet_of(VertexId(4), NO_TET)),
             ("is not in its tet", |c| {
                 let other = c.tets().find(|&t| !c.vertices(t).contains(&VertexId(4))).unwrap();
-                c.vertex_to_tet[4] = other;
+                c.tets.set_tet_of(VertexId(4), other);
             }),
-            ("on the free list and used", |c| c.free_vertices.push(VertexId(4))),
+            ("on the free list and used", |c| c.vertices.free_slot(VertexId(4))),
         ];
         for (i, (name, make)) in faults.into_iter().enumerate() {
             let mut complex = sound();

@@ -3,7 +3,9 @@
 use crate::base::{Point, TetId, VertexId};
 use crate::kernel::hold::Hold;
 use crate::kernel::lines::Line;
-use crate::kernel::link::{Link, Wall, WallId};
+use crate::kernel::link::{HalfFacet, Link, Wall, WallId};
+use crate::kernel::provenance::Origin;
+use crate::kernel::qualities::QualityRecord;
 
 /// One recorded value.
 #[derive(Clone, Copy, Debug)]
@@ -11,7 +13,7 @@ pub(super) enum Entry {
     Tet(TetId, TetRecord),
     Vertex(VertexId, VertexRecord),
     Wall(WallId, Wall),
-    Link(TetId, u8, Link),
+    Link(HalfFacet, Link),
     VertexToTet(VertexId, TetId),
     TetSlots(usize),
     VertexSlots(usize),
@@ -32,7 +34,7 @@ pub(super) struct TetRecord {
     pub(super) vertices: [VertexId; 4],
     pub(super) links: [Link; 4],
     pub(super) region: i32,
-    pub(super) quality: f64,
+    pub(super) quality: QualityRecord,
     pub(super) is_new: bool,
 }
 
@@ -40,8 +42,7 @@ pub(super) struct TetRecord {
 pub(super) struct VertexRecord {
     pub(super) point: Point,
     pub(super) hold: Hold,
-    pub(super) is_new: bool,
-    pub(super) is_inserted: bool,
+    pub(super) origin: Origin,
 }
 
 /// The entries; they are recorded while the journal is open.

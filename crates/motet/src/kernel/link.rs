@@ -116,6 +116,13 @@ impl Link {
         self.0 & WALL != 0
     }
 
+    /// The facet of another tet; only where there is no wall.
+    #[inline(always)]
+    pub(super) fn half(self) -> HalfFacet {
+        debug_assert!(!self.is_wall());
+        HalfFacet(self.0)
+    }
+
     #[inline(always)]
     pub(super) fn behind(self) -> Behind {
         match self.is_wall() {

@@ -3,9 +3,10 @@
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::change::NewWall;
-use crate::kernel::complex::{Complex, FREE, NO_TET};
+use crate::kernel::complex::Complex;
 use crate::kernel::hold::Hold;
 use crate::kernel::link::{Behind, HalfFacet, NO_TRIANGLE, Wall};
+use crate::kernel::tets::NO_TET;
 
 impl Complex {
     /// Removes, one after the other, the tets of the first mesh that are folded over others and have no tet
@@ -15,7 +16,7 @@ impl Complex {
     /// A tet that a motion has inverted stays, and so does one with a labelled triangle on an outer facet or
     /// with a fixed vertex that the remaining tet does not share: the boundary there was given.
     pub fn peel(&mut self) -> usize {
-        let mut folded = std::mem::take(&mut self.folded);
+        let mut folded = std::mem::take(&mut self.overlaps.folded);
         let n_folded = folded.len();
         loop {
             let before = folded.len();
@@ -61,16 +62,15 @@ impl Complex {
         self.free_tet(tet);
         self.add_wall([behind, HalfFacet::NONE], new);
         for vertex in vertices {
-            if self.vertex_to_tet[vertex.index()] == tet {
-                let has = |t: &TetId| self.tets[t.index()] != FREE && self.tets[t.index()].contains(&vertex);
+            if self.tet_of(vertex) == tet {
                 let other = if new.vertices.contains(&vertex) {
                     Some(behind.tet())
                 } else {
-                    (0..self.tets.len()).map(TetId::new).find(has)
+                    self.tets().find(|&t| self.vertices(t).contains(&vertex))
                 };
                 self.set_tet_of(vertex, other.unwrap_or(NO_TET));
                 if other.is_none() {
-                    self.free_vertices.push(vertex);
+                    self.vertices.free_slot(vertex);
                 }
             }
         }

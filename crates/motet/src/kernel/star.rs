@@ -1,8 +1,10 @@
 //! Traversal: the tets of a vertex (its star), and the tets around an edge (its shell).
 
 use crate::base::{TetId, VertexId};
-use crate::kernel::complex::{Complex, NO_TET};
+use crate::kernel::complex::Complex;
 use crate::kernel::link::{Behind, WallId};
+use crate::kernel::marks::Marks;
+use crate::kernel::tets::{NO_TET, flood};
 
 /// The tets around an edge `ab`, in order, with the vertices opposite the edge.
 ///
@@ -142,7 +144,7 @@ impl Complex {
     /// Whether all tets of a vertex are connected through facets at it; `star` gathers them.
     pub fn is_one_star(&self, vertex: VertexId, star: &mut Star) -> bool {
         star.gather(self, vertex);
-        star.tets.len() == self.vertex_to_n_tets[vertex.index()] as usize
+        star.tets.len() == self.overlaps.n_tets(vertex)
     }
 }
 
@@ -155,63 +157,18 @@ impl Star {
         if start == NO_TET {
             return;
         }
-        self.marks.begin(complex.n_slots());
-        self.marks.add(start);
-        self.tets.push(start);
-        let mut i = 0;
-        while i < self.tets.len() {
-            let tet = self.tets[i];
-            let place = complex.place(tet, vertex);
-            for facet in (0..4).filter(|&facet| facet != place) {
-                self.has_walls |= complex.is_wall(tet, facet);
-                let next = complex.across(tet, facet);
-                if !next.is_none() && self.marks.add(next.tet()) {
-                    self.tets.push(next.tet());
-                }
-            }
-            i += 1;
-        }
+        let reached = (&mut self.tets, &mut self.marks);
+        let has_vertex = |opposite: VertexId| opposite != vertex;
+        flood(&complex.tets, start, reached, has_vertex, |half| {
+            self.has_walls |= complex.is_wall(half.tet(), half.facet());
+            complex.across(half.tet(), half.facet())
+        });
     }
 
     /// Whether a tet is among those gathered last.
     #[inline]
     pub fn has(&self, tet: TetId) -> bool {
         self.marks.has(tet)
-    }
-}
-
-/// A set of tets that can be emptied in constant time: each tet stores the number of the round in which it
-/// was last added.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Marks {
-    rounds: Vec<u32>,
-    round: u32,
-}
-
-impl Marks {
-    /// Empties the set; ids are below `n`.
-    pub(crate) fn begin(&mut self, n: usize) {
-        if self.rounds.len() < n {
-            // With some extra, which the system zeroes on first use.
-            self.rounds = vec![0; n + n / 8 + 64];
-            self.round = 0;
-        }
-        if self.round == u32::MAX {
-            self.rounds.fill(0);
-            self.round = 0;
-        }
-        self.round += 1;
-    }
-
-    /// Adds a tet; returns whether it was not yet in the set.
-    #[inline(always)]
-    pub(crate) fn add(&mut self, tet: TetId) -> bool {
-        std::mem::replace(&mut self.rounds[tet.index()], self.round) != self.round
-    }
-
-    #[inline(always)]
-    pub(crate) fn has(&self, tet: TetId) -> bool {
-        self.rounds.get(tet.index()) == Some(&self.round)
     }
 }
 

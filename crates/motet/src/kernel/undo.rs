@@ -36,45 +36,40 @@ impl Complex {
     fn take_back(&mut self, entry: Entry) {
         match entry {
             Entry::Tet(t, record) => {
-                let i = t.index();
                 self.set_vertices(t, record.vertices);
-                self.links[i] = record.links;
-                self.regions[i] = record.region;
-                self.qualities[i].set(record.quality);
-                self.is_new[i] = record.is_new;
+                self.tets.set_links(t, record.links);
+                self.regions[t.index()] = record.region;
+                self.qualities.restore(t, record.quality);
+                self.provenance.set_new(t, record.is_new);
             }
             Entry::Vertex(v, record) => {
-                self.points[v.index()] = record.point;
-                self.holds[v.index()] = record.hold;
-                self.vertex_is_changed[v.index()] = record.is_new;
-                self.vertex_is_inserted[v.index()] = record.is_inserted;
+                self.vertices.set_point(v, record.point);
+                self.vertices.set_hold(v, record.hold);
+                self.provenance.set_origin(v, record.origin);
             }
-            Entry::Wall(w, wall) => self.walls[w.index()] = wall,
-            Entry::Link(t, i, link) => self.links[t.index()][usize::from(i)] = link,
-            Entry::VertexToTet(v, t) => self.vertex_to_tet[v.index()] = t,
+            Entry::Wall(w, wall) => _ = self.walls.set(w, wall),
+            Entry::Link(half, link) => self.tets.set_link(half, link),
+            Entry::VertexToTet(v, t) => self.tets.set_tet_of(v, t),
             Entry::TetSlots(n) => {
                 self.tets.truncate(n);
-                self.links.truncate(n);
                 self.regions.truncate(n);
                 self.qualities.truncate(n);
-                self.is_new.truncate(n);
+                self.provenance.truncate_tets(n);
             }
             Entry::VertexSlots(n) => {
-                self.points.truncate(n);
-                self.holds.truncate(n);
-                self.vertex_is_changed.truncate(n);
-                self.vertex_is_inserted.truncate(n);
-                self.vertex_to_tet.truncate(n);
-                self.vertex_to_n_tets.truncate(n);
+                self.vertices.truncate(n);
+                self.provenance.truncate_vertices(n);
+                self.tets.resize_vertices(n);
+                self.overlaps.resize(n);
             }
             Entry::WallSlots(n) => self.walls.truncate(n),
-            Entry::TookTet(t) => self.free_tets.push(t),
-            Entry::TookVertex(v) => self.free_vertices.push(v),
-            Entry::TookWall(w) => self.free_walls.push(w),
-            Entry::FreedTet => drop(self.free_tets.pop()),
-            Entry::FreedVertex => drop(self.free_vertices.pop()),
-            Entry::FreedWall => drop(self.free_walls.pop()),
-            Entry::RemovedTriangle => drop(self.removed_triangles.pop()),
+            Entry::TookTet(t) => self.tets.put_back_slot(t),
+            Entry::TookVertex(v) => self.vertices.free_slot(v),
+            Entry::TookWall(w) => self.walls.put_back_slot(w),
+            Entry::FreedTet => self.tets.keep_last_freed(),
+            Entry::FreedVertex => self.vertices.keep_last_freed(),
+            Entry::FreedWall => self.walls.keep_last_freed(),
+            Entry::RemovedTriangle => self.provenance.restore_triangle(),
             Entry::Line(edge, line) => drop(self.lines.set(edge, line)),
             Entry::RemovedLine => drop(self.lines.removed.pop()),
         }

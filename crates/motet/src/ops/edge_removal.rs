@@ -18,6 +18,7 @@ const MAX_RING: usize = 10;
 /// Work arrays, reused from call to call.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeRemoval {
+    /// Buffer of [`Self::propose`].
     shell: Shell,
     /// For ring vertices i < j: the lowest cost of filling the ring between them, and the third vertex of the
     /// triangle at `ij`.
@@ -36,58 +37,40 @@ impl EdgeRemoval {
         bar: f64,
         change: &mut Change,
     ) -> bool {
-        self.propose_for(complex, start, [a, b], &mut WorstAbove(bar), change)
+        let mut shell = std::mem::take(&mut self.shell);
+        shell.walk(complex, start, a, b);
+        let is_better = self.propose_for(complex, &shell, [a, b], &mut WorstAbove(bar), change);
+        self.shell = shell;
+        is_better
     }
 
-    /// Makes the proposal of [`Self::propose`] with the lowest cost. Returns `false` if none is below the
-    /// limit of the objective.
+    /// Proposes to remove the edge from `a` to `b`, with the tets `shell` around it, in the way of
+    /// [`Self::propose`] that has the lowest cost. Returns `false` if none is below the limit of the
+    /// objective.
     pub fn propose_for(
         &mut self,
         complex: &Complex,
-        start: TetId,
+        shell: &Shell,
         [a, b]: [VertexId; 2],
         objective: &mut impl Objective,
         change: &mut Change,
     ) -> bool {
-        self.shell.walk(complex, start, a, b);
         if complex.is_kept_edge(a, b) {
             return false;
         }
         change.clear();
-        change.cavity.extend_from_slice(&self.shell.tets);
-        let m = self.shell.ring.len();
-        match self.shell.walls[..] {
-            [] if m >= 3 => self.fill(complex, [a, b], (0, m), objective, change),
+        change.cavity.extend_from_slice(&shell.tets);
+        let m = shell.ring.len();
+        match shell.walls[..] {
+            [] if m >= 3 => self.fill(complex, (shell, [a, b]), (0, m), objective, change),
             [i, j] if !complex.keeps_surface() => {
-                self.swap_walls(complex, [a, b], [i, j], change)
-                    && self.fill(complex, [a, b], (i, j - i + 1), objective, change)
-                    && (!self.shell.is_closed
-                        || self.fill(complex, [a, b], (j, m - j + i + 1), objective, change))
+                swap_walls(complex, (shell, [a, b]), [i, j], change)
+                    && self.fill(complex, (shell, [a, b]), (i, j - i + 1), objective, change)
+                    && (!shell.is_closed
+                        || self.fill(complex, (shell, [a, b]), (j, m - j + i + 1), objective, change))
             }
             _ => false,
         }
-    }
-
-    /// The tets around the edge that was last examined.
-    pub fn tets(&self) -> &[TetId] {
-        &self.shell.tets
-    }
-
-    /// Replaces the walls at indices `i` and `j` of the ring by two between the same four vertices. Returns
-    /// `false` if they belong to different patches, or if one of the new walls would lie on the other.
-    fn swap_walls(
-        &self,
-        complex: &Complex,
-        [a, b]: [VertexId; 2],
-        places: [usize; 2],
-        change: &mut Change,
-    ) -> bool {
-        let [first, second] = places.map(|place| complex.wall(self.shell.wall_at(complex, place)));
-        let [p, q] = places.map(|place| self.shell.ring[place]);
-        for (end, wall) in [(a, first), (b, second)] {
-            change.walls.push(NewWall { vertices: [end, p, q], patch: wall.patch, triangle: wall.triangle });
-        }
-        first.patch == second.patch && !would_fold([a, b, p, q].map(|v| complex.point(v)))
     }
 
     /// Fills the part of the ring that begins at index `start` and has `n` vertices. With fewer than three
@@ -95,7 +78,7 @@ impl EdgeRemoval {
     fn fill(
         &mut self,
         complex: &Complex,
-        edge: [VertexId; 2],
+        (shell, edge): (&Shell, [VertexId; 2]),
         (start, n): (usize, usize),
         objective: &mut impl Objective,
         change: &mut Change,
@@ -103,16 +86,16 @@ impl EdgeRemoval {
         if n > MAX_RING {
             return false;
         }
-        let m = self.shell.ring.len();
+        let m = shell.ring.len();
         let mut ring = [VertexId(0); MAX_RING];
         for (i, vertex) in ring[..n].iter_mut().enumerate() {
-            *vertex = self.shell.ring[(start + i) % m];
+            *vertex = shell.ring[(start + i) % m];
         }
         if n < 3 {
             return true;
         }
-        let region = complex.region(self.shell.tets[start % self.shell.tets.len()]);
-        let limit = objective.limit(complex, &self.shell.tets, 2 * (n - 2));
+        let region = complex.region(shell.tets[start % shell.tets.len()]);
+        let limit = objective.limit(complex, &shell.tets, 2 * (n - 2));
         self.tabulate(complex, edge, &ring[..n], limit, objective, change) && {
             self.build(complex, edge, &ring[..n], region, (0, n - 1), change);
             true
@@ -185,6 +168,24 @@ impl EdgeRemoval {
         self.build(complex, [a, b], ring, region, (k, j), change);
     }
 }
+
+/// Replaces the walls at indices `i` and `j` of the ring around an edge by two between the same four
+/// vertices. Returns `false` if they belong to different patches, or if one of the new walls would lie on the
+/// other.
+fn swap_walls(
+    complex: &Complex,
+    (shell, [a, b]): (&Shell, [VertexId; 2]),
+    places: [usize; 2],
+    change: &mut Change,
+) -> bool {
+    let [first, second] = places.map(|place| complex.wall(shell.wall_at(complex, place)));
+    let [p, q] = places.map(|place| shell.ring[place]);
+    for (end, wall) in [(a, first), (b, second)] {
+        change.walls.push(NewWall { vertices: [end, p, q], patch: wall.patch, triangle: wall.triangle });
+    }
+    first.patch == second.patch && !would_fold([a, b, p, q].map(|v| complex.point(v)))
+}
+
 /// Whether one of the walls `apq` and `bqp`, which would replace `abp` and `baq`, faces the other way. If all
 /// four vertices lie in a plane and the midpoint of `pq` is outside both old walls, that would leave a tet
 /// without volume between walls.

@@ -2,10 +2,8 @@
 
 use super::flats::FlatFacets;
 use super::recovery::{Part, Unrecovered};
-use super::tets::Tets;
 use crate::base::{Csr, Error, TetId, VertexId, same_orientation};
-use crate::kernel::HalfFacet;
-use crate::spatial::OUTSIDE;
+use crate::kernel::{HalfFacet, NO_TET, Tets};
 
 /// The bodies, and those on both sides of each flat facet.
 pub(super) struct Bodies {
@@ -47,9 +45,9 @@ impl Bodies {
             }
         }
         let mut bodies = Self { of_slot: vec![Self::NONE; tets.n_slots()], count: 0, sides: Vec::new() };
-        let first = tets.at(corner);
+        let first = tets.tet_of(corner);
         let others: Vec<_> = tets.iter().map(|(tet, _)| tet).collect();
-        for tet in [first].into_iter().filter(|&t| t != OUTSIDE).chain(others) {
+        for tet in [first].into_iter().filter(|&t| t != NO_TET).chain(others) {
             if bodies.of_slot[tet.index()] == Self::NONE {
                 bodies.flood(tets, &walls, tet);
             }

@@ -10,9 +10,8 @@
 
 use super::sides::Sides;
 use super::sites::Sites;
-use super::tets::Tets;
 use crate::base::{TetId, VertexId};
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 /// A facet seen from within a hollow, and what lies behind it.
 #[derive(Clone, Copy, Debug)]

@@ -16,9 +16,8 @@ use super::share::Share;
 use super::sites::{OnSegment, Sites};
 use super::split::{Protected, Split, faces_around, positive_part, round_between};
 use super::swap::{Swap, Target};
-use super::tets::Tets;
 use crate::base::{TetId, VertexId, sorted_ids};
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 /// An edge that meets at most this many facets may have twice that number of swaps without gain before it
 /// gets a point: such swaps may make way for one that gains.

@@ -14,10 +14,9 @@ use super::recovery::{Order, Part, Unrecovered};
 use super::segments::Segments;
 use super::sites::Sites;
 use super::split::Protected;
-use super::tets::Tets;
 use super::wrap::GiftWrap;
 use crate::base::{Csr, Error, TetId, VertexId, sorted_ids};
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 /// Makes every flat facet a set of facets of tets; returns them, oriented like the first triangle of each
 /// flat facet. Where `may_swap`, swaps are tried first, and triangles get points inside where all else fails.
@@ -207,7 +206,7 @@ impl Work {
     ) -> Result<(), Stuck> {
         self.cut.find(tets, sites, plane, rim, |face| self.walls.contains(&sorted_ids(face)))?;
         let old: Vec<_> = self.cut.tets.iter().map(|&tet| tets.vertices(tet)).collect();
-        let at: Vec<_> = group.as_flattened().iter().map(|&v| (v, tets.at(v))).collect();
+        let at: Vec<_> = group.as_flattened().iter().map(|&v| (v, tets.tet_of(v))).collect();
         self.cut.tets.iter().for_each(|&tet| tets.remove(tet));
         let shells = std::mem::take(&mut self.cut.shells);
         self.wrap.begin();
@@ -215,7 +214,7 @@ impl Work {
         if filled.is_err() {
             self.wrap.made().iter().for_each(|&tet| tets.remove(tet));
             // Not every vertex of the group need belong to an old tet.
-            at.into_iter().for_each(|(vertex, tet)| tets.set_at(vertex, tet));
+            at.into_iter().for_each(|(vertex, tet)| tets.set_tet_of(vertex, tet));
             let outer = shells.iter().flatten().filter(|face| !face.outer.is_none());
             tets.put(&old, outer.map(|face| (sorted_ids(face.vertices), face.outer)).collect());
         }

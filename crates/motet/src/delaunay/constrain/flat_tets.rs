@@ -7,10 +7,10 @@
 use super::flatness::is_flat;
 use super::refill::Side;
 use super::repair::{Exchange, SurfaceRepair};
-use super::tets::Tets;
 use crate::base::{TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
+use crate::kernel::Tets;
 
 /// The number of rounds; more than one, since new tets may be flat as well.
 const MAX_ROUNDS: usize = 4;

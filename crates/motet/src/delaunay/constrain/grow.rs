@@ -10,9 +10,9 @@ use hashbrown::{HashMap, HashSet};
 
 use super::refill::{Side, is_seen, makes_flat};
 use super::repair::SurfaceRepair;
-use super::tets::Tets;
 use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::vector::{add, scale};
+use crate::kernel::Tets;
 
 /// The largest number of tets in one cavity.
 const MAX_TETS: usize = 1024;

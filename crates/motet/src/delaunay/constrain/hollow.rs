@@ -8,9 +8,9 @@ use hashbrown::HashMap;
 
 use super::insert::Insertion;
 use super::sites::Sites;
-use super::tets::Tets;
 use crate::base::VertexId;
 use crate::geometry::tet::FACETS;
+use crate::kernel::Tets;
 
 /// The triangulation, and the apexes of its facets by their vertices.
 #[derive(Default)]
@@ -30,7 +30,7 @@ impl Guide {
         let mut start = self.tets.add([a, b, c, d]);
         for &vertex in vertices {
             self.insertion.insert(&mut self.tets, sites, vertex, start);
-            start = self.tets.at(vertex);
+            start = self.tets.tet_of(vertex);
         }
         self.apexes.clear();
         for (_, v) in self.tets.iter() {

@@ -3,10 +3,9 @@
 //! count as outside a sphere on which they lie.
 
 use super::sites::Sites;
-use super::tets::Tets;
 use crate::base::{TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 /// Buffers reused from one insertion to the next.
 #[derive(Default)]

@@ -57,7 +57,6 @@ mod sides;
 mod sites;
 mod split;
 mod swap;
-mod tets;
 mod wrap;
 
 use hashbrown::HashSet;
@@ -68,6 +67,7 @@ use crate::base::{Csr, Error, Point, Result, TetId, Threads, VertexId, sorted_id
 use crate::geometry::rounding;
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, distance, scale};
+use crate::kernel::Tets;
 use crate::mesh::bounds;
 use bodies::Bodies;
 use edges::Edges;
@@ -78,7 +78,6 @@ use recovery::{Order, Unrecovered};
 use repair::SurfaceRepair;
 use segments::Segments;
 use sites::Sites;
-use tets::Tets;
 
 /// The box around all points is larger than their own by this factor: at this distance it hardly makes an
 /// edge less Delaunay.
@@ -165,7 +164,9 @@ pub fn constrain(
     given.extend(far_around(&given));
     let moves = edge_points == EdgePoints::MoveInside;
     let fill = |flats: &FlatFacets, order: &Order| {
-        let (tets, sites) = (Tets::new(&triangulation), Sites::new(given.clone(), &sorted));
+        let n_vertices = triangulation.points().len();
+        let tets = Tets::from_neighbors(triangulation.tets(), triangulation.neighbors(), n_vertices);
+        let sites = Sites::new(given.clone(), &sorted);
         Filled::new(tets, sites, points.len(), triangles, flats.clone(), edge_points, order)
     };
     let sites = Sites::new(given.clone(), &sorted);

@@ -1,9 +1,8 @@
 //! The tets and facets that a segment meets on its way.
 
 use super::sites::Sites;
-use super::tets::Tets;
 use crate::base::{TetId, VertexId};
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 /// After this many steps around a vertex all its tets are examined: a walk may cycle among tets that are not
 /// Delaunay.
@@ -59,7 +58,7 @@ impl SegmentPath {
             };
             (0..4).map(|i| HalfFacet::new(tet, (i + turn) % 4)).find(leads)
         };
-        let (mut tet, mut entered) = (tets.at(a), HalfFacet::NONE);
+        let (mut tet, mut entered) = (tets.tet_of(a), HalfFacet::NONE);
         for turn in 0..MAX_STEPS {
             if tets.vertices(tet).contains(&b) {
                 return None;

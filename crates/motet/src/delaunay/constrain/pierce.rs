@@ -11,9 +11,9 @@ use super::sides::Sides;
 use super::sites::Sites;
 use super::split::{Protected, Split, faces_around, positive_part, round_between};
 use super::swap::{Swap, Target};
-use super::tets::Tets;
 use crate::base::{TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
+use crate::kernel::Tets;
 
 /// The largest number of points put in one flat facet.
 const MAX_POINTS: usize = 4000;

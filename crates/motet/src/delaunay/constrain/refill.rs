@@ -7,13 +7,12 @@
 
 use super::flatness::{is_flat, is_needle};
 use super::sites::Sites;
-use super::tets::Tets;
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::deepest::deepest;
 use crate::geometry::predicates::pair::{self, Pair, cross as cross_in_pairs, dot as dot_in_pairs};
 use crate::geometry::predicates::spot::{Spot, orient3d_of};
 use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 use pulp::Scalar;
 
 /// A cavity on one side of the surface, to be refilled.

@@ -15,9 +15,8 @@ use super::plane::Plane;
 use super::refill::Side;
 use super::segments::Segments;
 use super::sites::{Place, SegmentId, Sites};
-use super::tets::Tets;
 use crate::base::{Csr, Point, Result, TetId, VertexId, Watch, sorted_ids};
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 /// A point inside is removed when the least share of the tets without it exceeds this, or the present one.
 /// The share is six times the volume over the cube of the longest edge.

@@ -4,10 +4,9 @@ use std::collections::VecDeque;
 
 use super::plane::Net;
 use super::repair::{Exchange, SurfaceRepair};
-use super::tets::Tets;
 use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::vector::{add, cross, dot, scale, sub};
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 impl SurfaceRepair<'_> {
     /// Gives a flat facet back its given triangles, edge by edge, by flips (Sloan 1993, *A fast algorithm for

@@ -22,10 +22,10 @@ use super::insert::Insertion;
 use super::recovery::{Part, Unrecovered};
 use super::share::Share;
 use super::sites::{OnSegment, Place, SegmentId, Sites};
-use super::tets::Tets;
 use crate::base::{Csr, Error, TetId, VertexId, Watch, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{distance, dot, sub};
+use crate::kernel::Tets;
 
 /// The number of points on segments beyond which recovery is given up as endless, in addition to
 /// [`POINTS_PER_SEGMENT`] per segment.
@@ -149,7 +149,7 @@ impl Segments {
                     "would have to be divided beyond the precision of its coordinates",
                 ));
             };
-            let start = tets.at(piece[0]);
+            let start = tets.tet_of(piece[0]);
             let vertex = sites.add(self.ends(segment), OnSegment { segment, share: Share::of(share) });
             queue.extend(self.divide(piece, vertex));
             let lost = insertion.insert(tets, sites, vertex, start);

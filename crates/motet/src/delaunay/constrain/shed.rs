@@ -10,9 +10,8 @@ use hashbrown::HashSet;
 
 use super::plane::Net;
 use super::repair::{Exchange, SurfaceRepair};
-use super::tets::Tets;
 use crate::base::{TetId, VertexId, sorted_ids};
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 impl SurfaceRepair<'_> {
     /// Assigns the flat tets in flat facets to the outside, where that leaves valid facets.

@@ -2,10 +2,9 @@
 //! and those wholly visible from it whose sphere contains it, provided nothing of the surface is lost.
 
 use super::sites::Sites;
-use super::tets::Tets;
 use crate::base::{TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 /// The edges and facets that must not be lost.
 pub(super) trait Protected {

@@ -8,9 +8,8 @@
 
 use super::sites::Sites;
 use super::split::Protected;
-use super::tets::Tets;
 use crate::base::{TetId, VertexId};
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 /// The most tets that an edge may have to be removed.
 const MAX_RING: usize = 10;

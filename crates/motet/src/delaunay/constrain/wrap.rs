@@ -13,10 +13,9 @@ use hashbrown::{HashMap, HashSet};
 use super::cut::{Face, Stuck};
 use super::hollow::{Guide, smallest_first};
 use super::sites::Sites;
-use super::tets::Tets;
 use crate::base::{TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS};
-use crate::kernel::HalfFacet;
+use crate::kernel::{HalfFacet, Tets};
 
 /// Hollows of at most this many faces are filled without a guide.
 const MAX_UNGUIDED: usize = 32;

@@ -15,11 +15,9 @@
 
 use crate::base::{TetId, VertexId};
 use crate::geometry::tet::EDGES;
-use crate::geometry::vector::{add, distance, scale};
+use crate::geometry::vector::distance;
 use crate::kernel::Hold;
-use crate::ops::split_edge;
 use crate::remesh::repair::Repair;
-use crate::remesh::report::Operation;
 use crate::remesh::sizes::{LONG, SHORT};
 
 impl Repair {
@@ -41,7 +39,11 @@ impl Repair {
                 self.collapse(tet, a, b);
                 self.collapse(tet, b, a);
             } else if length > LONG * average {
-                self.split_at_middle(tet, [a, b]);
+                self.around(tet, [a, b], |repair, shell| {
+                    if shell.is_free() {
+                        repair.split_at_middle(tet, shell, [a, b], Hold::Free);
+                    }
+                });
             }
         }
     }
@@ -55,21 +57,5 @@ impl Repair {
         others.dedup();
         let length = |v: &VertexId| distance(self.complex.point(vertex), self.complex.point(*v));
         (others.len(), others.iter().map(length).sum())
-    }
-
-    /// Offers to split an edge of a tet at its midpoint if it lies inside.
-    fn split_at_middle(&mut self, tet: TetId, edge: [VertexId; 2]) {
-        let [a, b] = edge;
-        self.shells[0].walk(&self.complex, tet, a, b);
-        let shell = &self.shells[0];
-        if !self.complex.may_divide(a, b) || !shell.is_free() {
-            return;
-        }
-        let bar = self.bar(tet);
-        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let shell = &self.shells[0];
-        if split_edge(&self.complex, shell, edge, (middle, Hold::Free), bar, &mut self.candidate.proposal) {
-            self.offer(Operation::SplitEdge);
-        }
     }
 }

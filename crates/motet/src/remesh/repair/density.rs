@@ -163,17 +163,17 @@ impl Repair {
         if !self.has(edge) || !self.complex.may_divide(a, b) {
             return false;
         }
-        self.shells[0].walk(&self.complex, edge.tet, a, b);
-        if !self.shells[0].is_free() {
-            return false;
-        }
-        let seed = &self.shells[0].tets;
-        let bar = self.complex.worst_of(seed).min(floor).next_down();
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let mut change = Change::default();
-        let is_made =
-            self.insertion.propose(&self.complex, seed, middle, [bar, GOOD.max(floor)], &mut change)
-                && self.commit_above(&change, floor, zone);
+        let is_made = self.around(edge.tet, [a, b], |repair, shell| {
+            if !shell.is_free() {
+                return false;
+            }
+            let (complex, mut change) = (&repair.complex, Change::default());
+            let bar = complex.worst_of(&shell.tets).min(floor).next_down();
+            let bars = [bar, GOOD.max(floor)];
+            repair.insertion.propose(complex, &shell.tets, middle, bars, &mut change)
+                && repair.commit_above(&change, floor, zone)
+        });
         if is_made {
             self.operations.add(Operation::Insertion);
         }

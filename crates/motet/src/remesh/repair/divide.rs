@@ -3,6 +3,7 @@
 use crate::base::{Result, TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, distance, scale};
+use crate::kernel::Shell;
 use crate::ops::split_edge;
 use crate::remesh::repair::Repair;
 use crate::remesh::report::Operation;
@@ -57,11 +58,16 @@ impl Repair {
     fn split_longest(&mut self, mut tet: TetId) {
         loop {
             let (edge, length) = self.longest_edge(tet);
-            self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
-            let longer = |&t: &TetId| self.longest_edge(t).1 > length;
-            match self.shells[0].tets.iter().copied().find(longer) {
+            let next = self.around(tet, edge, |repair, shell| {
+                let next = shell.tets.iter().copied().find(|&t| repair.longest_edge(t).1 > length);
+                if next.is_none() {
+                    repair.split_unjudged(shell, edge);
+                }
+                next
+            });
+            match next {
                 Some(next) => tet = next,
-                None => return self.split_unjudged(edge),
+                None => return,
             }
         }
     }
@@ -78,15 +84,14 @@ impl Repair {
         longest
     }
 
-    /// Splits the edge whose shell was walked last, whatever the quality, if every tet stays positive and the
-    /// surface allows it.
-    fn split_unjudged(&mut self, edge: [VertexId; 2]) {
+    /// Splits an edge with the tets `shell` around it, whatever the quality, if every tet stays positive and
+    /// the surface allows it.
+    fn split_unjudged(&mut self, shell: &Shell, edge: [VertexId; 2]) {
         let [a, b] = edge;
-        let shell = &self.shells[0];
         if !self.complex.may_divide(a, b) {
             return;
         }
-        let hold = self.hold_on(edge);
+        let hold = self.hold_on(shell, edge);
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
         let mut inserted = Vec::new();
         let proposal = &mut self.candidate.proposal;

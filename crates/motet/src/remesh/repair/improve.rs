@@ -14,7 +14,7 @@
 use crate::base::{Point, Result, TetId, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
-use crate::kernel::{Behind, Change, Complex, Fill, Hold, VertexChange};
+use crate::kernel::{Behind, Change, Complex, Fill, Hold};
 use crate::ops::{Anywhere, Objective, Reach, defect};
 use crate::remesh::input_mesh::Pose;
 use crate::remesh::repair::tried::Settled;
@@ -260,24 +260,22 @@ impl Repair {
         let mut model = CostModel::new(*scale, self.pose.as_ref());
         let vertices = self.complex.vertices(tet);
         let mut change = std::mem::take(&mut self.candidate.proposal);
+        let mut shell = self.shells.pop().unwrap_or_default();
         for (place, edge) in EDGES.map(|e| e.map(|i| vertices[i])).into_iter().enumerate() {
             if settled.has_edge(&self.changes, &self.complex, tet, place) {
                 continue;
             }
-            if self.surface.is_some() {
-                self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
-                // Walls change to repair tets, not to improve them.
-                if self.hold_on(edge) != Hold::Free {
-                    settled.settle_edge(&self.changes, &self.complex, &self.shells[0].tets, edge);
-                    continue;
-                }
-            }
-            let is_better = self.edge_removal.propose_for(&self.complex, tet, edge, &mut model, &mut change)
-                && self.weigh(&mut change, Operation::EdgeRemoval, model, found);
+            shell.walk(&self.complex, tet, edge[0], edge[1]);
+            // Walls change to repair tets, not to improve them.
+            let may_go = self.surface.is_none() || self.hold_on(&shell, edge) == Hold::Free;
+            let is_better = may_go
+                && self.edge_removal.propose_for(&self.complex, &shell, edge, &mut model, &mut change)
+                && self.weigh(&mut change, (Operation::EdgeRemoval, None), model, found);
             if !is_better {
-                settled.settle_edge(&self.changes, &self.complex, self.edge_removal.tets(), edge);
+                settled.settle_edge(&self.changes, &self.complex, &shell.tets, edge);
             }
         }
+        self.shells.push(shell);
         for facet in 0..4 {
             if settled.has_facet(&self.changes, &self.complex, tet, facet) {
                 continue;
@@ -292,7 +290,7 @@ impl Repair {
             let worst = self.complex.quality(tet).min(self.complex.quality(behind.tet()));
             let bar = worst.min(scale.0.floor).next_down();
             let is_better = self.face_removal.propose(&self.complex, tet, facet, bar, &mut change)
-                && self.weigh(&mut change, Operation::FaceRemoval, model, found);
+                && self.weigh(&mut change, (Operation::FaceRemoval, None), model, found);
             if !is_better {
                 settled.settle_facet(&self.changes, tet, facet);
                 settled.settle_facet(&self.changes, behind.tet(), behind.facet());
@@ -309,34 +307,33 @@ impl Repair {
         let star = &self.star.tets;
         model.set_bars(&self.complex, star);
         let (least, _) = model.of_cavity(&self.complex, star);
-        let is_better = self.relaxation.propose(
+        let is_proposed = self.relaxation.propose(
             (&self.complex, pose.as_ref()),
             star,
             vertex,
             Reach { floor: model.bars[0], gain: least },
             &Anywhere,
             &mut change,
-        ) && self.weigh(&mut change, Operation::Smoothing, model, found);
+        );
+        let moved = self.relaxation.place_in_pose().map(|place| (vertex, place));
+        let is_better = is_proposed && self.weigh(&mut change, (Operation::Smoothing, moved), model, found);
         self.candidate.proposal = change;
         is_better
     }
 
     /// Takes a change as the best if it gains enough, and more than the best so far; the previous best is
-    /// left in `change`. Returns whether the change gains enough.
+    /// left in `change`. `moved` is a vertex that moves, and its place in the other pose, if there is one.
+    /// Returns whether the change gains enough.
     fn weigh(
         &self,
         change: &mut Change,
-        operation: Operation,
+        (operation, moved): (Operation, Option<(VertexId, Point)>),
         mut model: CostModel,
         found: &mut Found,
     ) -> bool {
         let Found { best, sizing } = found;
         model.set_bars(&self.complex, &change.cavity);
         let (least, before) = model.of_cavity(&self.complex, &change.cavity);
-        let moved = match change.vertex {
-            VertexChange::Move(vertex, _) => self.relaxation.place_in_pose().map(|place| (vertex, place)),
-            _ => None,
-        };
         let gain = before - model.of_fill(change, moved);
         let has_kept = || change.cavity.iter().any(|&t| self.is_kept(t));
         if gain <= least || self.adds_low(change, model.aim) || has_kept() {

@@ -98,7 +98,8 @@ pub(super) struct Repair {
     insertion: Insertion,
     relaxation: Relaxation,
     star: Star,
-    shells: [Shell; 2],
+    /// Buffers of [`Self::around`].
+    shells: Vec<Shell>,
     /// Bad tets among those inserted.
     inserted_bad: Vec<TetId>,
     changes: Changes,
@@ -134,7 +135,7 @@ impl Repair {
             insertion: Insertion::default(),
             relaxation: Relaxation::default(),
             star: Star::default(),
-            shells: Default::default(),
+            shells: Vec::new(),
             inserted_bad: Vec::new(),
             changes: Changes::new(),
             tried: Tried::nothing(),
@@ -174,8 +175,8 @@ impl Repair {
                 before.is_none_or(|before: usize| before.saturating_sub(bad.len()) >= bad.len() / 100);
             let Some(more) = raises.next().filter(|_| pays_off) else { break };
             // Tets forced by walls that stay cannot get better, whatever lies around them.
-            let (complex, stays, shell) = (&self.complex, self.surface.is_none(), &mut self.shells[0]);
-            let is_unforced = |tet: &TetId| !(stays && is_forced(complex, None, *tet, shell));
+            let (complex, stays, mut shell) = (&self.complex, self.surface.is_none(), Shell::default());
+            let is_unforced = |tet: &TetId| !(stays && is_forced(complex, None, *tet, &mut shell));
             let unforced: Vec<TetId> = bad.iter().copied().filter(is_unforced).collect();
             if unforced.is_empty() {
                 break;
@@ -409,7 +410,9 @@ impl Repair {
             return false;
         }
         // Where the surface may change, walls do not force a tet.
-        if self.surface.is_none() && is_forced(&self.complex, None, tet, &mut self.shells[0]) {
+        if self.surface.is_none()
+            && self.with_shell(|repair, shell| is_forced(&repair.complex, None, tet, shell))
+        {
             self.tried.note_failure(&self.changes, tet, self.target);
             return false;
         }
@@ -432,6 +435,27 @@ impl Repair {
         let (complex, target) = (&self.complex, self.target);
         self.inserted_bad.extend(inserted.iter().copied().filter(|&t| complex.quality(t) < target));
         true
+    }
+
+    /// Calls `act` with a buffer for the tets around an edge.
+    fn with_shell<T>(&mut self, act: impl FnOnce(&mut Self, &mut Shell) -> T) -> T {
+        let mut shell = self.shells.pop().unwrap_or_default();
+        let result = act(self, &mut shell);
+        self.shells.push(shell);
+        result
+    }
+
+    /// Calls `act` with the tets around the edge from `a` to `b` of a tet.
+    fn around<T>(
+        &mut self,
+        tet: TetId,
+        [a, b]: [VertexId; 2],
+        act: impl FnOnce(&mut Self, &Shell) -> T,
+    ) -> T {
+        self.with_shell(|repair, shell| {
+            shell.walk(&repair.complex, tet, a, b);
+            act(repair, shell)
+        })
     }
 
     fn bar(&self, tet: TetId) -> f64 {

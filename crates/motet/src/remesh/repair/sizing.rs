@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 use crate::base::{Point, Result, TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
-use crate::kernel::{Change, Hold};
+use crate::kernel::{Change, Hold, Shell};
 use crate::ops::{collapse, split_edge};
 use crate::remesh::lengths::locked_edges;
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
@@ -189,22 +189,33 @@ impl Repair {
         change: &mut Change,
         inserted: &mut Vec<TetId>,
     ) -> Option<VertexId> {
+        self.around(tet, ends, |repair, shell| repair.split_around(shell, ends, field, change, inserted))
+    }
+
+    /// Splits an edge with the tets `shell` around it; see [`Self::split`].
+    fn split_around(
+        &mut self,
+        shell: &Shell,
+        ends: [VertexId; 2],
+        field: &mut SizeField,
+        change: &mut Change,
+        inserted: &mut Vec<TetId>,
+    ) -> Option<VertexId> {
         let [a, b] = ends;
-        self.shells[0].walk(&self.complex, tet, a, b);
-        if !self.complex.may_divide(a, b) || self.surface.is_none() && !self.shells[0].is_free() {
+        if !self.complex.may_divide(a, b) || self.surface.is_none() && !shell.is_free() {
             return None;
         }
-        let hold: Hold = self.hold_on(ends);
+        let hold: Hold = self.hold_on(shell, ends);
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
         let vertex = self.complex.next_vertex();
-        let bar = self.bar_of_split(ends, field);
-        for (point, is_middle) in [(self.on_surface(middle, hold), false), (Some(middle), true)] {
+        let bar = self.bar_of_split(shell, ends, field);
+        for (point, is_middle) in [(self.on_surface(shell, middle, hold), false), (Some(middle), true)] {
             let Some(point) = point else { continue };
             let accepts = |surface: &Surface, change: &Change| match is_middle {
                 true => surface.accepts_in_place(change),
                 false => surface.accepts(&self.complex, change),
             };
-            let is_good = split_edge(&self.complex, &self.shells[0], ends, (point, hold), bar, change)
+            let is_good = split_edge(&self.complex, shell, ends, (point, hold), bar, change)
                 && self.surface.as_ref().is_none_or(|surface| accepts(surface, change));
             if is_good && let Ok(checked) = self.complex.check_against(change, bar) {
                 self.complex.commit(checked, inserted);
@@ -217,21 +228,21 @@ impl Repair {
     }
 
     /// The point of the first surface closest to the midpoint of an edge of a smooth patch, if it differs
-    /// from the midpoint; the edge is the one whose shell was walked last.
-    fn on_surface(&self, middle: Point, hold: Hold) -> Option<Point> {
-        let (surface, shell) = (self.surface.as_ref()?, &self.shells[0]);
+    /// from the midpoint; `shell` are the tets around the edge.
+    fn on_surface(&self, shell: &Shell, middle: Point, hold: Hold) -> Option<Point> {
+        let surface = self.surface.as_ref()?;
         let place = shell.walls.first().filter(|_| hold == Hold::Surface)?;
         let patch = self.complex.wall(shell.wall_at(&self.complex, *place)).patch;
         surface.on_patch(patch, middle).filter(|point| *point != middle)
     }
 
-    /// The quality that the tets of a split must exceed, for the edge whose shell was walked last.
+    /// The quality that the tets of a split must exceed, for an edge with the tets `shell` around it.
     ///
     /// The longest edge of all may always be split. If a longer one stays, because it is held or its halves
     /// would give only flat tets, splits of the others would make flatter and flatter tets: then no new tet
     /// may be bad and worse than the worst that was there, and none nearly flat whatever was there.
-    fn bar_of_split(&self, ends: [VertexId; 2], field: &mut SizeField) -> f64 {
-        let tets = &self.shells[0].tets;
+    fn bar_of_split(&self, shell: &Shell, ends: [VertexId; 2], field: &mut SizeField) -> f64 {
+        let tets = &shell.tets;
         let ratio = field.of_edge(&self.complex, ends);
         let mut edges = tets.iter().flat_map(|&t| {
             let vertices = self.complex.vertices(t);

@@ -4,12 +4,12 @@ use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
 use crate::geometry::triangle::{self, area_vector};
 use crate::geometry::vector::{add, norm, scale, sub};
-use crate::kernel::{Behind, Hold};
+use crate::kernel::{Behind, Hold, Shell};
 use crate::ops::{collapse, split_crossed, split_edge, split_onto};
 use crate::remesh::classify::{Defect, classify};
 use crate::remesh::repair::Repair;
 use crate::remesh::report::Operation;
-use crate::remesh::surface::{Surface, SurfaceTrack};
+use crate::remesh::surface::SurfaceTrack;
 
 /// The stages, tried one after the other until the tet is no longer bad.
 pub(super) const STAGES: [fn(&mut Repair, TetId); 6] = [
@@ -34,11 +34,9 @@ impl Repair {
         let vertices = self.complex.vertices(tet);
         for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
             let bar = self.bar(tet);
-            if self.surface.is_some() {
-                self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
-                if self.hold_on(edge) == Hold::Edge {
-                    continue;
-                }
+            let is_feature = |repair: &mut Self, shell: &Shell| repair.hold_on(shell, edge) == Hold::Edge;
+            if self.surface.is_some() && self.around(tet, edge, is_feature) {
+                continue;
             }
             if self.edge_removal.propose(&self.complex, tet, edge, bar, &mut self.candidate.proposal) {
                 self.offer(Operation::EdgeRemoval);
@@ -52,9 +50,8 @@ impl Repair {
         }
     }
 
-    /// The constraint on a vertex that lies on the edge whose shell was walked last.
-    pub(super) fn hold_on(&self, edge: [VertexId; 2]) -> Hold {
-        let shell = &self.shells[0];
+    /// The constraint on a vertex that lies on an edge with the tets `shell` around it.
+    pub(super) fn hold_on(&self, shell: &Shell, edge: [VertexId; 2]) -> Hold {
         match &self.surface {
             _ if self.complex.line(edge[0], edge[1]).is_some() => Hold::Edge,
             _ if shell.is_free() => Hold::Free,
@@ -71,18 +68,12 @@ impl Repair {
                 self.cross(tet, EDGES[edge].map(|i| vertices[i]), EDGES[5 - edge].map(|i| vertices[i]))
             }
             Defect::VertexAtEdge { vertex, edge } => {
-                let [a, b] = EDGES[edge].map(|i| vertices[i]);
-                self.shells[0].walk(&self.complex, tet, a, b);
-                let bar = self.bar(tet);
-                if split_onto(
-                    &self.complex,
-                    &self.shells[0],
-                    vertices[vertex],
-                    bar,
-                    &mut self.candidate.proposal,
-                ) {
-                    self.offer(Operation::SplitOnto);
-                }
+                self.around(tet, EDGES[edge].map(|i| vertices[i]), |repair, shell| {
+                    let (bar, proposal) = (repair.bar(tet), &mut repair.candidate.proposal);
+                    if split_onto(&repair.complex, shell, vertices[vertex], bar, proposal) {
+                        repair.offer(Operation::SplitOnto);
+                    }
+                });
             }
             Defect::VertexOverFacet { vertex } => {
                 for other in (0..4).filter(|&i| i != vertex) {
@@ -100,21 +91,16 @@ impl Repair {
     }
 
     fn cross(&mut self, tet: TetId, [a, b]: [VertexId; 2], [c, d]: [VertexId; 2]) {
-        let [first, second] = &mut self.shells;
-        first.walk(&self.complex, tet, a, b);
-        second.walk(&self.complex, tet, c, d);
-        let middle = [a, b, c, d].into_iter().fold([0.0; 3], |sum, v| add(sum, self.complex.point(v)));
-        let bar = self.bar(tet);
-        let [first, second] = &self.shells;
-        if split_crossed(
-            &self.complex,
-            [first, second],
-            scale(middle, 0.25),
-            bar,
-            &mut self.candidate.proposal,
-        ) {
-            self.offer(Operation::SplitCrossed);
-        }
+        let sum = [a, b, c, d].into_iter().fold([0.0; 3], |sum, v| add(sum, self.complex.point(v)));
+        let middle = scale(sum, 0.25);
+        self.around(tet, [a, b], |repair, first| {
+            repair.around(tet, [c, d], |repair, second| {
+                let (bar, proposal) = (repair.bar(tet), &mut repair.candidate.proposal);
+                if split_crossed(&repair.complex, [first, second], middle, bar, proposal) {
+                    repair.offer(Operation::SplitCrossed);
+                }
+            });
+        });
     }
 
     pub(super) fn collapse(&mut self, tet: TetId, removed: VertexId, kept: VertexId) {
@@ -132,15 +118,15 @@ impl Repair {
     /// along a feature.
     pub(super) fn may_collapse(&mut self, tet: TetId, removed: VertexId, kept: VertexId) -> bool {
         let hold = self.complex.hold(removed);
-        let Some(surface) = self.surface.as_ref().filter(|_| hold != Hold::Free && hold != Hold::Fixed)
-        else {
+        if self.surface.is_none() || hold == Hold::Free || hold == Hold::Fixed {
             return hold == Hold::Free;
-        };
-        let shell = &mut self.shells[0];
-        shell.walk(&self.complex, tet, removed, kept);
-        let is_line = self.complex.line(removed, kept).is_some();
-        let is_feature = |surface: &Surface| !surface.is_smooth(&self.complex, [removed, kept], shell);
-        is_line || !shell.walls.is_empty() && (hold == Hold::Surface || is_feature(surface))
+        }
+        let edge = [removed, kept];
+        self.around(tet, edge, |Self { complex, surface, .. }, shell| {
+            let is_line = complex.line(removed, kept).is_some();
+            let is_feature = || surface.as_ref().is_some_and(|s| !s.is_smooth(complex, edge, shell));
+            is_line || !shell.walls.is_empty() && (hold == Hold::Surface || is_feature())
+        })
     }
 
     /// Moves the vertices of a tet: anywhere if free; along the surface and its features if these may change.
@@ -151,12 +137,14 @@ impl Repair {
                 continue;
             }
             self.star.gather(&self.complex, vertex);
+            let mut shell = self.shells.pop().unwrap_or_default();
             let track = match &self.surface {
                 Some(surface) if hold != Hold::Free => {
-                    surface.track(&self.complex, &self.star.tets, vertex, &mut self.shells[0])
+                    surface.track(&self.complex, &self.star.tets, vertex, &mut shell)
                 }
                 _ => Some(SurfaceTrack::Anywhere),
             };
+            self.shells.push(shell);
             let Some(track) = track else { continue };
             let limits = [self.bar(tet), self.target];
             let (complex, star) = (&self.complex, &self.star.tets);
@@ -173,20 +161,26 @@ impl Repair {
         }
         let vertices = self.complex.vertices(tet);
         for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
-            let [a, b] = edge;
-            let bar = self.bar(tet);
-            let shell = &mut self.shells[0];
-            shell.walk(&self.complex, tet, a, b);
-            let is_inside = shell.walls.is_empty() && self.complex.line(a, b).is_none();
-            if is_inside || !self.complex.may_divide(a, b) {
-                continue;
-            }
-            let hold = self.hold_on(edge);
-            let shell = &self.shells[0];
-            let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-            if split_edge(&self.complex, shell, edge, (middle, hold), bar, &mut self.candidate.proposal) {
-                self.offer(Operation::SplitEdge);
-            }
+            self.around(tet, edge, |repair, shell| {
+                let is_inside = shell.walls.is_empty() && repair.complex.line(edge[0], edge[1]).is_none();
+                if !is_inside {
+                    repair.split_at_middle(tet, shell, edge, repair.hold_on(shell, edge));
+                }
+            });
+        }
+    }
+
+    /// Offers to split an edge of a tet, with the tets `shell` around it, at its midpoint if it may be
+    /// divided; `hold` is the constraint on the new vertex.
+    pub(super) fn split_at_middle(&mut self, tet: TetId, shell: &Shell, edge: [VertexId; 2], hold: Hold) {
+        let [a, b] = edge;
+        if !self.complex.may_divide(a, b) {
+            return;
+        }
+        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+        let (bar, proposal) = (self.bar(tet), &mut self.candidate.proposal);
+        if split_edge(&self.complex, shell, edge, (middle, hold), bar, proposal) {
+            self.offer(Operation::SplitEdge);
         }
     }
 
@@ -207,10 +201,9 @@ impl Repair {
         self.insert_at(tet, &[tet], centroid(corners));
         let vertices = self.complex.vertices(tet);
         for [i, j] in EDGES {
-            self.shells[0].walk(&self.complex, tet, vertices[i], vertices[j]);
-            let seed = std::mem::take(&mut self.shells[0].tets);
-            self.insert_at(tet, &seed, scale(add(corners[i], corners[j]), 0.5));
-            self.shells[0].tets = seed;
+            self.around(tet, [vertices[i], vertices[j]], |repair, shell| {
+                repair.insert_at(tet, &shell.tets, scale(add(corners[i], corners[j]), 0.5));
+            });
         }
         for (i, facet) in FACETS.into_iter().enumerate() {
             if let Behind::Tet(half) = self.complex.behind(tet, i) {
