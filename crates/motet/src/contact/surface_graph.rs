@@ -55,13 +55,13 @@ impl SurfaceGraph {
         &self,
         points: &[Point],
         from: VertexId,
-        to: ([VertexId; 3], Point),
+        to: PathEnd,
         length: f64,
         paths: &mut PathSearch,
     ) -> bool {
         paths.begin(points.len());
         let piece = |v: VertexId| self.pieces[v.index()];
-        if to.0.iter().all(|&corner| piece(corner) != piece(from)) {
+        if to.corners.iter().all(|&corner| piece(corner) != piece(from)) {
             return false;
         }
         let known = self.lower_bound(points, from, to, length, paths);
@@ -86,13 +86,16 @@ impl SurfaceGraph {
         &self,
         points: &[Point],
         from: VertexId,
-        (corners, place): ([VertexId; 3], Point),
+        PathEnd { corners, place }: PathEnd,
         enough: f64,
         paths: &PathSearch,
     ) -> f64 {
         let mut most = 0.0;
         for &via in [from.0].iter().chain(self.neighbors.list(from.index())) {
-            let Some(&Far { to: (others, other), least }) = paths.far_from(via) else { continue };
+            let Some(&Far { to: PathEnd { corners: others, place: other }, least }) = paths.far_from(via)
+            else {
+                continue;
+            };
             let step = distance(points[via as usize], points[from.index()]);
             let on = match corners == others {
                 true => distance(place, other),
@@ -122,7 +125,7 @@ impl SurfaceGraph {
         &self,
         points: &[Point],
         from: VertexId,
-        (corners, place): ([VertexId; 3], Point),
+        PathEnd { corners, place }: PathEnd,
         length: f64,
         paths: &mut PathSearch,
     ) -> f64 {
@@ -172,10 +175,18 @@ fn pieces(neighbors: &Csr<u32>) -> Vec<u32> {
     pieces
 }
 
+/// Where a path along the surface ends: a place in a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathEnd {
+    /// The corners of the triangle.
+    pub(super) corners: [VertexId; 3],
+    pub(super) place: Point,
+}
+
 /// A place in a triangle, and a lower bound of its distance along the surface.
 #[derive(Clone, Copy, Debug)]
 struct Far {
-    to: ([VertexId; 3], Point),
+    to: PathEnd,
     least: f64,
 }
 

@@ -101,7 +101,7 @@ pub fn implant(
 
     report_cells(&mut report, &zone_to_cell, first_new);
     report.regions = meshing::bodies_of_mesh(&mesh);
-    certify(&mut report, host, (devices, &joined), (&gap, &draft), (&mesh, &names), options.outside);
+    certify(&mut report, host, devices, &pieces, &mesh, &names, options.outside);
     report.devices.iter_mut().zip(fits).for_each(|(device, fit)| device.fit = *fit);
     report.seconds.check = lap();
     if !report.is_valid() {
@@ -183,14 +183,18 @@ fn report_cells(report: &mut Report, zone_to_cell: &[CellId], first_new: CellId)
     improved.before.worst = None;
 }
 
+/// Reports volumes, how many triangles of each device were kept, and the defects of the result `mesh`. `host`
+/// is the mesh as it was given.
 fn certify(
     report: &mut Report,
     host: &Mesh,
-    (devices, joined): (&[Device], &Devices),
-    (gap, draft): (&Gap, &Draft),
-    (mesh, names): (&Mesh, &Names),
+    devices: &[Device],
+    pieces: &Pieces<'_>,
+    mesh: &Mesh,
+    names: &Names,
     outside: Outside,
 ) {
+    let Pieces { devices: joined, gap, draft, .. } = *pieces;
     report.tets = mesh.cells.tets().count();
     let whole = joined.volumes(devices);
     let is_there: HashSet<[VertexId; 3]> = draft.triangles.iter().map(|(t, _)| sorted_ids(*t)).collect();

@@ -7,7 +7,7 @@ use crate::base::{CellId, Point, Result, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::{add, norm, scale, sub};
 use crate::mesh::history::Origin;
-use crate::moving::current::{BEFORE, Current, LeftBad, Records};
+use crate::moving::current::{BEFORE, Current, Derived, LeftBad, Records};
 use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Why};
 use crate::moving::step_run::{StepResult, StepRun};
@@ -54,10 +54,10 @@ impl StepRun<'_> {
             Some(now) => self.put_back(now, &now.records.before, true)?,
             None => self.put_back(start, &start.mesh.points, false)?,
         };
-        Ok(put_back.map_or(reached, |put_back| self.at_first_mesh(put_back)))
+        Ok(put_back.map_or(reached, |(now, shape)| self.at_first_mesh(now, shape)))
     }
 
-    fn at_first_mesh(&mut self, (now, shape): (Current, Shape)) -> StepResult {
+    fn at_first_mesh(&mut self, now: Current, shape: Shape) -> StepResult {
         self.points.clone_from(&now.mesh.points);
         StepResult { changed: Some(now), left: None, shape, fraction: 1.0 }
     }
@@ -81,9 +81,9 @@ impl StepRun<'_> {
             // A mesh that will be replaced anyway is not repaired first.
             if is_end
                 && self.returns.count.is_unsettled
-                && let Some(put_back) = self.put_back(now, before, changed.is_some())?
+                && let Some((now, shape)) = self.put_back(now, before, changed.is_some())?
             {
-                return Ok(self.at_first_mesh(put_back));
+                return Ok(self.at_first_mesh(now, shape));
             }
             let is_worth_it = shape.bad.iter().any(|&(cell, eas)| !now.is_left(cell, eas));
             if is_end && !(is_worth_it && self.options.repair.is_some()) {
@@ -218,9 +218,10 @@ impl StepRun<'_> {
             return Ok(Repaired::Left(left));
         }
         let begin = Instant::now();
-        let next = now.next((&given, outcome.mesh), &history, left, (self.wall, options), self.threads)?;
+        let derived = Derived { given: &given, mesh: outcome.mesh, history: history.clone() };
+        let next = now.next(derived, left, self.wall, options, self.threads)?;
         let counts = [now.tets.len(), report.after.tets];
-        let change = Change::new((time, Why::Repair), counts, shape, history, self.points.clone());
+        let change = Change::new(time, Why::Repair, counts, shape, history, self.points.clone());
         self.changes.push(Change { operations: report.operations, ..change });
         self.seconds.setup += begin.elapsed().as_secs_f64();
         Ok(Repaired::Changed(Box::new(next)))
@@ -266,7 +267,7 @@ impl StepRun<'_> {
         let first = &now.records.first_eas;
         let is_as_at_first = |&(cell, eas): &(CellId, f64)| eas >= first[cell.index()] - AS_AT_FIRST;
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
-        let sizes = self.sizes.at_vertices((now, &self.points), self.wall, self.options, self.threads);
+        let sizes = self.sizes.at_vertices(now, &self.points, self.wall, self.options, self.threads);
         // The mesh ahead is nearly the current one: a gain counts twice, and so must the cost.
         let (pose, cost) = match rest {
             Some(rest) => (rest.clone(), Improve::FEW_CHANGES),

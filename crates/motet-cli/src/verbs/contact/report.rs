@@ -186,7 +186,8 @@ impl Report {
 
 impl Step {
     pub(super) fn new(
-        (time, file): (f64, Option<PathBuf>),
+        time: f64,
+        file: Option<PathBuf>,
         contact: &Contact,
         frame: &Frame,
         gaps: &Gaps,
