@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashSet};
 use super::carve::{Carved, Fate};
 use super::gap::Gap;
 use super::owner::{Owner, Patch};
-use crate::base::{CellId, Id, Point, Result, Threads, VertexId, sorted_ids};
+use crate::base::{CellId, Id, Point, Result, TetId, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
@@ -63,7 +63,7 @@ impl Draft {
         options: &Options,
         stray: f64,
         threads: &Threads,
-    ) -> Result<remesh::Report> {
+    ) -> Result<remesh::Report<TetId>> {
         let near: Vec<usize> = (0..host.tets.len()).filter(|&t| carved.fates[t] == Fate::Near).collect();
         let regions: Vec<Owner> = regions(&self.owners, host, &near);
         let number = |owner: &Owner| regions.iter().position(|r| r == owner).unwrap_or_default() as i32;

@@ -338,11 +338,8 @@ fn replaced_by_inverted(outcome: &MeshOutcome) -> Result<Vec<CellId>> {
 /// The bad tets that repair has left. Those between the limit and the target of the repair are not bad yet:
 /// they are tried once they fall below the limit.
 fn left_of(report: &remesh::Report, limit: f64) -> Vec<LeftBad> {
-    let of = |left: &remesh::Left| LeftBad {
-        cell: CellId(left.tet),
-        eas: left.eas,
-        is_forced: left.reason.is_forced(),
-    };
+    let of =
+        |left: &remesh::Left| LeftBad { cell: left.tet, eas: left.eas, is_forced: left.reason.is_forced() };
     let mut all: Vec<LeftBad> = report.left.iter().filter(|left| left.eas < limit).map(of).collect();
     all.sort_by_key(|left| left.cell);
     all
@@ -356,7 +353,7 @@ mod tests {
     #[test]
     fn what_repair_left_above_the_limit_is_not_left_bad() {
         let of = |tet: u32, eas: f64| Left {
-            tet,
+            tet: CellId(tet),
             eas,
             place: [0.0; 3],
             defect: "other",

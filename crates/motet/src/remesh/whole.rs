@@ -125,7 +125,7 @@ fn changed(mesh: &Mesh, part: &TetPart, options: &Options, threads: &Threads) ->
     let begin = Instant::now();
     let joined = Joined::of(mesh, part, &extract);
     report.seconds.extract += begin.elapsed().as_secs_f64();
-    report_cells(&mut report, &part.tet_to_cell, &joined.tet_to_cell);
+    let report = report.in_cells(|tet| part.tet_to_cell[tet.index()], |tet| joined.tet_to_cell[tet.index()]);
     Ok(Changed { report, extract, joined })
 }
 
@@ -340,12 +340,4 @@ fn history(
 
 fn labelled<const N: usize>(cells: impl Iterator<Item = (CellId, [VertexId; N], i32)>) -> Vec<Labelled<N>> {
     cells.map(|(cell, vertices, label)| Labelled { cell, vertices, label }).collect()
-}
-
-/// Replaces tet ids in a report by cell ids.
-fn report_cells(report: &mut Report, old: &[CellId], new: &[CellId]) {
-    let cell = |to_cell: &[CellId], tet: u32| to_cell[tet as usize].0;
-    report.before.worst.iter_mut().for_each(|w| w.tet = cell(old, w.tet));
-    report.after.worst.iter_mut().for_each(|w| w.tet = cell(new, w.tet));
-    report.left.iter_mut().for_each(|left| left.tet = cell(new, left.tet));
 }
