@@ -1,7 +1,7 @@
 //! Contact: distances between surfaces, and when they will touch.
 
-use motet::base::{Point, Threads, VertexId};
-use motet::contact::{self, Body, Gaps, NONE, Options, Room};
+use motet::base::{BodyId, Id, MaybeId, Point, Threads, VertexId};
+use motet::contact::{self, Body, Gaps, Options, Room};
 use numpy::PyArray1;
 use numpy::ndarray::Ix2;
 use pyo3::prelude::*;
@@ -90,7 +90,7 @@ impl Contact {
 
     /// Which surfaces lie in which rooms, with the part of their area inside where the room was detected.
     fn rooms(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        let name = |body: u32| self.names[body as usize].as_str();
+        let name = |body: BodyId| self.names[body.index()].as_str();
         let within =
             |w: &contact::Within| Within { room: name(w.room), surface: name(w.body), share: w.share };
         Ok(report(py, &self.contact.rooms().iter().map(within).collect::<Vec<_>>())?.into())
@@ -162,7 +162,7 @@ impl Contact {
 
     fn pairs<'a>(&'a self, gaps: &Gaps) -> Vec<Pair<'a>> {
         let pair = |pair: &contact::PairGap| Pair {
-            bodies: pair.bodies.map(|body| self.names[body as usize].as_str()),
+            bodies: pair.bodies.map(|body| self.names[body.index()].as_str()),
             distance: pair.nearest.map(|nearest| nearest.distance),
             points: pair.nearest.map(|nearest| nearest.points),
             triangles: pair.nearest.map(|nearest| nearest.triangles),
@@ -176,8 +176,8 @@ impl Contact {
 }
 
 /// Ids as signed integers, with -1 for none.
-fn signed<'py>(py: Python<'py>, ids: &[u32]) -> Bound<'py, PyArray1<i64>> {
-    PyArray1::from_vec(py, ids.iter().map(|&id| if id == NONE { -1 } else { id.into() }).collect())
+fn signed<'py, I: Id>(py: Python<'py>, ids: &[MaybeId<I>]) -> Bound<'py, PyArray1<i64>> {
+    PyArray1::from_vec(py, ids.iter().map(|id| id.get().map_or(-1, |id| id.place() as i64)).collect())
 }
 
 /// The surfaces of a mesh by their names: patches, or the whole surface. Points of the mesh start at index

@@ -151,7 +151,7 @@ pub(crate) unsafe extern "C" fn motet_contact_nearest(
         let distance = handle_mut(distance, "distance")?;
         let pair = [first, second].map(i64::from);
         let found = contact.nearest(threads).into_iter();
-        let mut found = found.map(|(bodies, nearest)| (bodies.map(i64::from), nearest));
+        let mut found = found.map(|(bodies, nearest)| (bodies.map(|body| i64::from(body.0)), nearest));
         let Some((bodies, nearest)) =
             found.find(|(bodies, _)| *bodies == pair || [bodies[1], bodies[0]] == pair)
         else {

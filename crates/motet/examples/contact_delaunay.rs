@@ -187,7 +187,7 @@ fn by_the_paper(between: &Between, points: &[Point]) -> Vec<f64> {
     let mut gap = vec![f64::INFINITY; points.len()];
     for tet in &between.tets {
         if let Some(distance) = paper::within(tet, points) {
-            tet.vertices.iter().for_each(|v| gap[v.index()] = gap[v.index()].min(distance));
+            tet.corners().iter().flatten().for_each(|v| gap[v.index()] = gap[v.index()].min(distance));
         }
     }
     gap
@@ -197,10 +197,10 @@ fn by_the_paper(between: &Between, points: &[Point]) -> Vec<f64> {
 fn two_two_by_the_paper(between: &Between, points: &[Point]) -> Vec<(f64, f64)> {
     let two_two = between.tets.iter().filter(|tet| tet.kind == GapKind::TwoTwo);
     let both = |tet: &GapTet| {
-        let [p, q, r, s] = tet.vertices.map(|v| points[v.index()]);
-        (paper::two_two([p, q], [r, s]), segment_segment::closest([p, q], [r, s]).distance())
+        let [p, q, r, s] = tet.corners()?.map(|v| points[v.index()]);
+        Some((paper::two_two([p, q], [r, s]), segment_segment::closest([p, q], [r, s]).distance()))
     };
-    two_two.map(both).collect()
+    two_two.filter_map(both).collect()
 }
 
 fn rounded(x: f64) -> f64 {

@@ -17,7 +17,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
-use motet::base::{Point, Threads, VertexId};
+use motet::base::{BodyId, MaybeId, Point, Threads, TriangleId, VertexId};
 use motet::contact::{Body, Contact, Options, Room};
 use motet::geometry::triangle;
 use motet::geometry::vector::{dot, sub};
@@ -84,8 +84,8 @@ fn by_brute_force(points: &[Point], triangles: &[[VertexId; 3]], p: Point) -> (f
     all.fold((f64::INFINITY, 0), |best, next| if next.0 < best.0 { next } else { best })
 }
 
-fn triangles_of(found: &[Option<Closest>]) -> Vec<u32> {
-    found.iter().map(|c| c.map_or(u32::MAX, |c| c.triangle as u32)).collect()
+fn triangles_of(found: &[Option<Closest>]) -> Vec<MaybeId<TriangleId>> {
+    found.iter().map(|c| c.map(|c| TriangleId::new(c.triangle)).into()).collect()
 }
 
 /// Measures the vertices of the lattice against the tube; returns their distances at rest and after the last
@@ -180,7 +180,7 @@ fn whole(shapes: [&Shape; 2], budget: f64, threads: &Threads, out: &mut Value) -
     Ok(gaps.bodies.swap_remove(1).gap)
 }
 
-fn least(nearest: &[([u32; 2], Option<motet::contact::Nearest>)]) -> Value {
+fn least(nearest: &[([BodyId; 2], Option<motet::contact::Nearest>)]) -> Value {
     nearest.iter().filter_map(|(_, nearest)| *nearest).map(|nearest| nearest.distance).next().into()
 }
 

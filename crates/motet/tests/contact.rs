@@ -5,7 +5,7 @@ mod surfaces;
 
 use common::Numbers;
 use motet::base::{Point, Threads, VertexId};
-use motet::contact::{Body, Contact, NONE, Options, Room};
+use motet::contact::{Body, Contact, Options, Room};
 use motet::geometry::distance::triangle_triangle;
 use motet::geometry::vector::{add, distance, norm, scale, sub};
 use surfaces::{Shape, bodies, coil, cube, oracle, sheet, soup, torus};
@@ -38,7 +38,7 @@ fn holds(shapes: &[Shape; 2], what: &str) {
                 );
                 let place = body.closest_point[i];
                 assert!((distance(p, place) - got).abs() <= tolerance, "{what}: the place is not that far");
-                let triangle = shapes[other].corners(body.closest_triangle[i] as usize);
+                let triangle = shapes[other].corners(body.closest_triangle[i].get().unwrap().index());
                 assert!(
                     oracle::point_triangle(place, triangle) <= tolerance,
                     "{what}: the place is not on its triangle"
@@ -245,7 +245,7 @@ fn a_sheet_that_folds_meets_itself_and_one_that_is_flat_does_not() {
     for flat in [sheet(30, |_, _| 0.0), sheet(30, |x, y| 0.1 * (6.0 * x).sin() * (6.0 * y).cos())] {
         let gaps =
             contact(&[flat], Options { own: true, within: 0.3, ..options }).measure(&Threads::single());
-        assert!(gaps.bodies[0].closest_body.iter().all(|&b| b == NONE));
+        assert!(gaps.bodies[0].closest_body.iter().all(|b| b.is_none()));
         assert!(gaps.pairs[0].nearest.is_none() && !gaps.is_warned());
     }
 }
@@ -261,7 +261,7 @@ fn a_coil_sees_its_next_turn_and_not_its_own_wire() {
         let across = 0.3 / (1.0 + (0.3 / std::f64::consts::TAU).powi(2)).sqrt();
         assert!((nearest.distance / unit - (across - 0.2)).abs() < 6e-3, "{}", nearest.distance / unit);
         let body = &gaps.bodies[0];
-        for (i, v) in body.vertices.iter().enumerate().filter(|(i, _)| body.closest_body[*i] != NONE) {
+        for (i, v) in body.vertices.iter().enumerate().filter(|(i, _)| body.closest_body[*i].is_some()) {
             let p = wire.points[v.index()];
             let to = body.closest_point[i];
             assert!(

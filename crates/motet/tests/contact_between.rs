@@ -3,7 +3,7 @@
 mod common;
 
 use common::Numbers;
-use motet::base::{Id, Point, Threads, VertexId};
+use motet::base::{BodyId, Point, Threads, VertexId};
 use motet::contact::{Between, BetweenOptions, GapKind, Side, paper};
 use motet::geometry::distance::segment_segment;
 use motet::geometry::vector::{add, distance, scale};
@@ -127,15 +127,15 @@ fn one_tet_is_what_its_vertices_say() {
     let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, -0.5, 1.0], [0.5, 0.5, 1.0]];
     let two_two = between(&points, &[ids(&[[0, 1, 1]]), ids(&[[3, 2, 2]])]);
     assert_eq!(kinds(&two_two), [GapKind::TwoTwo]);
-    assert_eq!(two_two.tets[0].vertices[..2].iter().map(|v| v.0).max(), Some(1));
-    assert_eq!((two_two.tets[0].bodies, two_two.tets[0].distance), ([0, 1], 1.0));
+    assert_eq!(two_two.tets[0].vertices[..2].iter().max(), Some(&VertexId(1).into()));
+    assert_eq!((two_two.tets[0].bodies, two_two.tets[0].distance), ([0, 1].map(BodyId), 1.0));
     // The edges are 1 apart, their vertices farther from the other edge.
     assert!(two_two.gap.iter().all(|gap| *gap == 1.25f64.sqrt()));
     assert_eq!(two_two.nearest_vertices.unwrap().distance, 1.5f64.sqrt());
 
     let three_one = between(&points, &[ids(&[[0, 1, 2]]), ids(&[[3, 3, 3]])]);
     assert_eq!(kinds(&three_one), [GapKind::ThreeOne]);
-    assert_eq!(three_one.tets[0].vertices[3], VertexId(3));
+    assert_eq!(three_one.tets[0].vertices[3], VertexId(3).into());
     let exact = exact(&points, &[ids(&[[0, 1, 2]]), ids(&[[3, 3, 3]])]);
     assert!((three_one.gap[3] - exact[3]).abs() < 1e-15);
     assert_eq!(three_one.gap[2], 1.0);
@@ -185,7 +185,7 @@ fn no_gap_is_smaller_than_the_distance_and_the_nearest_vertices_are() {
         let exact = exact(&points, &bodies);
         for (v, (gap, exact)) in found.gap.iter().zip(&exact).enumerate() {
             assert!(*gap >= exact - 1e-14 * unit, "seed {seed}, vertex {v}: {gap} {exact}");
-            assert_eq!(*gap < f64::INFINITY, found.closest[v] != VertexId::NONE);
+            assert_eq!(*gap < f64::INFINITY, found.closest[v].is_some());
         }
         let options = BetweenOptions { stars: true, ..BetweenOptions::default() };
         let stars = Between::new(&points, &bodies, &options, &Threads::single()).unwrap();
@@ -209,7 +209,7 @@ fn spheres_are_as_far_apart_as_their_nearest_vertices() {
         let (points, bodies) = joined(&[sphere(2, [0.0; 3], unit), sphere(2, [2.1 * unit, 0.0, 0.0], unit)]);
         let found = between(&points, &bodies);
         assert!((found.least.unwrap().distance - 0.1 * unit).abs() < 1e-14 * unit);
-        assert_eq!(found.least.unwrap().bodies, [0, 1]);
+        assert_eq!(found.least.unwrap().bodies, [0, 1].map(BodyId));
         let exact = exact(&points, &bodies);
         assert!(found.gap.iter().zip(&exact).all(|(gap, exact)| *gap >= exact * (1.0 - 1e-14)));
         let facing = |v: &usize| (found.gap[*v] - exact[*v]).abs() <= 1e-14 * unit;
@@ -254,8 +254,9 @@ fn nothing_is_measured_through_a_wall() {
     let found = sided(&points, &bodies, &[Side::Outside]);
     // Each point is measured to the face that is visible from it, and each face to the point before it.
     assert!((0.5..0.6).contains(&found.gap[10]) && (0.4..0.5).contains(&found.gap[11]));
-    assert!(found.closest[10].0 < 5 && (5..10).contains(&found.closest[11].0));
-    assert_eq!((found.closest[4], found.closest[9]), (VertexId(10), VertexId(11)));
+    let closest = |v: usize| found.closest[v].get().unwrap().0;
+    assert!(closest(10) < 5 && (5..10).contains(&closest(11)));
+    assert_eq!((closest(4), closest(9)), (10, 11));
 }
 
 #[test]
@@ -265,13 +266,16 @@ fn bodies_that_share_a_place_touch() {
     let found = between(&points, &bodies);
     let second = points.len() / 2 + 1;
     assert_eq!((found.gap[0], found.gap[second]), (0.0, 0.0));
-    assert_eq!((found.closest[0].index(), found.closest[second].index()), (second, 0));
+    assert_eq!([0, second].map(|v| found.closest[v].get().unwrap().index()), [second, 0]);
     assert_eq!(found.least.unwrap().distance, 0.0);
     assert!(kinds(&found).contains(&GapKind::Touching));
     // The same bodies sharing one vertex.
     bodies[1].as_flattened_mut().iter_mut().filter(|v| v.index() == second).for_each(|v| *v = VertexId(0));
     let shared = between(&points, &bodies);
-    assert_eq!((shared.gap[0], shared.closest[0], shared.gap[second]), (0.0, VertexId(0), f64::INFINITY));
+    assert_eq!(
+        (shared.gap[0], shared.closest[0], shared.gap[second]),
+        (0.0, VertexId(0).into(), f64::INFINITY)
+    );
     // The same bodies, each triangle with its own points: the result is as if they were one.
     let (soup, own): (Vec<Point>, Vec<Triangles>) = {
         let mut soup = Vec::new();
@@ -310,7 +314,7 @@ fn points_in_a_plane_on_a_line_and_in_one_place_have_gaps_too() {
     let bodies = [ids(&[[0, 1, 2], [1, 3, 2]]), ids(&[[4, 5, 5]])];
     let found = between(&plane, &bodies);
     assert!(!found.tets.is_empty() && kinds(&found).iter().all(|kind| *kind == GapKind::Flat));
-    assert!(found.tets.iter().all(|tet| tet.vertices[3] == VertexId::NONE));
+    assert!(found.tets.iter().all(|tet| tet.vertices[3].is_none()));
     assert_eq!((found.least.unwrap().distance, found.gap[1], found.gap[4]), (2.0, 2.0, 2.0));
     assert_eq!(found.nearest_vertices.unwrap().distance, 2.0);
 

@@ -4,8 +4,8 @@
 mod common;
 mod surfaces;
 
-use motet::base::Threads;
-use motet::contact::{BodyGaps, Contact, Gaps, NONE, Options};
+use motet::base::{BodyId, Threads};
+use motet::contact::{BodyGaps, Contact, Gaps, Options};
 use motet::geometry::triangle;
 use motet::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 use surfaces::{Shape, bodies, sheet, torus};
@@ -91,9 +91,9 @@ fn nothing_is_seen_through_the_thickness_of_a_plate() {
     let (points, one) = bodies(std::slice::from_ref(&plate));
     let contact = Contact::new(points, one, Options { own: true, ..Options::default() }, &Threads::single())
         .expect("it is sound");
-    assert!(contact.is_closed(0));
+    assert!(contact.is_closed(BodyId(0)));
     let gaps = own(&plate, 0.5);
-    assert!(gaps.bodies[0].closest_body.iter().all(|&b| b == NONE), "{:?}", gaps.bodies[0].gap);
+    assert!(gaps.bodies[0].closest_body.iter().all(|b| b.is_none()), "{:?}", gaps.bodies[0].gap);
     assert!(gaps.pairs[0].nearest.is_none());
 }
 

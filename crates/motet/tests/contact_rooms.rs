@@ -4,7 +4,7 @@ mod common;
 mod surfaces;
 
 use common::Numbers;
-use motet::base::{Point, Threads};
+use motet::base::{BodyId, Point, Threads};
 use motet::contact::{Body, Contact, Gaps, Options, Room};
 use surfaces::{Shape, bodies, coil, cube, sheet, torus};
 
@@ -59,7 +59,7 @@ fn measured(shapes: &[Shape], rooms: &[Room], options: Options) -> (Contact, Gap
 /// Gap bits and warning at every corner of every triangle.
 fn at_corners(contact: &Contact, gaps: &Gaps) -> Vec<(u64, bool)> {
     let mut all = Vec::new();
-    for (id, body) in (0..).zip(&gaps.bodies) {
+    for (id, body) in (0..).map(BodyId).zip(&gaps.bodies) {
         for v in contact.triangles(id).as_flattened() {
             let i = body.vertices.binary_search(v).expect("a vertex of the body");
             all.push((body.gap[i].to_bits(), body.warning[i]));
@@ -109,7 +109,7 @@ fn what_leaves_a_room_with_a_lid_of_its_own_is_as_negative_as_it_is_far_out() {
     let room = seamed(&cube(), |p| p[2] == 1.0);
     let strut = cube().map(|p| [0.5 + 0.75 * p[0], 0.25 + 0.5 * p[1], 0.25 + 0.5 * p[2]]);
     let (contact, gaps) = measured(&[strut, room], &[Room::No, Room::Yes], Options::default());
-    assert!(contact.is_closed(1));
+    assert!(contact.is_closed(BodyId(1)));
     for (v, gap) in gaps.bodies[0].vertices.iter().zip(&gaps.bodies[0].gap) {
         let is_out = contact.points()[v.index()][0] > 1.0;
         assert_eq!(*gap, if is_out { -0.25 } else { 0.25 });
@@ -131,14 +131,14 @@ fn a_slit_is_no_seam() {
     let other = |v: u32| if is_rim(flat.points[v as usize]) { v } else { v + n };
     slit.triangles.extend(flat.triangles.iter().map(|&[a, b, c]| [a, c, b].map(other)));
     let (contact, gaps) = measured(&[slit], &[Room::Found], Options { own: true, ..Options::default() });
-    assert!(contact.is_closed(0));
+    assert!(contact.is_closed(BodyId(0)));
     let inner = gaps.bodies[0].vertices.iter().zip(&gaps.bodies[0].gap);
     let mut inner = inner.filter(|(v, _)| !is_rim(contact.points()[v.index()]));
     assert!(inner.all(|(_, gap)| *gap == 0.0), "the sides touch: {:?}", gaps.bodies[0].gap);
 }
 
 fn pairs(contact: &Contact) -> Vec<[u32; 2]> {
-    contact.rooms().iter().map(|within| [within.room, within.body]).collect()
+    contact.rooms().iter().map(|within| [within.room.0, within.body.0]).collect()
 }
 
 #[test]
@@ -213,14 +213,15 @@ fn what_is_a_room_is_decided_at_first() {
     assert_eq!(pairs(&contact), [[1, 0]]);
     assert!(gaps.bodies[0].gap.iter().all(|&gap| gap < 0.0), "all of it is outside its room");
     // The same bodies with other triangles keep their rooms.
-    let reported = [0, 1].map(|id| contact.room(id));
-    assert_eq!(reported, [Room::Of(vec![]), Room::Of(vec![0])]);
-    let body = |id: u32| Body {
+    let reported = [0, 1].map(|id| contact.room(BodyId(id)));
+    assert_eq!(reported, [Room::Of(vec![]), Room::Of(vec![BodyId(0)])]);
+    let body = |id: BodyId| Body {
         name: contact.name(id).into(),
         triangles: contact.triangles(id).to_vec(),
         room: contact.room(id),
     };
-    let again = Contact::new(points, vec![body(0), body(1)], Options::default(), &Threads::single());
+    let again =
+        Contact::new(points, vec![body(BodyId(0)), body(BodyId(1))], Options::default(), &Threads::single());
     let mut again = again.unwrap();
     assert_eq!(pairs(&again), [[1, 0]]);
     assert_eq!(again.measure(&Threads::single()).bodies[0].gap, gaps.bodies[0].gap);
@@ -230,7 +231,7 @@ fn what_is_a_room_is_decided_at_first() {
 fn a_room_of_what_is_not_there_is_refused() {
     let (points, mut two) = bodies(&[cube(), cube().shifted([3.0, 0.0, 0.0])]);
     for others in [vec![2], vec![0, 7], vec![1]] {
-        two[1].room = Room::Of(others);
+        two[1].room = Room::Of(others.into_iter().map(BodyId).collect());
         let error = Contact::new(points.clone(), two.clone(), Options::default(), &Threads::single());
         assert!(error.unwrap_err().to_string().contains("body 1 cannot be the room of body"));
     }

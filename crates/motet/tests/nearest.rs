@@ -1,6 +1,6 @@
 //! Nearest triangles: compared with brute force, and checked by the definition of closest points.
 
-use motet::base::{Point, Threads, VertexId};
+use motet::base::{MaybeId, Point, Threads, TriangleId, VertexId};
 use motet::geometry::triangle;
 use motet::geometry::vector::{add, distance, dot, norm, scale, sub};
 use motet::mesh::shapes::{TubeOptions, mixed, sphere_in_box, tube};
@@ -244,7 +244,8 @@ proptest! {
         let mut now = placed(&points);
         let mut tree = NearestTriangle::new(&now, &triangles, &Threads::single());
         let threads = Threads::new(2).unwrap();
-        let mut guesses = guesses[..queries.len()].to_vec();
+        let mut guesses: Vec<MaybeId<TriangleId>> =
+            guesses[..queries.len()].iter().map(|t| TriangleId(*t).into()).collect();
         for step in 0..=moves.len() {
             let expected: Vec<_> = queries.iter().map(|p| by_look(&now, &triangles, *p)).collect();
             let one = |c: Option<motet::spatial::Closest>| c.map(|c| (c.distance_squared, c.triangle));
@@ -252,7 +253,7 @@ proptest! {
             prop_assert_eq!(cold.iter().map(|c| one(*c)).collect::<Vec<_>>(), expected);
             prop_assert_eq!(&tree.closest_all(&queries, Some(&guesses), &threads), &cold);
             prop_assert_eq!(&queries.iter().map(|p| tree.closest(*p)).collect::<Vec<_>>(), &cold);
-            guesses = cold.iter().map(|c| c.map_or(u32::MAX, |c| c.triangle as u32)).collect();
+            guesses = cold.iter().map(|c| c.map(|c| TriangleId::new(c.triangle)).into()).collect();
             if let Some((by, how_far)) = moves.get(step) {
                 let moved: Vec<Point> = points.iter().zip(by).map(|(p, d)| add(*p, scale(*d, *how_far))).collect();
                 now = placed(&moved);
@@ -279,7 +280,7 @@ fn a_large_surface_is_searched_alike_on_any_number_of_threads() {
     let moved: Vec<Point> = surface.points.iter().map(|p| [p[0] + 0.1 * p[1], p[1], 1.5 * p[2]]).collect();
     tree.refit(&moved, &two);
     let anew = NearestTriangle::new(&moved, &surface.triangles, &Threads::single());
-    let guesses: Vec<u32> = one.iter().map(|c| c.unwrap().triangle as u32).collect();
+    let guesses: Vec<_> = one.iter().map(|c| c.map(|c| TriangleId::new(c.triangle)).into()).collect();
     assert_eq!(tree.closest_all(&queries, Some(&guesses), &two), anew.closest_all(&queries, None, &two));
 }
 
@@ -355,7 +356,10 @@ fn points_far_off_have_exact_answers_too() {
         for direction in [[1.0, 0.3, -0.2], [-0.1, -0.7, 1.0]] {
             let p = scale(direction, far);
             let expected = by_brute_force(&surface.points, &surface.triangles, p);
-            for found in [tree.closest(p), tree.closest_all(&[p; 2], Some(&[3, 5]), &Threads::single())[1]] {
+            for found in [
+                tree.closest(p),
+                tree.closest_all(&[p; 2], Some(&[3, 5].map(|t| TriangleId(t).into())), &Threads::single())[1],
+            ] {
                 assert_eq!(found.map(|c| (c.triangle, c.distance_squared)), Some(expected), "{far}");
             }
         }

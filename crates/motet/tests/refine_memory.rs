@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 use common::invariants::{corners, fits};
 use common::refined::{ball_in_box, facets, nearest, worst};
 use common::{Numbers, random_mesh};
-use motet::base::{Point, TetId, Threads, VertexId};
+use motet::base::{MaybeId, Point, TetId, Threads, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::tet::{FACETS, centroid};
 use motet::geometry::vector::distance;
@@ -124,7 +124,7 @@ fn forgets(memory: &Memory, mesh: &TetMesh, places: &[Point], radius: f64) -> (M
     };
     let forgotten: HashSet<usize> = (0..mesh.tets.len()).filter(is_forgotten).collect();
     let mut memory = memory.clone();
-    forgotten.iter().for_each(|&t| memory.roots[t] = motet::refine::UNKNOWN);
+    forgotten.iter().for_each(|&t| memory.roots[t] = MaybeId::NONE);
     (memory, forgotten)
 }
 
@@ -306,7 +306,7 @@ fn a_memory_of_another_mesh_is_refused_or_falls_apart() {
         for _ in 0..1 + numbers.next() % 5 {
             let (t, value) = (numbers.next() as usize % n, numbers.next());
             match numbers.next() % 5 {
-                0 => wrong.roots[t] = (value % 50) as u32,
+                0 => wrong.roots[t] = TetId((value % 50) as u32).into(),
                 1 => wrong.paths[t] = value >> (value % 64),
                 2 => wrong.pieces[t] = value as u16,
                 3 => wrong.n_requested[t] = value as u8,

@@ -31,9 +31,9 @@ fn remeshed(mesh: &Mesh) -> MeshOutcome {
     remesh_mesh(mesh, &Options::default(), &Rules::default(), &Threads::single()).unwrap()
 }
 
-fn corners(mesh: &Mesh, cell: u32) -> [Point; 4] {
-    assert_eq!(mesh.cells.kind(CellId(cell)), CellKind::TETRA);
-    let vertices: [VertexId; 4] = mesh.cells.vertices(CellId(cell)).try_into().unwrap();
+fn corners(mesh: &Mesh, cell: CellId) -> [Point; 4] {
+    assert_eq!(mesh.cells.kind(cell), CellKind::TETRA);
+    let vertices: [VertexId; 4] = mesh.cells.vertices(cell).try_into().unwrap();
     vertices.map(|v| mesh.points[v.index()])
 }
 
@@ -74,11 +74,11 @@ fn counts_and_shares_are_those_of_the_meshes() {
         history.cells.kept().iter().enumerate().filter(|(cell, old)| is_tet(*cell) && **old != CellId::NONE);
     assert_eq!(kept.count(), report.kept);
     let bad = |mesh: &Mesh| {
-        mesh.cells.tets().filter(|(cell, _)| eas(corners(mesh, cell.0)) < report.min_eas).count()
+        mesh.cells.tets().filter(|(cell, _)| eas(corners(mesh, *cell)) < report.min_eas).count()
     };
     assert_eq!((report.before.bad, report.after.bad), (bad(&old), bad(&mesh)));
     assert_eq!(report.before.types.iter().sum::<usize>(), report.before.bad);
-    let flat = |mesh: &Mesh| mesh.cells.tets().filter(|(cell, _)| eas(corners(mesh, cell.0)) <= 0.0).count();
+    let flat = |mesh: &Mesh| mesh.cells.tets().filter(|(cell, _)| eas(corners(mesh, *cell)) <= 0.0).count();
     assert_eq!((report.before.inverted, report.after.inverted), (flat(&old), flat(&mesh)));
 }
 

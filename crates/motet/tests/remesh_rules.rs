@@ -175,7 +175,7 @@ fn walls_that_meet_at_an_angle_or_have_one_are_named_as_the_cause() {
     let complex = Complex::new(&outcome.extract.mesh).unwrap();
     let (mut n_angles, mut n_meets) = (0, 0);
     for left in &outcome.report.left {
-        let tet = motet::base::TetId(left.tet);
+        let tet = left.tet;
         let corners = complex.corners(tet);
         let walls = (0..4).filter(|&i| complex.is_wall(tet, i));
         let facets: Vec<[Point; 3]> = walls

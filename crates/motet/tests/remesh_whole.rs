@@ -220,11 +220,11 @@ fn the_report_tells_cells_of_the_mesh() {
     let old = shaken_box(0.45, false);
     let MeshOutcome { mesh, report, .. } = remeshed(&old, &Options::default());
     for (mesh, worst) in [(&old, report.before.worst.unwrap()), (&mesh, report.after.worst.unwrap())] {
-        let vertices = mesh.cells.vertices(CellId(worst.tet)).try_into().unwrap();
+        let vertices = mesh.cells.vertices(worst.tet).try_into().unwrap();
         assert_eq!(eas(corners(mesh, vertices)), worst.eas);
     }
     for left in &report.left {
-        let vertices = mesh.cells.vertices(CellId(left.tet)).try_into().unwrap();
+        let vertices = mesh.cells.vertices(left.tet).try_into().unwrap();
         assert_eq!(eas(corners(&mesh, vertices)), left.eas);
     }
 }

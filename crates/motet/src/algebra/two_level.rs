@@ -208,7 +208,8 @@ mod tests {
         let (matrix, places) = rod(spring);
         let right: Vec<Vector3> = (0..places.len()).map(|i| [1.0, (i % 7) as f64, -2.0]).collect();
         fn solve<B: Block>(
-            (matrix, right): (&SparseMatrix<B>, &[Vector3]),
+            matrix: &SparseMatrix<B>,
+            right: &[Vector3],
             preconditioner: &impl Preconditioner<B>,
             threads: &Threads,
         ) -> (usize, Vec<Vector3>) {
@@ -220,14 +221,13 @@ mod tests {
         }
         let sweeps = Sgs::new(&matrix).unwrap();
         let levels = TwoLevel::new(&matrix, &places, &Threads::single()).unwrap().unwrap();
-        let system = (&matrix, &right[..]);
-        let (many, expected) = solve(system, &sweeps, &Threads::single());
-        let (few, got) = solve(system, &levels, &Threads::single());
+        let (many, expected) = solve(&matrix, &right, &sweeps, &Threads::single());
+        let (few, got) = solve(&matrix, &right, &levels, &Threads::single());
         assert!(3 * few < many, "{few} iterations, by sweeps alone {many}");
         let size = expected.as_flattened().iter().fold(0.0f64, |a, x| a.max(x.abs()));
         let off = expected.as_flattened().iter().zip(got.as_flattened()).map(|(a, b)| (a - b).abs());
         assert!(off.fold(0.0, f64::max) < 1e-6 * size);
-        assert_eq!(solve(system, &levels, &Threads::new(2).unwrap()), (few, got));
+        assert_eq!(solve(&matrix, &right, &levels, &Threads::new(2).unwrap()), (few, got));
     }
 
     #[test]

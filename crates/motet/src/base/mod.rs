@@ -15,8 +15,10 @@ mod words;
 
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result, printable};
-pub use ids::{CellId, Id, TetId, VertexId, rising_list};
-pub(crate) use ids::{same_orientation, sorted_ids};
+pub use ids::{BodyId, CellId, Id, MaybeId, TetId, TriangleId, VertexId, rising_list};
+pub(crate) use ids::{
+    EdgeId, ForestVertexId, LineId, NodeId, absent, id, or_none, same_orientation, sorted_ids,
+};
 pub(crate) use lanewise::lanewise;
 pub use percent::percent;
 pub use reasons::reasons;

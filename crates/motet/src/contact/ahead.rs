@@ -9,7 +9,7 @@ use super::measure::Contact;
 use super::rule::Rule;
 use super::surface_graph::PathSearch;
 use super::sweep::{Sweep, sweep, sweep_own};
-use crate::base::{Error, Point, Result, Threads};
+use crate::base::{BodyId, Error, Point, Result, Threads};
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::vector::{is_finite, scale, sub};
 
@@ -30,7 +30,7 @@ pub struct FirstContact {
     /// A time before which they do not touch.
     pub time: f64,
     /// The bodies.
-    pub bodies: [u32; 2],
+    pub bodies: [BodyId; 2],
     /// A triangle of each.
     pub triangles: [u32; 2],
     /// Where they will touch.
@@ -114,7 +114,7 @@ impl Contact {
 }
 
 impl Ahead {
-    fn take(&mut self, ids: [u32; 2], bodies: [BodyView<'_>; 2], found: Sweep) {
+    fn take(&mut self, ids: [BodyId; 2], bodies: [BodyView<'_>; 2], found: Sweep) {
         let first = found.first.map(|f| FirstContact {
             time: f.time,
             bodies: ids,
@@ -126,7 +126,7 @@ impl Ahead {
             self.first = Some(first);
         }
         for ((id, body), of_triangles) in ids.into_iter().zip(bodies).zip(found.times) {
-            for (place, time) in self.times[id as usize].iter_mut().enumerate() {
+            for (place, time) in self.times[id.index()].iter_mut().enumerate() {
                 *time = body.star(place).iter().map(|&t| of_triangles[t as usize]).fold(*time, f64::min);
             }
         }

@@ -4,7 +4,7 @@ use std::ops::Deref;
 
 use super::input::check_finite;
 use super::side::Side;
-use crate::base::{CellId, Csr, Error, Point, Result, Threads, VertexId};
+use crate::base::{BodyId, CellId, Csr, Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle;
 use crate::geometry::vector::dot;
 use crate::mesh::{Mesh, Surface, cone_volume};
@@ -34,8 +34,8 @@ pub enum Room {
     No,
     /// Of all other bodies, except for rooms that enclose it.
     Yes,
-    /// Of these bodies, by their indices in the list of bodies.
-    Of(Vec<u32>),
+    /// Of these bodies.
+    Of(Vec<BodyId>),
 }
 
 impl Body {

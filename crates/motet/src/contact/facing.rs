@@ -25,7 +25,12 @@ const ROUNDING: f64 = 1e-15;
 const ALIKE_COSINE: f64 = 1.0 - 2.0 * MIN_COSINE * MIN_COSINE;
 
 /// A place on a body: a point of a triangle, by the weights of its vertices.
-pub(super) type Place<'a> = (BodyView<'a>, u32, [f64; 3]);
+#[derive(Clone, Copy)]
+pub(super) struct Place<'a> {
+    pub(super) body: BodyView<'a>,
+    pub(super) triangle: u32,
+    pub(super) weights: [f64; 3],
+}
 
 /// Whether two triangles may face each other anywhere. This quick test rules out most neighbours without
 /// measuring: those whose normals are too similar, or of which one lies behind the other, unless they meet.
@@ -98,7 +103,7 @@ pub(super) fn see_each_other(points: &[Point], from: Place<'_>, to: Place<'_>, w
 /// Whether the direction `out`, from a place to what it is nearest to, leads into free space: by the normal
 /// of the triangle, or on an edge or a vertex by the sum of the normals around, which even an edge as sharp
 /// as a knife has. The rim of an open surface may be left in any direction.
-fn faces(points: &[Point], (body, triangle, weights): Place<'_>, out: Point) -> bool {
+fn faces(points: &[Point], Place { body, triangle, weights }: Place<'_>, out: Point) -> bool {
     if is_free(body.free, body.normal(points, triangle), out, MIN_COSINE) {
         return true;
     }

@@ -10,7 +10,7 @@ use super::results::{BodyGaps, Gaps, Nearest, Warned};
 use super::room::{self, Within};
 use super::side::Side;
 use super::surface_graph::SurfaceGraph;
-use crate::base::{DisjointSets, Error, Point, Result, Threads, VertexId};
+use crate::base::{BodyId, DisjointSets, Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::distance;
 use crate::mesh;
 
@@ -35,7 +35,7 @@ pub struct Contact {
     options: Options,
     /// The pairs that are measured, and whether they have vertices in common, so that neighbours must be left
     /// out.
-    pairs: Vec<([u32; 2], bool)>,
+    pairs: Vec<([BodyId; 2], bool)>,
     /// The guesses for each pair.
     guesses: Vec<Guesses>,
 }
@@ -60,14 +60,16 @@ impl Contact {
             PreparedBody::new(body, vertices, &points, &joined, threads)
         });
         let rooms = room::within(&points, &bodies, &given_rooms, threads);
-        let n = bodies.len() as u32;
-        let all = (0..n).flat_map(|a| (a..n).map(move |b| [a, b])).filter(|[a, b]| a != b || options.own);
+        let n = bodies.len();
+        let all = (0..n)
+            .flat_map(|a| (a..n).map(move |b| [a, b].map(BodyId::new)))
+            .filter(|[a, b]| a != b || options.own);
         let is_joined =
-            |[a, b]: [u32; 2]| a == b || bodies[a as usize].shares_vertex_with(&bodies[b as usize]);
+            |[a, b]: [BodyId; 2]| a == b || bodies[a.index()].shares_vertex_with(&bodies[b.index()]);
         let pairs: Vec<_> = all.map(|pair| (pair, is_joined(pair))).collect();
         for &([a, b], is_joined) in &pairs {
             if is_joined || options.facing {
-                [a, b].iter().for_each(|&id| bodies[id as usize].prepare_facing(&points));
+                [a, b].iter().for_each(|id| bodies[id.index()].prepare_facing(&points));
             }
         }
         let guesses = vec![Guesses::default(); pairs.len()];
@@ -101,24 +103,24 @@ impl Contact {
     }
 
     /// The name of a body.
-    pub fn name(&self, body: u32) -> &str {
-        &self.bodies[body as usize].name
+    pub fn name(&self, body: BodyId) -> &str {
+        &self.bodies[body.index()].name
     }
 
     /// The triangles of a body.
-    pub fn triangles(&self, body: u32) -> &[[VertexId; 3]] {
-        &self.bodies[body as usize].triangles
+    pub fn triangles(&self, body: BodyId) -> &[[VertexId; 3]] {
+        &self.bodies[body.index()].triangles
     }
 
     /// Whether a body is closed, so that it has an inside: every edge is used as often one way as the other,
     /// where vertices repeated by [seams](fn@crate::mesh::seams) count as one.
-    pub fn is_closed(&self, body: u32) -> bool {
-        self.bodies[body as usize].is_closed
+    pub fn is_closed(&self, body: BodyId) -> bool {
+        self.bodies[body.index()].is_closed
     }
 
     /// On which side of a body its gaps are: outside a closed one, inside a room; on both sides of one that
     /// is open, or a room within another.
-    pub fn side(&self, body: u32) -> Side {
+    pub fn side(&self, body: BodyId) -> Side {
         self.view_alone(body).free
     }
 
@@ -129,30 +131,29 @@ impl Contact {
 
     /// What a body is the room of, for a handle of the same bodies with other triangles, so that they remain
     /// rooms of the same.
-    pub fn room(&self, body: u32) -> Room {
-        match &self.given_rooms[body as usize] {
+    pub fn room(&self, body: BodyId) -> Room {
+        match &self.given_rooms[body.index()] {
             Room::Found => Room::Of(self.rooms.iter().filter(|w| w.room == body).map(|w| w.body).collect()),
             given => given.clone(),
         }
     }
 
     /// Two bodies as seen by each other.
-    pub(super) fn view(&self, [a, b]: [u32; 2]) -> [BodyView<'_>; 2] {
-        let is_room = |room: u32, body: u32| self.rooms.iter().any(|w| w.room == room && w.body == body);
+    pub(super) fn view(&self, [a, b]: [BodyId; 2]) -> [BodyView<'_>; 2] {
+        let is_room =
+            |room: BodyId, body: BodyId| self.rooms.iter().any(|w| w.room == room && w.body == body);
         match a == b {
             true => [self.view_alone(a); 2],
-            false => {
-                [self.bodies[a as usize].view(is_room(a, b)), self.bodies[b as usize].view(is_room(b, a))]
-            }
+            false => [self.bodies[a.index()].view(is_room(a, b)), self.bodies[b.index()].view(is_room(b, a))],
         }
     }
 
     /// A body as seen by itself.
-    fn view_alone(&self, body: u32) -> BodyView<'_> {
+    fn view_alone(&self, body: BodyId) -> BodyView<'_> {
         let is_room =
-            self.given_rooms[body as usize] == Room::Yes || self.rooms.iter().any(|w| w.room == body);
+            self.given_rooms[body.index()] == Room::Yes || self.rooms.iter().any(|w| w.room == body);
         let is_within = self.rooms.iter().any(|w| w.body == body);
-        let view = self.bodies[body as usize].view(is_room);
+        let view = self.bodies[body.index()].view(is_room);
         if is_room && is_within { BodyView { free: Side::Both, ..view } } else { view }
     }
 
@@ -163,7 +164,7 @@ impl Contact {
         let pairs = self.for_each_pair(|scene, guesses| {
             let (gap, sides) = scene.measure(guesses, threads);
             for (side, id) in sides.into_iter().zip(scene.ids) {
-                side.merge_into(scene, &mut bodies[id as usize]);
+                side.merge_into(scene, &mut bodies[id.index()]);
             }
             gap
         });
@@ -172,7 +173,7 @@ impl Contact {
 
     /// The nearest points of every pair of bodies and nothing else, as a solver needs them at every
     /// iteration; `None` if nothing is within reach.
-    pub fn nearest(&mut self, threads: &Threads) -> Vec<([u32; 2], Option<Nearest>)> {
+    pub fn nearest(&mut self, threads: &Threads) -> Vec<([BodyId; 2], Option<Nearest>)> {
         self.for_each_pair(|scene, guesses| (scene.ids, scene.nearest_only(guesses, threads)))
     }
 
@@ -190,7 +191,7 @@ impl Contact {
     /// Groups of connected vertices with a warning, the nearest first.
     pub fn warned(&self, gaps: &Gaps) -> Vec<Warned> {
         let mut groups: Vec<Warned> = Vec::new();
-        for (id, body) in (0..).zip(&gaps.bodies) {
+        for (id, body) in (0..).map(BodyId).zip(&gaps.bodies) {
             let mut is_open = body.warning.clone();
             for seed in 0..is_open.len() {
                 if !std::mem::take(&mut is_open[seed]) {
@@ -199,9 +200,9 @@ impl Contact {
                 let (mut group, mut next) = (vec![seed], 0);
                 while let Some(&place) = group.get(next) {
                     next += 1;
-                    let own = self.bodies[id as usize].ids[place];
-                    let around = self.graph().neighbors(own).iter().map(|v| VertexId(*v));
-                    for near in around.chain([own]).flat_map(|v| self.bodies[id as usize].places_of(v)) {
+                    let own = self.bodies[id.index()].ids[place];
+                    let around = self.graph().neighbors(own).iter().copied();
+                    for near in around.chain([own]).flat_map(|v| self.bodies[id.index()].places_of(v)) {
                         if std::mem::take(&mut is_open[near]) {
                             group.push(near);
                         }
@@ -211,7 +212,7 @@ impl Contact {
                 let at = group.iter().copied().fold(seed, nearer);
                 let vertex = body.vertices[at];
                 groups.push(Warned {
-                    bodies: [id, body.closest_body[at]],
+                    bodies: (id, body.closest_body[at]),
                     n_vertices: group.len(),
                     gap: body.gap[at],
                     vertex,
@@ -231,7 +232,9 @@ impl Contact {
 
     /// Each pair, with the paths along the surface if the bodies have vertices in common, and the options
     /// that it is measured with.
-    pub(super) fn measured_pairs(&self) -> impl Iterator<Item = ([u32; 2], Option<&SurfaceGraph>, Options)> {
+    pub(super) fn measured_pairs(
+        &self,
+    ) -> impl Iterator<Item = ([BodyId; 2], Option<&SurfaceGraph>, Options)> {
         let own = match self.options.own {
             true => Options { within: self.own_reach(), ..self.options },
             false => self.options,
@@ -270,7 +273,7 @@ fn check(bodies: &[Body], options: &Options) -> Result<()> {
         ))
         .remedy("give another surface, or enable contact of the surface with itself"));
     }
-    if bodies.len() > u32::MAX as usize {
+    if bodies.len() > BodyId::MAX_COUNT {
         return Err(Error::options("too many surfaces"));
     }
     options.check()

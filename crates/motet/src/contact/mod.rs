@@ -56,7 +56,7 @@ pub use body::{Body, Room};
 pub use inside::{inside, is_closed};
 pub use measure::Contact;
 pub use options::Options;
-pub use results::{BodyGaps, Gaps, NONE, Nearest, PairGap, Warned};
+pub use results::{BodyGaps, Gaps, Nearest, PairGap, Warned};
 pub use room::Within;
 pub use side::Side;
 pub use sweep::{SLACK, Sweep, Touch, sweep, sweep_apart, sweep_own};

@@ -11,7 +11,7 @@ use super::results::{BodyGaps, Nearest, PairGap};
 use super::rule::Rule;
 use super::side::Side;
 use super::surface_graph::{PathSearch, SurfaceGraph};
-use crate::base::{Point, Threads};
+use crate::base::{BodyId, MaybeId, Point, Threads, TriangleId};
 use crate::geometry::vector::{scale, sub};
 use crate::preflight::{crossings, own_crossings};
 use crate::spatial::Closest;
@@ -21,7 +21,7 @@ use crate::spatial::runs::in_runs;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Guesses {
     /// The triangle nearest to each vertex of the first body, and of the second.
-    of_vertices: [Vec<u32>; 2],
+    of_vertices: [Vec<MaybeId<TriangleId>>; 2],
     /// The nearest pair of triangles.
     pair: Option<[u32; 2]>,
 }
@@ -29,16 +29,20 @@ pub(super) struct Guesses {
 /// A bound above a distance by this factor finds it again.
 const SLACK: f64 = 1.0 + 1e-9;
 
-/// The ids of the triangles found; `u32::MAX` where there is none.
-fn triangles(found: &[Option<Closest>]) -> Vec<u32> {
-    found.iter().map(|c| c.map_or(u32::MAX, |c| c.triangle as u32)).collect()
+/// The triangles found.
+fn triangles(found: &[Option<Closest>]) -> Vec<MaybeId<TriangleId>> {
+    found.iter().map(|closest| triangle(closest).into()).collect()
+}
+
+fn triangle(found: &Option<Closest>) -> Option<TriangleId> {
+    found.map(|closest| TriangleId(closest.triangle as u32))
 }
 
 /// Two bodies at one time.
 pub(super) struct Scene<'a> {
     pub(super) points: &'a [Point],
     pub(super) bodies: [BodyView<'a>; 2],
-    pub(super) ids: [u32; 2],
+    pub(super) ids: [BodyId; 2],
     pub(super) graph: Option<&'a SurfaceGraph>,
     pub(super) options: Options,
 }
@@ -116,7 +120,12 @@ impl Scene<'_> {
     }
 
     /// The nearest triangle of the other body for each vertex.
-    fn of_vertices(&self, own: usize, guesses: &mut Vec<u32>, threads: &Threads) -> Vec<Option<Closest>> {
+    fn of_vertices(
+        &self,
+        own: usize,
+        guesses: &mut Vec<MaybeId<TriangleId>>,
+        threads: &Threads,
+    ) -> Vec<Option<Closest>> {
         let rule = self.rule(own);
         let place = |i: usize| self.points[rule.a.vertices[i].index()];
         let within = self.options.within;
@@ -139,18 +148,19 @@ impl Scene<'_> {
     fn admitted_of_vertices(
         &self,
         rule: &Rule<'_>,
-        guesses: &[u32],
+        guesses: &[MaybeId<TriangleId>],
         threads: &Threads,
     ) -> Vec<Option<Closest>> {
         let within = self.options.within;
         in_runs(rule.a.vertices.len(), threads, |paths: &mut PathSearch, run| {
-            let (mut last, mut found) = (u32::MAX, Vec::with_capacity(run.len()));
+            let (mut last, mut found) = (None, Vec::with_capacity(run.len()));
             for i in run {
                 let place = self.points[rule.a.vertices[i].index()];
-                let guess = guesses.get(i).map_or(last, |&guess| guess);
-                let bound = rule.distance(i, guess, paths).map_or(within, |d| within.min(d * SLACK));
+                let guess = guesses.get(i).map_or(last, |guess| guess.get());
+                let known = guess.and_then(|guess| rule.distance(i, guess.0, paths));
+                let bound = known.map_or(within, |d| within.min(d * SLACK));
                 let closest = rule.b.tree.closest_where(place, bound, rule.at_vertex(i, paths));
-                last = closest.map_or(u32::MAX, |closest| closest.triangle as u32);
+                last = triangle(&closest);
                 found.push(closest);
             }
             found
@@ -250,8 +260,8 @@ impl OneWay {
                 ),
                 false => scale(way, 1.0 / gap),
             };
-            gaps.closest_body[i] = scene.ids[1 - self.own];
-            gaps.closest_triangle[i] = triangle;
+            gaps.closest_body[i] = scene.ids[1 - self.own].into();
+            gaps.closest_triangle[i] = TriangleId(triangle).into();
             gaps.closest_point[i] = found.point;
         }
         for i in 0..own.vertices.len() {

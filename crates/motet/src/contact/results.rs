@@ -2,11 +2,8 @@
 
 use serde::Serialize;
 
-use crate::base::{Point, VertexId};
+use crate::base::{BodyId, MaybeId, Point, TriangleId, VertexId};
 use crate::geometry::distance::{Closest, Feature};
-
-/// Stands for no body and no triangle.
-pub const NONE: u32 = u32::MAX;
 
 /// The gaps of all bodies at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,10 +26,10 @@ pub struct BodyGaps {
     /// The unit vector along which the vertex would move to reduce the gap; where it touches, the normal of
     /// the surface that it touches, pointing away from the free side. Zero if there is no gap.
     pub normal: Vec<Point>,
-    /// The nearest body, or [`NONE`].
-    pub closest_body: Vec<u32>,
-    /// The nearest triangle of that body, or [`NONE`].
-    pub closest_triangle: Vec<u32>,
+    /// The nearest body, if any.
+    pub closest_body: Vec<MaybeId<BodyId>>,
+    /// The nearest triangle of that body, if any.
+    pub closest_triangle: Vec<MaybeId<TriangleId>>,
     /// The closest point on it; the vertex itself if there is none.
     pub closest_point: Vec<Point>,
     /// Whether a triangle at the vertex is nearer to another surface than the warning distance, or the gap is
@@ -44,7 +41,7 @@ pub struct BodyGaps {
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairGap {
     /// The two bodies.
-    pub bodies: [u32; 2],
+    pub bodies: [BodyId; 2],
     /// Where they are nearest; `None` if nothing is within reach.
     pub nearest: Option<Nearest>,
     /// Pairs of triangles, one of the first body and one of the second, that meet; in ascending order.
@@ -78,8 +75,8 @@ pub struct Nearest {
 /// A group of connected vertices with a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Warned {
-    /// The body of the vertices, and the body that the nearest of them is near to.
-    pub bodies: [u32; 2],
+    /// The body of the vertices, and the body that the nearest of them is near to, if any.
+    pub bodies: (BodyId, MaybeId<BodyId>),
     /// How many vertices.
     pub n_vertices: usize,
     /// The smallest gap among them.
@@ -124,8 +121,8 @@ impl BodyGaps {
             vertices: vertices.to_vec(),
             gap: vec![f64::INFINITY; n],
             normal: vec![[0.0; 3]; n],
-            closest_body: vec![NONE; n],
-            closest_triangle: vec![NONE; n],
+            closest_body: vec![MaybeId::NONE; n],
+            closest_triangle: vec![MaybeId::NONE; n],
             closest_point: vertices.iter().map(|v| points[v.index()]).collect(),
             warning: vec![false; n],
         }

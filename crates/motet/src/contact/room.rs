@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::body::{PreparedBody, Room};
 use super::inside::{Location, locations};
-use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::base::{BodyId, Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::area;
 use crate::mesh::bounds;
 use crate::preflight::crossings;
@@ -22,9 +22,9 @@ const MIN_SHARE: f64 = 0.5;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Within {
     /// The body that is the room.
-    pub room: u32,
+    pub room: BodyId,
     /// The body that lies in it.
-    pub body: u32,
+    pub body: BodyId,
     /// The fraction of the body's area that was inside when this was found; `None` if it was given.
     pub share: Option<f64>,
 }
@@ -36,7 +36,7 @@ pub struct Within {
 pub(super) fn check(rooms: &[Room]) -> Result<()> {
     for (own, room) in rooms.iter().enumerate() {
         let Room::Of(others) = room else { continue };
-        if let Some(other) = others.iter().find(|&&b| b as usize >= rooms.len() || b as usize == own) {
+        if let Some(other) = others.iter().find(|b| b.index() >= rooms.len() || b.index() == own) {
             return Err(Error::options(format!("body {own} cannot be the room of body {other}"))
                 .remedy(format!("give other bodies, numbered from 0 to {}", rooms.len() - 1)));
         }
@@ -51,19 +51,19 @@ pub(super) fn within(
     given: &[Room],
     threads: &Threads,
 ) -> Vec<Within> {
-    let ids = || 0..bodies.len() as u32;
+    let ids = || (0..bodies.len()).map(BodyId::new);
     let pairs = ids().flat_map(|room| ids().map(move |body| [room, body])).filter(|[a, b]| a != b);
-    let share = |room: u32, body: u32| {
-        let [room, body] = [room, body].map(|id| &bodies[id as usize]);
+    let share = |room: BodyId, body: BodyId| {
+        let [room, body] = [room, body].map(|id| &bodies[id.index()]);
         if body.shares_vertex_with(room) { 0.0 } else { share_within(points, body, room, threads) }
     };
-    let within = |[room, body]: [u32; 2]| {
+    let within = |[room, body]: [BodyId; 2]| {
         let as_given = Within { room, body, share: None };
-        match &given[room as usize] {
+        match &given[room.index()] {
             Room::No => None,
             Room::Of(others) => others.contains(&body).then_some(as_given),
             Room::Yes => {
-                let is_in_it = given[body as usize] == Room::Yes && share(body, room) > MIN_SHARE;
+                let is_in_it = given[body.index()] == Room::Yes && share(body, room) > MIN_SHARE;
                 (!is_in_it).then_some(as_given)
             }
             Room::Found => {

@@ -1,9 +1,9 @@
 //! Which places count as a gap, and which are only neighbours or lie behind a wall.
 
 use super::body::{BodyView, PreparedBody};
-use super::facing::{Sight, may_face, see_each_other};
+use super::facing::{Place, Sight, may_face, see_each_other};
 use super::options::Options;
-use super::surface_graph::{PathSearch, SurfaceGraph};
+use super::surface_graph::{PathEnd, PathSearch, SurfaceGraph};
 use crate::base::{Point, VertexId};
 use crate::geometry::distance::Closest;
 use crate::geometry::triangle;
@@ -52,14 +52,15 @@ impl<'a> Rule<'a> {
                 return false;
             }
             let way = sub(found.point, start);
-            if !sight.sees(self.points, (self.b, j, found.weights), way) {
+            let place = Place { body: self.b, triangle: j, weights: found.weights };
+            if !sight.sees(self.points, place, way) {
                 return false;
             }
             if self.is_in_one_triangle(&[vertex], &held(corners, found.weights)) {
                 return false;
             }
             let length = self.fold * found.distance_squared.sqrt();
-            self.is_gap(vertex, (corners, found.point), length, paths)
+            self.is_gap(vertex, PathEnd { corners, place: found.point }, length, paths)
         }
     }
 
@@ -90,13 +91,7 @@ impl<'a> Rule<'a> {
     }
 
     /// Whether a place is farther than `length` along the surface.
-    fn is_gap(
-        &self,
-        from: VertexId,
-        to: ([VertexId; 3], Point),
-        length: f64,
-        paths: &mut PathSearch,
-    ) -> bool {
+    fn is_gap(&self, from: VertexId, to: PathEnd, length: f64, paths: &mut PathSearch) -> bool {
         self.graph.is_none_or(|graph| !graph.is_within(self.points, from, to, length, paths))
     }
 
@@ -108,7 +103,9 @@ impl<'a> Rule<'a> {
         let (own, other) = (self.a.joined[i as usize], self.b.joined[j as usize]);
         let from = triangle::at(self.a.corners(self.points, i), found.on_a);
         let to = triangle::at(self.b.corners(self.points, j), found.on_b);
-        if !see_each_other(self.points, (self.a, i, found.on_a), (self.b, j, found.on_b), sub(to, from)) {
+        let place_a = Place { body: self.a, triangle: i, weights: found.on_a };
+        let place_b = Place { body: self.b, triangle: j, weights: found.on_b };
+        if !see_each_other(self.points, place_a, place_b, sub(to, from)) {
             return false;
         }
         if self.is_in_one_triangle(&held(own, found.on_a), &held(other, found.on_b)) {
@@ -116,7 +113,8 @@ impl<'a> Rule<'a> {
         }
         let heaviest = (1..3).fold(0, |best, k| if found.on_a[k] > found.on_a[best] { k } else { best });
         let first = distance(from, self.points[own[heaviest].index()]);
-        self.is_gap(own[heaviest], (other, to), self.fold * found.distance() - first, paths)
+        let end = PathEnd { corners: other, place: to };
+        self.is_gap(own[heaviest], end, self.fold * found.distance() - first, paths)
     }
 
     /// Whether two triangles are worth measuring: not the same, without a common vertex, and not turned away

@@ -3,15 +3,15 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::base::{Csr, Point, VertexId};
+use crate::base::{Csr, MaybeId, Point, VertexId, id};
 use crate::geometry::vector::distance;
 
 /// The edges of all bodies together: bodies that share vertices are one surface here.
 #[derive(Clone, Debug)]
 pub(super) struct SurfaceGraph {
-    neighbors: Csr<u32>,
-    /// The piece of each vertex: no path leads from one piece to another.
-    pieces: Vec<u32>,
+    neighbors: Csr<VertexId>,
+    /// The piece of each vertex, by its first vertex: no path leads from one piece to another.
+    pieces: Vec<MaybeId<VertexId>>,
 }
 
 /// A factor above one by more than rounding adds up to along a path.
@@ -28,11 +28,11 @@ impl SurfaceGraph {
     ) -> Self {
         let twice = Csr::from_pairs(n_points, || {
             triangles.clone().flat_map(|&[a, b, c]| {
-                [(a, b), (b, c), (c, a)].into_iter().flat_map(|(x, y)| [(x.index(), y.0), (y.index(), x.0)])
+                [(a, b), (b, c), (c, a)].into_iter().flat_map(|(x, y)| [(x.index(), y), (y.index(), x)])
             })
         });
         let neighbors = Csr::from_pairs(n_points, || {
-            twice.iter().enumerate().flat_map(|(v, list): (_, &[u32])| {
+            twice.iter().enumerate().flat_map(|(v, list): (_, &[VertexId])| {
                 let is_new = move |&k: &usize| !list[..k].contains(&list[k]);
                 (0..list.len()).filter(is_new).map(move |k| (v, list[k]))
             })
@@ -42,7 +42,7 @@ impl SurfaceGraph {
     }
 
     /// The vertices that an edge joins to this one.
-    pub(super) fn neighbors(&self, vertex: VertexId) -> &[u32] {
+    pub(super) fn neighbors(&self, vertex: VertexId) -> &[VertexId] {
         self.neighbors.list(vertex.index())
     }
 
@@ -55,13 +55,13 @@ impl SurfaceGraph {
         &self,
         points: &[Point],
         from: VertexId,
-        to: ([VertexId; 3], Point),
+        to: PathEnd,
         length: f64,
         paths: &mut PathSearch,
     ) -> bool {
         paths.begin(points.len());
         let piece = |v: VertexId| self.pieces[v.index()];
-        if to.0.iter().all(|&corner| piece(corner) != piece(from)) {
+        if to.corners.iter().all(|&corner| piece(corner) != piece(from)) {
             return false;
         }
         let known = self.lower_bound(points, from, to, length, paths);
@@ -86,14 +86,17 @@ impl SurfaceGraph {
         &self,
         points: &[Point],
         from: VertexId,
-        (corners, place): ([VertexId; 3], Point),
+        PathEnd { corners, place }: PathEnd,
         enough: f64,
         paths: &PathSearch,
     ) -> f64 {
         let mut most = 0.0;
-        for &via in [from.0].iter().chain(self.neighbors.list(from.index())) {
-            let Some(&Far { to: (others, other), least }) = paths.far_from(via) else { continue };
-            let step = distance(points[via as usize], points[from.index()]);
+        for &via in [from].iter().chain(self.neighbors.list(from.index())) {
+            let Some(&Far { to: PathEnd { corners: others, place: other }, least }) = paths.far_from(via)
+            else {
+                continue;
+            };
+            let step = distance(points[via.index()], points[from.index()]);
             let on = match corners == others {
                 true => distance(place, other),
                 false => {
@@ -122,27 +125,27 @@ impl SurfaceGraph {
         &self,
         points: &[Point],
         from: VertexId,
-        (corners, place): ([VertexId; 3], Point),
+        PathEnd { corners, place }: PathEnd,
         length: f64,
         paths: &mut PathSearch,
     ) -> f64 {
-        let left = |v: u32| distance(points[v as usize], place);
-        paths.reach(from.0, 0.0, left(from.0));
+        let left = |v: VertexId| distance(points[v.index()], place);
+        paths.reach(from, 0.0, left(from));
         while let Some((Reverse(bits), v)) = paths.open.pop() {
             let whole = f64::from_bits(bits);
             if whole > length {
                 return whole;
             }
-            let far = paths.distances[v as usize];
+            let far = paths.distances[v.index()];
             // A vertex is in the queue once more for each shorter path found to it.
             if (far + left(v)).to_bits() != bits {
                 continue;
             }
-            if corners.iter().any(|corner| corner.0 == v) {
+            if corners.contains(&v) {
                 return whole;
             }
-            for &next in self.neighbors.list(v as usize) {
-                let step = distance(points[v as usize], points[next as usize]);
+            for &next in self.neighbors.list(v.index()) {
+                let step = distance(points[v.index()], points[next.index()]);
                 paths.reach(next, far + step, left(next));
             }
         }
@@ -151,20 +154,20 @@ impl SurfaceGraph {
 }
 
 /// Numbers the pieces that edges connect, each by its first vertex.
-fn pieces(neighbors: &Csr<u32>) -> Vec<u32> {
-    let mut pieces = vec![u32::MAX; neighbors.len()];
+fn pieces(neighbors: &Csr<VertexId>) -> Vec<MaybeId<VertexId>> {
+    let mut pieces = vec![MaybeId::NONE; neighbors.len()];
     let mut open = Vec::new();
-    for first in 0..neighbors.len() {
-        if pieces[first] != u32::MAX {
+    for first in (0..neighbors.len()).map(VertexId::new) {
+        if pieces[first.index()].is_some() {
             continue;
         }
-        pieces[first] = first as u32;
+        pieces[first.index()] = first.into();
         open.push(first);
         while let Some(v) = open.pop() {
-            for &next in neighbors.list(v) {
-                if pieces[next as usize] == u32::MAX {
-                    pieces[next as usize] = first as u32;
-                    open.push(next as usize);
+            for &next in neighbors.list(v.index()) {
+                if pieces[next.index()].is_none() {
+                    pieces[next.index()] = first.into();
+                    open.push(next);
                 }
             }
         }
@@ -172,10 +175,23 @@ fn pieces(neighbors: &Csr<u32>) -> Vec<u32> {
     pieces
 }
 
+/// Where a path along the surface ends: a place in a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathEnd {
+    /// The corners of the triangle.
+    pub(super) corners: [VertexId; 3],
+    pub(super) place: Point,
+}
+
+id!(
+    /// An entry of the list of places that are known to be far from a vertex.
+    FarId
+);
+
 /// A place in a triangle, and a lower bound of its distance along the surface.
 #[derive(Clone, Copy, Debug)]
 struct Far {
-    to: ([VertexId; 3], Point),
+    to: PathEnd,
     least: f64,
 }
 
@@ -188,10 +204,9 @@ pub(super) struct PathSearch {
     search_number: Vec<u32>,
     current_search: u32,
     /// By the estimated whole length, as bits: those of positive numbers are in the order of the numbers.
-    open: BinaryHeap<(Reverse<u64>, u32)>,
-    /// For each vertex, the index in `far_places` of the last place that was found to be far from it, or
-    /// `u32::MAX`.
-    last_far: Vec<u32>,
+    open: BinaryHeap<(Reverse<u64>, VertexId)>,
+    /// For each vertex, the last of `far_places` that was found to be far from it, if any.
+    last_far: Vec<MaybeId<FarId>>,
     far_places: Vec<Far>,
 }
 
@@ -201,29 +216,29 @@ impl PathSearch {
         if self.distances.len() != n_points || self.current_search == u32::MAX {
             (self.distances, self.search_number, self.current_search) =
                 (vec![0.0; n_points], vec![0; n_points], 0);
-            (self.last_far, self.far_places) = (vec![u32::MAX; n_points], Vec::new());
+            (self.last_far, self.far_places) = (vec![MaybeId::NONE; n_points], Vec::new());
         }
         self.current_search += 1;
     }
 
-    fn reach(&mut self, v: u32, far: f64, left: f64) {
-        let i = v as usize;
+    fn reach(&mut self, v: VertexId, far: f64, left: f64) {
+        let i = v.index();
         if self.search_number[i] != self.current_search || far < self.distances[i] {
             (self.search_number[i], self.distances[i]) = (self.current_search, far);
             self.open.push((Reverse((far + left).to_bits()), v));
         }
     }
 
-    fn far_from(&self, v: u32) -> Option<&Far> {
-        self.far_places.get(self.last_far[v as usize] as usize)
+    fn far_from(&self, v: VertexId) -> Option<&Far> {
+        self.last_far[v.index()].get().map(|far| &self.far_places[far.index()])
     }
 
     fn remember_far(&mut self, v: VertexId, far: Far) {
         let last = &mut self.last_far[v.index()];
-        match self.far_places.get_mut(*last as usize) {
-            Some(known) => *known = far,
+        match last.get() {
+            Some(known) => self.far_places[known.index()] = far,
             None => {
-                *last = self.far_places.len() as u32;
+                *last = FarId::new(self.far_places.len()).into();
                 self.far_places.push(far);
             }
         }

@@ -5,13 +5,13 @@ use std::collections::HashSet;
 use super::devices::Devices;
 use super::options::Options;
 use super::place::format_point;
-use crate::base::{Error, Result, Threads, VertexId, sorted_ids};
+use crate::base::{Error, MaybeId, Result, TetId, Threads, VertexId, sorted_ids};
 use crate::contact::inside;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::{EDGES, FACETS, centroid, volume};
 use crate::geometry::triangle;
 use crate::geometry::vector::distance;
-use crate::mesh::tet_facets::{NO_TET, for_each_tet_facet, tet_neighbors};
+use crate::mesh::tet_facets::{for_each_tet_facet, tet_neighbors};
 use crate::mesh::{OrientedTets, TetMesh, bounds, firsts_at_place};
 use crate::preflight::own_crossings;
 use crate::spatial::NearestTriangle;
@@ -158,14 +158,14 @@ fn remove_inside(host: &TetMesh, devices: &Devices, fates: &mut [Fate], threads:
 }
 
 /// Removes tets that stick out into the cavity as well, so that it has no narrow notches.
-fn remove_teeth(neighbors: &[[u32; 4]], fates: &mut [Fate]) {
+fn remove_teeth(neighbors: &[[MaybeId<TetId>; 4]], fates: &mut [Fate]) {
     let mut todo: Vec<usize> = (0..fates.len()).filter(|&t| fates[t] == Fate::Near).collect();
     while let Some(t) = todo.pop() {
-        let around = neighbors[t].into_iter().filter(|&n| n != NO_TET);
-        let n_removed = around.clone().filter(|&n| fates[n as usize] == Fate::Removed).count();
+        let around = neighbors[t].into_iter().filter_map(MaybeId::get);
+        let n_removed = around.clone().filter(|n| fates[n.index()] == Fate::Removed).count();
         if fates[t] == Fate::Near && n_removed >= MIN_REMOVED_NEIGHBORS {
             fates[t] = Fate::Removed;
-            todo.extend(around.map(|n| n as usize));
+            todo.extend(around.map(TetId::index));
         }
     }
 }

@@ -11,7 +11,7 @@ use super::carve::{Carved, Face, Fate, outward};
 use super::cut::Cut;
 use super::devices::Devices;
 use super::options::{Inside, Outside};
-use super::parts::{Parts, common_edges};
+use super::parts::{Divided, common_edges};
 use super::place::{check_inside, format_point};
 use crate::base::{Error, Point, Result, Threads, VertexId, same_orientation, sorted_ids};
 use crate::geometry::triangle::centroid;
@@ -100,20 +100,20 @@ impl Frame {
         let faces: Vec<[VertexId; 3]> = carved.faces.iter().map(|face| face.vertices).collect();
         let cut = Cut::new(&points, [&of_devices, &faces], threads)?;
         let on_both = common_edges(&cut);
-        let sorted = [0, 1].map(|s| Parts::new(&cut, s, &on_both));
+        let divided = Divided::new(&cut, &on_both);
         let mut frame = Self {
             new_points: cut.points[points.len()..].to_vec(),
             names: cut.names[n_host..].to_vec(),
             ..Self::default()
         };
         frame.loosen(host, devices, carved, &cut, &on_both);
-        let mut walls = frame.of_devices(host, devices, carved, (&cut, &sorted), outside, threads)?;
+        let mut walls = frame.of_devices(host, devices, carved, &divided, outside, threads)?;
         let within = |k: usize| {
             let own: Vec<_> = devices.triangles_of(k).map(|t| of_devices[t]).collect();
-            sorted[1].are_inside(&cut, &own, threads)
+            divided.faces.are_inside(&cut, &own, threads)
         };
         let within: Vec<Vec<bool>> = (0..devices.names.len()).map(within).collect();
-        frame.add_faces(devices, carved, (&cut, &sorted[1]), &within, outside, &mut walls);
+        frame.add_faces(devices, carved, &divided, &within, outside, &mut walls);
         frame.check_others(host, carved, &cut, &walls)?;
         frame.take(&cut, walls);
         Ok(frame)
@@ -161,18 +161,18 @@ impl Frame {
         host: &TetMesh,
         devices: &Devices,
         carved: &Carved,
-        (cut, [sorted, faces]): (&Cut, &[Parts<'_>; 2]),
+        Divided { cut, devices: parts, faces }: &Divided<'_>,
         outside: Outside,
         threads: &Threads,
     ) -> Result<Vec<Wall>> {
-        let is_in = sorted.are_inside(cut, &boundary(host), threads);
+        let is_in = parts.are_inside(cut, &boundary(host), threads);
         let twins: HashMap<[VertexId; 3], ([VertexId; 3], u32)> =
             faces.pieces.iter().map(|piece| (sorted_ids(piece.0), *piece)).collect();
         let n = devices.names.len();
         let (mut has_inside, mut walls) = (vec![false; n], Vec::new());
         self.positions.volumes = vec![0.0; n];
         let mut positions = vec![None; devices.triangles.len()];
-        for (&(vertices, t), &part) in sorted.pieces.iter().zip(&sorted.parts) {
+        for (&(vertices, t), &part) in parts.pieces.iter().zip(&parts.parts) {
             let twin = twins.get(&sorted_ids(vertices));
             // On the boundary, a device lies inside where it faces the same way as the wall.
             let is_inside = match twin {
@@ -225,7 +225,7 @@ impl Frame {
         &mut self,
         devices: &Devices,
         carved: &Carved,
-        (cut, sorted): (&Cut, &Parts<'_>),
+        Divided { cut, faces, .. }: &Divided<'_>,
         within: &[Vec<bool>],
         outside: Outside,
         walls: &mut Vec<Wall>,
@@ -233,7 +233,7 @@ impl Frame {
         let with_device: HashSet<[VertexId; 3]> =
             walls.iter().filter(|wall| wall.face.is_some()).map(|wall| sorted_ids(wall.vertices)).collect();
         let mut is_dropped = vec![false; carved.faces.len()];
-        for (&(vertices, f), &part) in sorted.pieces.iter().zip(&sorted.parts) {
+        for (&(vertices, f), &part) in faces.pieces.iter().zip(&faces.parts) {
             if with_device.contains(&sorted_ids(vertices)) {
                 is_dropped[f as usize] = true;
                 continue;

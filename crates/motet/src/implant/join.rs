@@ -4,7 +4,7 @@ use super::layout::{Layout, Numbering, Pieces};
 use super::names::{Names, label};
 use super::origins::history;
 use super::zone::Site;
-use crate::base::{CellId, Result, Threads};
+use crate::base::{CellId, Result, Threads, absent};
 use crate::geometry::tet::volume;
 use crate::mesh::Mesh;
 use crate::mesh::history::{History, Rules, number_anew};
@@ -32,8 +32,7 @@ pub(super) fn join(pieces: &Pieces, rules: &Rules, threads: &Threads) -> Result<
     let mut mesh = Mesh::new(points, layout.cells.renumbered(&numbering.to_new));
     let history = history(pieces, &layout, &mesh, &numbering, threads)?;
     history.transfer(host, &mut mesh, rules)?;
-    let vertex_to_old: Vec<u32> = history.vertices.kept().iter().map(|v| v.0).collect();
-    number_anew(&mut mesh, &vertex_to_old, &layout.to_old);
+    number_anew(&mut mesh, &absent(&numbering.kept), &absent(&layout.to_old));
     label(&mut mesh, pieces, &layout, &names);
     let zone_to_cell = draft.zone_to_site.iter().map(|site| match *site {
         Site::Host(t) => layout.host_to_cell[t],

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::devices::Devices;
 use super::gap::Gap;
 use super::zone::Draft;
-use crate::base::{CellId, Id, VertexId, sorted_ids};
+use crate::base::{CellId, Id, MaybeId, VertexId, sorted_ids};
 use crate::mesh::{CellKind, Cells, Mesh, TetPart};
 
 /// Everything that is to be joined.
@@ -22,7 +22,7 @@ pub(super) struct Pieces<'a> {
 /// The cells of the result, and the old cell of each.
 pub(super) struct Layout {
     pub(super) cells: Cells,
-    pub(super) to_old: Vec<CellId>,
+    pub(super) to_old: Vec<MaybeId<CellId>>,
     /// For each tet of the host, its cell if it stays.
     pub(super) host_to_cell: Vec<CellId>,
     /// How many cells of the host stay. Behind them come triangles of devices, then new tets, then those that
@@ -59,13 +59,13 @@ impl Layout {
                 Some(faces) => layout.cells.push_polyhedron(vertices.iter().copied(), faces),
                 None => layout.cells.push(kind, vertices.iter().copied()),
             }
-            layout.to_old.push(cell);
+            layout.to_old.push(cell.into());
         }
         layout.n_host_cells = layout.cells.len();
         draft.triangles.iter().for_each(|(t, _)| layout.cells.push(CellKind::TRIANGLE, *t));
         draft.tets.iter().for_each(|tet| layout.cells.push(CellKind::TETRA, *tet));
         gap.own_tets.iter().for_each(|tet| layout.cells.push(CellKind::TETRA, tet.vertices));
-        layout.to_old.resize(layout.cells.len(), Id::NONE);
+        layout.to_old.resize(layout.cells.len(), MaybeId::NONE);
         layout
     }
 }
@@ -73,7 +73,7 @@ impl Layout {
 /// The numbering of the vertices of the result.
 pub(super) struct Numbering {
     /// For each vertex of the result, the one of the host that it is to the bit, if any.
-    pub(super) kept: Vec<VertexId>,
+    pub(super) kept: Vec<MaybeId<VertexId>>,
     /// For each vertex of the result, the one of the draft that it is.
     pub(super) to_draft: Vec<VertexId>,
     /// For each vertex of the draft, the one of the result that it is.
@@ -93,7 +93,7 @@ impl Numbering {
             to_new[v] = VertexId::new(to_draft.len());
             to_draft.push(VertexId::new(v));
             let is_as_before = draft.is_moved.get(v).is_some_and(|is_moved| !is_moved);
-            kept.push(if is_as_before { VertexId::new(v) } else { Id::NONE });
+            kept.push(is_as_before.then(|| VertexId::new(v)).into());
         }
         Self { kept, to_draft, to_new }
     }

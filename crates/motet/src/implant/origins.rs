@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::layout::{Layout, Numbering, Pieces};
 use super::owner::{Owner, Patch};
-use crate::base::{CellId, Id, Point, Result, Threads, VertexId, sorted_ids};
+use crate::base::{CellId, Point, Result, Threads, VertexId, or_none, sorted_ids};
 use crate::geometry::tet::{at, centroid, closest};
 use crate::geometry::vector::distance;
 use crate::mesh::Mesh;
@@ -77,7 +77,7 @@ pub(super) fn history(
     });
     let triangles: Vec<Labelled<3>> = triangles.collect();
     let changed: Vec<ChangedVertex> = (0..numbering.kept.len())
-        .filter(|&v| numbering.kept[v] == VertexId::NONE)
+        .filter(|&v| numbering.kept[v].is_none())
         .map(|v| {
             let was = Some(numbering.to_draft[v]).filter(|was| was.index() < host.points.len());
             ChangedVertex { vertex: VertexId::new(v), was }
@@ -94,8 +94,8 @@ pub(super) fn history(
     };
     let traced = trace(&change, threads)?;
     Ok(History {
-        vertices: Origins::new(host.points.len(), numbering.kept.clone(), traced.vertices)?,
-        cells: Origins::new(host.cells.len(), layout.to_old.clone(), traced.cells)?,
+        vertices: Origins::new(host.points.len(), or_none(&numbering.kept), traced.vertices)?,
+        cells: Origins::new(host.cells.len(), or_none(&layout.to_old), traced.cells)?,
         ledger: traced.ledger,
     })
 }

@@ -8,6 +8,15 @@ use crate::base::{DisjointSets, Point, Threads, VertexId, sorted_ids};
 use crate::contact::inside;
 use crate::geometry::triangle::{area, centroid};
 
+/// The triangles of the devices and the faces, divided where they meet.
+pub(super) struct Divided<'a> {
+    pub(super) cut: &'a Cut,
+    /// The pieces of the devices' triangles.
+    pub(super) devices: Parts<'a>,
+    /// The pieces of the faces.
+    pub(super) faces: Parts<'a>,
+}
+
 /// The pieces of the devices' triangles, or of the faces, and where they lie relative to the other surface.
 pub(super) struct Parts<'a> {
     /// The pieces, with the triangle that each is, or is a part of.
@@ -35,8 +44,16 @@ pub(super) fn common_edges(cut: &Cut) -> BTreeSet<[VertexId; 2]> {
     }
 }
 
+impl<'a> Divided<'a> {
+    /// `on_both` are the edges that pieces of both surfaces have.
+    pub(super) fn new(cut: &'a Cut, on_both: &BTreeSet<[VertexId; 2]>) -> Self {
+        let [devices, faces] = [0, 1].map(|s| Parts::new(cut, s, on_both));
+        Self { cut, devices, faces }
+    }
+}
+
 impl<'a> Parts<'a> {
-    pub(super) fn new(cut: &'a Cut, s: usize, on_both: &BTreeSet<[VertexId; 2]>) -> Self {
+    fn new(cut: &'a Cut, s: usize, on_both: &BTreeSet<[VertexId; 2]>) -> Self {
         let pieces = &cut.pieces[s];
         let mut first_at: HashMap<[VertexId; 2], u32> = HashMap::new();
         let mut sets = DisjointSets::new(pieces.len());

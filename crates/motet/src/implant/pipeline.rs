@@ -17,12 +17,13 @@ use super::report::{DeviceReport, Fit, Report};
 use super::resurface::resurface;
 use super::starts;
 use super::zone::Draft;
-use crate::base::{CellId, Error, Result, Threads, VertexId, sorted_ids};
+use crate::base::{CellId, Error, Result, TetId, Threads, VertexId, sorted_ids};
 use crate::geometry::triangle::centroid;
 use crate::mesh::check::{Defect, check};
 use crate::mesh::history::{History, Rules};
 use crate::mesh::{Mesh, TetPart};
 use crate::meshing;
+use crate::remesh;
 use crate::spatial::NearestTriangle;
 
 /// The result of putting devices into a host.
@@ -87,7 +88,7 @@ pub fn implant(
 
     let mut draft = Draft::new(&part.mesh, &carved, &gap);
     let stray = options.stray.unwrap_or_else(|| STRAY * joined.size());
-    report.improved = draft.improve(&part.mesh, &carved, &gap, &options.improve, stray, threads)?;
+    let improved = draft.improve(&part.mesh, &carved, &gap, &options.improve, stray, threads)?;
     report.kept = draft.is_removed.iter().filter(|is_removed| !**is_removed).count();
     report.host_tets = part.mesh.tets.len();
     report.kept_share = report.kept as f64 / report.host_tets.max(1) as f64;
@@ -99,9 +100,9 @@ pub fn implant(
     let history = before.map_or_else(|| history.clone(), |before| before.then(&history));
     report.seconds.join = lap();
 
-    report_cells(&mut report, &zone_to_cell, first_new);
+    report_improved(&mut report, improved, &zone_to_cell, first_new);
     report.regions = meshing::bodies_of_mesh(&mesh);
-    certify(&mut report, host, (devices, &joined), (&gap, &draft), (&mesh, &names), options.outside);
+    certify(&mut report, host, devices, &pieces, &mesh, &names, options.outside);
     report.devices.iter_mut().zip(fits).for_each(|(device, fit)| device.fit = *fit);
     report.seconds.check = lap();
     if !report.is_valid() {
@@ -171,26 +172,33 @@ fn carve_and_fill(
     ))
 }
 
-/// Replaces ids of tets of the zone by ids of cells, and separates bad tets of the host from new ones.
-fn report_cells(report: &mut Report, zone_to_cell: &[CellId], first_new: CellId) {
-    let cell = |tet: u32| zone_to_cell.get(tet as usize).map_or(tet, |cell| cell.0);
-    let improved = &mut report.improved;
-    improved.after.worst.iter_mut().for_each(|worst| worst.tet = cell(worst.tet));
-    improved.left.iter_mut().for_each(|left| left.tet = cell(left.tet));
-    (report.host_left, improved.left) =
-        std::mem::take(&mut improved.left).into_iter().partition(|left| left.tet < first_new.0);
+/// Reports what was improved by cells, with bad tets of the host apart from new ones.
+fn report_improved(
+    report: &mut Report,
+    mut improved: remesh::Report<TetId>,
+    zone_to_cell: &[CellId],
+    first_new: CellId,
+) {
     // These tets were never part of a mesh that the user saw.
     improved.before.worst = None;
+    let cell = |tet: TetId| zone_to_cell[tet.index()];
+    report.improved = improved.in_cells(cell, cell);
+    (report.host_left, report.improved.left) =
+        std::mem::take(&mut report.improved.left).into_iter().partition(|left| left.tet < first_new);
 }
 
+/// Reports volumes, how many triangles of each device were kept, and the defects of the result `mesh`. `host`
+/// is the mesh as it was given.
 fn certify(
     report: &mut Report,
     host: &Mesh,
-    (devices, joined): (&[Device], &Devices),
-    (gap, draft): (&Gap, &Draft),
-    (mesh, names): (&Mesh, &Names),
+    devices: &[Device],
+    pieces: &Pieces<'_>,
+    mesh: &Mesh,
+    names: &Names,
     outside: Outside,
 ) {
+    let Pieces { devices: joined, gap, draft, .. } = *pieces;
     report.tets = mesh.cells.tets().count();
     let whole = joined.volumes(devices);
     let is_there: HashSet<[VertexId; 3]> = draft.triangles.iter().map(|(t, _)| sorted_ids(*t)).collect();

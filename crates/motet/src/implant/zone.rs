@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashSet};
 use super::carve::{Carved, Fate};
 use super::gap::Gap;
 use super::owner::{Owner, Patch};
-use crate::base::{CellId, Id, Point, Result, Threads, VertexId, sorted_ids};
+use crate::base::{CellId, MaybeId, Point, Result, TetId, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
@@ -63,7 +63,7 @@ impl Draft {
         options: &Options,
         stray: f64,
         threads: &Threads,
-    ) -> Result<remesh::Report> {
+    ) -> Result<remesh::Report<TetId>> {
         let near: Vec<usize> = (0..host.tets.len()).filter(|&t| carved.fates[t] == Fate::Near).collect();
         let regions: Vec<Owner> = regions(&self.owners, host, &near);
         let number = |owner: &Owner| regions.iter().position(|r| r == owner).unwrap_or_default() as i32;
@@ -142,24 +142,24 @@ fn regions(owners: &[Owner], host: &TetMesh, near: &[usize]) -> Vec<Owner> {
 /// The zone as a mesh of its own, and the maps between its vertices and those of the result.
 struct Zone {
     mesh: TetMesh,
-    result_to_zone: Vec<VertexId>,
+    result_to_zone: Vec<MaybeId<VertexId>>,
     to_result: Vec<VertexId>,
 }
 
 impl Zone {
     fn new(n: usize) -> Self {
-        Self { mesh: TetMesh::default(), result_to_zone: vec![Id::NONE; n], to_result: Vec::new() }
+        Self { mesh: TetMesh::default(), result_to_zone: vec![MaybeId::NONE; n], to_result: Vec::new() }
     }
 
     fn push(&mut self, tet: [VertexId; 4], region: i32, points: &[Point]) {
-        for v in tet {
-            if self.result_to_zone[v.index()] == VertexId::NONE {
-                self.result_to_zone[v.index()] = VertexId::new(self.to_result.len());
+        let in_zone = tet.map(|v| {
+            self.result_to_zone[v.index()].get_or_insert_with(|| {
                 self.to_result.push(v);
                 self.mesh.points.push(points[v.index()]);
-            }
-        }
-        self.mesh.tets.push(tet.map(|v| self.result_to_zone[v.index()]));
+                VertexId::new(self.to_result.len() - 1)
+            })
+        });
+        self.mesh.tets.push(in_zone);
         self.mesh.regions.push(region);
     }
 
@@ -178,7 +178,7 @@ impl Zone {
         let number = |patch: &Patch| patches.binary_search(patch).map_or(of_host, |i| i as i32);
         let dropped: HashSet<[VertexId; 3]> =
             gap.dropped.iter().map(|face| sorted_ids(face.vertices)).collect();
-        let of = |v: VertexId| Some(self.result_to_zone[v.index()]).filter(|v| *v != VertexId::NONE);
+        let of = |v: VertexId| self.result_to_zone[v.index()].get();
         let staying = host.triangles.iter().filter(|t| !dropped.contains(&sorted_ids(**t)));
         let all = staying.map(|t| (*t, of_host, None));
         let all = all.chain(gap.triangles.iter().map(|new| (new.0, number(&new.1), Some(*new))));

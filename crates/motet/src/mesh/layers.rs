@@ -17,7 +17,7 @@
 //! the mesh is taken to have no layers. Slivers in a mesh without layers have no short edge, and the short
 //! edges of needles do not stand side by side in columns, so neither is mistaken for a layer tet.
 
-use crate::base::{Csr, Point, VertexId};
+use crate::base::{Csr, MaybeId, Point, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot, norm, scale, sub};
@@ -56,14 +56,29 @@ pub(crate) fn are_layers(
 
 /// The columns that the vertices stand in.
 struct Layers {
-    /// For each vertex, the wall vertex at the foot of its column and the number of edges between them;
-    /// [`NO_COLUMN`] if it stands in none.
-    columns: Vec<(VertexId, u32)>,
+    /// For each vertex, its place in a column.
+    columns: Vec<InColumn>,
     /// For each foot, the unit direction in which its column rises; zero elsewhere.
     directions: Vec<Point>,
 }
 
-const NO_COLUMN: (VertexId, u32) = (VertexId(u32::MAX), 0);
+/// The place of a vertex in a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct InColumn {
+    /// The wall vertex at the foot of the column; none if the vertex stands in no column.
+    foot: MaybeId<VertexId>,
+    /// The number of edges between them.
+    level: u32,
+}
+
+impl InColumn {
+    /// The place of a vertex that stands in no column.
+    const NONE: Self = Self { foot: MaybeId::NONE, level: 0 };
+
+    fn new(foot: VertexId, level: u32) -> Self {
+        Self { foot: foot.into(), level }
+    }
+}
 
 impl Layers {
     /// The layers of oriented `tets` whose boundary, interfaces and labelled facets are `walls`; `None` if
@@ -97,8 +112,8 @@ impl Layers {
             return None;
         }
         let climber = Climber { vertex_to_tets: stars(n, tets, |_| true), ..climber };
-        let mut columns = vec![NO_COLUMN; n];
-        feet.iter().for_each(|&v| columns[v.index()] = (v, 0));
+        let mut columns = vec![InColumn::NONE; n];
+        feet.iter().for_each(|&v| columns[v.index()] = InColumn::new(v, 0));
         let mut directions = vec![[0.0; 3]; n];
         for &foot in &feet {
             directions[foot.index()] = climber.climb(foot, &at_walls[foot.index()], &mut columns);
@@ -109,13 +124,14 @@ impl Layers {
     /// Whether a tet belongs to a layer and is well shaped there: its EAS is at least `min_eas` after it has
     /// been stretched along the normal until it is as high as it is wide.
     fn is_layer_tet(&self, points: &[Point], vertices: [VertexId; 4], min_eas: f64) -> bool {
-        let columns = vertices.map(|v| self.columns.get(v.index()).copied().unwrap_or(NO_COLUMN));
-        let levels = columns.map(|c| c.1);
-        let mut feet: Vec<VertexId> = columns.iter().map(|c| c.0).collect();
+        let columns = vertices.map(|v| self.columns.get(v.index()).copied().unwrap_or(InColumn::NONE));
+        let levels = columns.map(|c| c.level);
+        let mut feet: Vec<VertexId> = columns.iter().filter_map(|c| c.foot.get()).collect();
+        let are_in_columns = feet.len() == columns.len();
         feet.sort_unstable();
         feet.dedup();
         let step = levels.into_iter().max().unwrap_or(0) - levels.into_iter().min().unwrap_or(0);
-        if columns.contains(&NO_COLUMN) || feet.len() != 3 || step != 1 {
+        if !are_in_columns || feet.len() != 3 || step != 1 {
             return false;
         }
         let corners = vertices.map(|v| points[v.index()]);
@@ -210,16 +226,16 @@ impl Climber<'_> {
 
     /// Follows the column of a wall vertex upward, level by level, until no short edge leads on, and records
     /// its vertices in `columns`. Returns the unit direction of its first edge; zero if there is none.
-    fn climb(&self, foot: VertexId, wall: &Foot, columns: &mut [(VertexId, u32)]) -> Point {
+    fn climb(&self, foot: VertexId, wall: &Foot, columns: &mut [InColumn]) -> Point {
         let mut next = self.first(foot, wall);
         let first = next.map_or([0.0; 3], |(_, edge)| scale(edge, 1.0 / norm(edge)));
         for level in 1..MAX_LEVELS {
             let Some((vertex, up)) = next else { break };
             let column = &mut columns[vertex.index()];
-            if *column != NO_COLUMN && *column != (vertex, 0) {
+            if *column != InColumn::NONE && *column != InColumn::new(vertex, 0) {
                 break;
             }
-            *column = (foot, level);
+            *column = InColumn::new(foot, level);
             let step = norm(up);
             next = self.above(vertex, (GROWTH * step).min(wall.limit()), |edge, length| {
                 dot(edge, up) > MIN_COS_LEAN * length * step

@@ -1,5 +1,6 @@
 //! Arrays of 0 and 1 that mark points and cells, named after the sections of Medit files.
 
+use crate::base::VertexId;
 use crate::mesh::{CellKind, Mesh};
 
 /// Marks points and cells that must stay as they are.
@@ -25,13 +26,13 @@ impl Mesh {
         marked.into_iter().filter(|&cell| self.cells.kinds()[cell] == kind).collect()
     }
 
-    /// Clears the marks of new points, for which `point_to_old` has [`u32::MAX`].
-    pub fn unmark_new_points(&mut self, point_to_old: &[u32]) {
+    /// Clears the marks of points.
+    pub fn unmark(&mut self, points: &[VertexId]) {
         let is_mark = |name: &str| name == REQUIRED || name == CORNER;
         for field in self.point_data.iter_mut().filter(|field| is_mark(&field.name) && field.components == 1)
         {
-            for point in (0..point_to_old.len()).filter(|&point| point_to_old[point] == u32::MAX) {
-                field.values.set_f64(point, 0.0);
+            for point in points {
+                field.values.set_f64(point.index(), 0.0);
             }
         }
     }

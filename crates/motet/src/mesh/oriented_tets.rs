@@ -8,7 +8,7 @@
 //! - *Bad*: the EAS is below a limit, and the tet is not a *layer* tet, which is thin on purpose (see
 //!   [`layers`](super::layers)).
 
-use crate::base::{CellId, Point, VertexId};
+use crate::base::{CellId, MaybeId, Point, VertexId, id};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::FACETS;
 use crate::geometry::vector::in_range;
@@ -147,7 +147,7 @@ impl OrientedTets {
         if is_one_sided || (0..self.tets.len()).any(is_negative) {
             let across = across(&self.tets);
             let behind = |t: usize, i: usize| {
-                let half = Some(across[t][i]).filter(|half| *half != NONE)?;
+                let half = across[t][i].get()?.0;
                 Some(((half >> 2) as usize, (half & 3) as usize))
             };
             // A mesh that cannot be oriented keeps the numbering of the file.
@@ -162,17 +162,19 @@ pub fn is_inverted([a, b, c, d]: [Point; 4]) -> bool {
     orient3d(a, b, c, d) <= 0
 }
 
-/// Stands for the absence of a facet.
-const NONE: u32 = u32::MAX;
+id!(
+    /// A facet of a tet: four times the tet, plus the index of the facet there.
+    TetFacetId
+);
 
-/// For each facet of each tet, the same facet of the neighbour, as four times the neighbour plus the index of
-/// the facet there; [`NONE`] on the boundary, and where more than two tets share the facet.
-fn across(tets: &[[VertexId; 4]]) -> Vec<[u32; 4]> {
-    let mut across = vec![[NONE; 4]; tets.len()];
+/// For each facet of each tet, the same facet of the neighbour; none on the boundary, and where more than two
+/// tets share the facet.
+fn across(tets: &[[VertexId; 4]]) -> Vec<[MaybeId<TetFacetId>; 4]> {
+    let mut across = vec![[MaybeId::NONE; 4]; tets.len()];
     for_each_tet_facet(tets, &[], |sharing| {
         if let &[(t, i), (u, j)] = sharing.tets {
-            across[t.index()][i] = u.0 << 2 | j as u32;
-            across[u.index()][j] = t.0 << 2 | i as u32;
+            across[t.index()][i] = TetFacetId(u.0 << 2 | j as u32).into();
+            across[u.index()][j] = TetFacetId(t.0 << 2 | i as u32).into();
         }
     });
     across

@@ -237,7 +237,7 @@ pub fn fill(
     let (mut mesh, _) = mesh(&joined, &tets);
     mesh.label_names.regions = region_names(&arranged);
     drop(tets);
-    let (mesh, improved) = improve(mesh, options, (coarse.is_some(), off_plane), threads)?;
+    let (mesh, improved) = improve(mesh, options, coarse.is_some(), off_plane, threads)?;
     (report.coarse, report.divided) = (coarse, divided);
     (report.bodies, report.not_positive) = (bodies_of(&mesh, &arranged), not_positive(&mesh));
     report.voids = arranged.n_left_out;
@@ -264,7 +264,7 @@ fn fill_with_layers(
     let (core, core_to_mesh) = mesh(grown.core(), &tets);
     let mut glued = grown.glue(&core, &core_to_mesh);
     glued.label_names.regions = region_names(&arranged);
-    let (mut mesh, improved) = improve(glued, options, (false, None), threads)?;
+    let (mut mesh, improved) = improve(glued, options, false, None, threads)?;
     let split = layers::split(mesh.clone());
     (report.bodies, report.not_positive) = (bodies_of(&split, &arranged), not_positive(&split));
     report.voids = arranged.n_left_out;
@@ -301,7 +301,8 @@ fn fill_tets(
 fn improve(
     mesh: Mesh,
     options: &Options,
-    (is_coarse, off_plane): (bool, Option<f64>),
+    is_coarse: bool,
+    off_plane: Option<f64>,
     threads: &Threads,
 ) -> Result<(Mesh, Option<remesh::Report>)> {
     let Some(improve) = &options.improve else { return Ok((mesh, None)) };

@@ -1,10 +1,12 @@
 //! Divisions undone by edge lengths, where the record of what was divided is lost.
 
+use std::sync::Arc;
+
 use crate::base::{Error, Result, Threads, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::distance;
 use crate::mesh::{TetMesh, TetPart};
-use crate::moving::current::present_rules;
+use crate::moving::current::{Derived, present_rules};
 use crate::moving::moving_mesh::MovingMesh;
 use crate::moving::step::Change;
 use crate::moving::wall::NO_NODE;
@@ -39,7 +41,7 @@ impl MovingMesh {
         let gaps = self.gaps_here(threads)?;
         let Self { now, options, wall, .. } = &*self;
         let mut part = TetPart::of(&now.mesh)?;
-        let mut sizes = self.sizes.first.at_vertices((now, &now.mesh.points), wall, options, threads);
+        let mut sizes = self.sizes.first.at_vertices(now, &now.mesh.points, wall, options, threads);
         if let Some(gaps) = gaps {
             sizes.iter_mut().zip(gaps).for_each(|(size, gap)| *size = size.min(gap.max(smallest)));
         }
@@ -70,8 +72,13 @@ impl MovingMesh {
         if outcome.report.kept == now.tets.len() && outcome.mesh.points == given.points {
             return Ok(None);
         }
-        let what = (&shape, outcome.report.operations);
-        self.take_over((&given, outcome.mesh), outcome.history, what, threads).map(Some)
+        let derived = Derived {
+            given: &given,
+            mesh: outcome.mesh,
+            history: Arc::new(outcome.history),
+            before: now.records.before.clone(),
+        };
+        self.take_over(derived, &shape, outcome.report.operations, threads).map(Some)
     }
 }
 

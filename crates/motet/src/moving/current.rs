@@ -1,6 +1,7 @@
 //! The mesh between two changes: its positions, what moves it, where each vertex was at first.
 
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 use crate::base::{CellId, Id, Point, Result, Threads, VertexId};
 use crate::geometry::quality::eas;
@@ -96,6 +97,17 @@ fn of_kept<I: Id>(kept: &[I], before: &[I]) -> Vec<I> {
     kept.iter().map(|old| if *old == I::NONE { I::NONE } else { before[old.place()] }).collect()
 }
 
+/// A mesh with new connectivity.
+pub(super) struct Derived<'a> {
+    /// What it was derived from: the current mesh, moved or with arrays of its own where there are any.
+    pub(super) given: &'a Mesh,
+    pub(super) mesh: Mesh,
+    /// Where its vertices and cells came from.
+    pub(super) history: Arc<History>,
+    /// Positions of the vertices of `given` when the step began.
+    pub(super) before: Vec<Point>,
+}
+
 impl Records {
     /// The records of a mesh in its first position.
     pub(super) fn at_first(mesh: &Mesh, driven: &[VertexId]) -> Self {
@@ -169,19 +181,17 @@ impl Current {
         Ok(Self { mesh, tets, mover, records, drive, left })
     }
 
-    /// Continues with a mesh derived from `given`, which is this one or this one moved. `before`: where the
-    /// vertices of this mesh were when the step began.
+    /// Continues with a mesh derived from this one.
     pub(super) fn next(
         &self,
-        (given, mut mesh): (&Mesh, Mesh),
-        history: &History,
-        before: &[Point],
+        Derived { given, mut mesh, history, before }: Derived<'_>,
         left: Vec<LeftBad>,
-        (wall, options): (&Wall, &Options),
+        wall: &Wall,
+        options: &Options,
         threads: &Threads,
     ) -> Result<Self> {
-        pass_contents(given, &mut mesh, history, &options.contents);
-        let records = self.records.after(before, history)?;
+        pass_contents(given, &mut mesh, &history, &options.contents);
+        let records = self.records.after(&before, &history)?;
         Self::new(mesh, records, left, wall, options, threads)
     }
 

@@ -11,7 +11,7 @@ use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
 use crate::motion::{LeavesPlane, Mover, mesh_velocity};
 use crate::moving::contents::move_points;
-use crate::moving::current::{Current, InFirst, Records, present_rules};
+use crate::moving::current::{Current, Derived, InFirst, Records, present_rules};
 use crate::moving::first_mesh::{FirstMesh, Returns};
 use crate::moving::hold::{self, Held, Hold};
 use crate::moving::options::Options;
@@ -387,24 +387,29 @@ impl MovingMesh {
             return Ok(None);
         }
         let shape = self.now.tets.shape(&self.now.mesh.points, self.options.limit(), threads);
-        self.take_over((&given, mesh), history, (&shape, Counts::default()), threads).map(Some)
+        let derived = Derived {
+            given: &given,
+            mesh,
+            history: Arc::new(history),
+            before: self.now.records.before.clone(),
+        };
+        self.take_over(derived, &shape, Counts::default(), threads).map(Some)
     }
 
-    /// Continues with a mesh that was divided or coarsened in place. `changed`: the current mesh, with arrays
-    /// of its own where there are any, and the one derived from it.
+    /// Continues with a mesh that was divided or coarsened in place. `shape` is that of the mesh before.
     pub(super) fn take_over(
         &mut self,
-        changed: (&Mesh, Mesh),
-        history: History,
-        (shape, operations): (&Shape, Counts),
+        derived: Derived<'_>,
+        shape: &Shape,
+        operations: Counts,
         threads: &Threads,
     ) -> Result<Change> {
-        let (before, context) = (&self.now.records.before, (&self.wall, &self.options));
-        let now = self.now.next(changed, &history, before, Vec::new(), context, threads)?;
+        let history = derived.history.clone();
+        let now = self.now.next(derived, Vec::new(), &self.wall, &self.options, threads)?;
         let counts = [&self.now, &now].map(|now| now.tets.len());
         let points_before = self.now.mesh.points.clone();
-        let (when, history) = ((self.clock.time, Why::Refinement), Arc::new(history));
-        let change = Change { operations, ..Change::new(when, counts, shape, history, points_before) };
+        let change = Change::new(self.clock.time, Why::Refinement, counts, shape, history, points_before);
+        let change = Change { operations, ..change };
         self.now = now;
         self.clock.n_free = None;
         self.sizes.now = Arc::new(SizeMap::anew(&self.now, &self.options, threads));

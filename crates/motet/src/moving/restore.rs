@@ -85,8 +85,8 @@ impl StepRun<'_> {
             return Ok(None);
         }
         let counts = [now, &next].map(|now| now.tets.len());
-        let what = (self.times[1], Why::Return);
-        self.changes.push(Change::new(what, counts, shape, Arc::new(history), points));
+        let (time, history) = (self.times[1], Arc::new(history));
+        self.changes.push(Change::new(time, Why::Return, counts, shape, history, points));
         Ok(Some(next))
     }
 

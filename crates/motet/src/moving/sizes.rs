@@ -137,7 +137,8 @@ impl SizeMap {
     /// The size at each vertex of a mesh whose vertices are at `points`; 0 if no size is known anywhere.
     pub(super) fn at_vertices(
         &self,
-        (now, points): (&Current, &[Point]),
+        now: &Current,
+        points: &[Point],
         wall: &Wall,
         options: &Options,
         threads: &Threads,
@@ -187,7 +188,7 @@ mod tests {
         let moving = MovingMesh::new(&mesh, Options::default(), &Threads::single()).unwrap();
         let of = |points: &[Point]| {
             let MovingMesh { now, wall, options, sizes, .. } = &moving;
-            sizes.first.at_vertices((now, points), wall, options, &Threads::single())
+            sizes.first.at_vertices(now, points, wall, options, &Threads::single())
         };
         let first = of(&mesh.points);
         let radius = mesh.points.iter().map(|p| norm(*p)).fold(f64::INFINITY, f64::min);
@@ -213,7 +214,7 @@ mod tests {
         let mesh = sphere_in_box(6, 6);
         let moving = MovingMesh::new(&mesh, Options::default(), &Threads::single()).unwrap();
         let MovingMesh { now, wall, options, sizes, .. } = &moving;
-        let at = sizes.now.at_vertices((now, &mesh.points), wall, options, &Threads::single());
+        let at = sizes.now.at_vertices(now, &mesh.points, wall, options, &Threads::single());
         let ratios: Vec<f64> = at.iter().zip(lengths(&mesh)).map(|(size, length)| size / length).collect();
         assert!(ratios.iter().all(|ratio| (0.6..1.6).contains(ratio)), "{ratios:?}");
         let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;

@@ -128,7 +128,8 @@ pub struct Change {
 impl Change {
     /// A change; `counts` are the tets before and after, `shape` is that of the tets before.
     pub(super) fn new(
-        (time, why): (f64, Why),
+        time: f64,
+        why: Why,
         [tets_before, tets_after]: [usize; 2],
         shape: &Shape,
         history: Arc<History>,

@@ -7,7 +7,7 @@ use crate::base::{CellId, Point, Result, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::{add, norm, scale, sub};
 use crate::mesh::history::Origin;
-use crate::moving::current::{Current, LeftBad, Records, positions_after, present_rules};
+use crate::moving::current::{Current, Derived, LeftBad, Records, positions_after, present_rules};
 use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Why};
 use crate::moving::step_run::{StepResult, StepRun};
@@ -54,10 +54,10 @@ impl StepRun<'_> {
             Some(now) => self.put_back(now, &now.records.before, true)?,
             None => self.put_back(start, &start.mesh.points, false)?,
         };
-        Ok(put_back.map_or(reached, |put_back| self.at_first_mesh(put_back)))
+        Ok(put_back.map_or(reached, |(now, shape)| self.at_first_mesh(now, shape)))
     }
 
-    fn at_first_mesh(&mut self, (now, shape): (Current, Shape)) -> StepResult {
+    fn at_first_mesh(&mut self, now: Current, shape: Shape) -> StepResult {
         self.points.clone_from(&now.mesh.points);
         StepResult { changed: Some(now), left: None, shape, fraction: 1.0 }
     }
@@ -81,9 +81,9 @@ impl StepRun<'_> {
             // A mesh that will be replaced anyway is not repaired first.
             if is_end
                 && self.returns.count.is_unsettled
-                && let Some(put_back) = self.put_back(now, before, changed.is_some())?
+                && let Some((now, shape)) = self.put_back(now, before, changed.is_some())?
             {
-                return Ok(self.at_first_mesh(put_back));
+                return Ok(self.at_first_mesh(now, shape));
             }
             let is_worth_it = shape.bad.iter().any(|&(cell, eas)| !now.is_left(cell, eas));
             if is_end && !(is_worth_it && self.options.repair.is_some()) {
@@ -218,10 +218,11 @@ impl StepRun<'_> {
             return Ok(Repaired::Left(left));
         }
         let begin = Instant::now();
-        let (changed, context) = ((&given, outcome.mesh), (self.wall, options));
-        let next = now.next(changed, &history, before, left, context, self.threads)?;
+        let derived =
+            Derived { given: &given, mesh: outcome.mesh, history: history.clone(), before: before.to_vec() };
+        let next = now.next(derived, left, self.wall, options, self.threads)?;
         let counts = [now.tets.len(), report.after.tets];
-        let change = Change::new((time, Why::Repair), counts, shape, history, self.points.clone());
+        let change = Change::new(time, Why::Repair, counts, shape, history, self.points.clone());
         self.changes.push(Change { operations: report.operations, ..change });
         self.seconds.setup += begin.elapsed().as_secs_f64();
         Ok(Repaired::Changed(Box::new(next)))
@@ -267,7 +268,7 @@ impl StepRun<'_> {
         let first = &now.records.first_eas;
         let is_as_at_first = |&(cell, eas): &(CellId, f64)| eas >= first[cell.index()] - AS_AT_FIRST;
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
-        let sizes = self.sizes.at_vertices((now, &self.points), self.wall, self.options, self.threads);
+        let sizes = self.sizes.at_vertices(now, &self.points, self.wall, self.options, self.threads);
         // The mesh ahead is nearly the current one: a gain counts twice, and so must the cost.
         let (pose, cost) = match rest {
             Some(rest) => (rest.clone(), Improve::FEW_CHANGES),
@@ -337,11 +338,8 @@ fn replaced_by_inverted(outcome: &MeshOutcome, before: &[Point]) -> Result<Vec<C
 /// The bad tets that repair has left. Those between the limit and the target of the repair are not bad yet:
 /// they are tried once they fall below the limit.
 fn left_of(report: &remesh::Report, limit: f64) -> Vec<LeftBad> {
-    let of = |left: &remesh::Left| LeftBad {
-        cell: CellId(left.tet),
-        eas: left.eas,
-        is_forced: left.reason.is_forced(),
-    };
+    let of =
+        |left: &remesh::Left| LeftBad { cell: left.tet, eas: left.eas, is_forced: left.reason.is_forced() };
     let mut all: Vec<LeftBad> = report.left.iter().filter(|left| left.eas < limit).map(of).collect();
     all.sort_by_key(|left| left.cell);
     all
@@ -355,7 +353,7 @@ mod tests {
     #[test]
     fn what_repair_left_above_the_limit_is_not_left_bad() {
         let of = |tet: u32, eas: f64| Left {
-            tet,
+            tet: CellId(tet),
             eas,
             place: [0.0; 3],
             defect: "other",

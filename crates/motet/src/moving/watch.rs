@@ -1,6 +1,6 @@
 //! How near patches are to each other, and for how long contact is ruled out.
 
-use crate::base::{Point, Result, Threads, VertexId};
+use crate::base::{BodyId, Point, Result, Threads, VertexId};
 use crate::contact::{self, Contact, FirstContact};
 use crate::mesh::Mesh;
 use crate::moving::options::Watching;
@@ -84,7 +84,7 @@ fn within_reach(bodies: &[contact::Body], options: contact::Options) -> contact:
 }
 
 fn report_of(contact: &Contact, gaps: &contact::Gaps, first: Option<FirstContact>) -> Gaps {
-    let name = |body: u32| contact.name(body).to_owned();
+    let name = |body: BodyId| contact.name(body).to_owned();
     let pairs = gaps.pairs.iter().map(|pair| Closest {
         patches: pair.bodies.map(name),
         gap: pair.nearest.map(|nearest| nearest.distance),

@@ -9,7 +9,7 @@ pub(super) fn faults(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
     let mut faults = Vec::new();
     for same in edges(sides) {
         let is_boundary = surfaces.role(same[0].surface) == Role::Boundary;
-        let what = match same {
+        let (kind, is_fatal) = match same {
             [_] => (FaultKind::OpenEdge, is_boundary),
             [x, y] if x.is_forward != y.is_forward => continue,
             [_, _] => (FaultKind::MisorientedEdge, false),
@@ -17,7 +17,7 @@ pub(super) fn faults(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
             _ => (FaultKind::NonManifoldEdge, false),
         };
         let triangles = same.iter().map(|side| side.triangle).collect();
-        faults.push(Fault::new(what, same[0].surface, triangles, &same[0].edge, surfaces.points));
+        faults.push(Fault::new(kind, is_fatal, same[0].surface, triangles, &same[0].edge, surfaces.points));
     }
     faults.extend(pinched(surfaces, sides));
     faults
@@ -47,8 +47,7 @@ fn pinched(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
     let fault = |same: &[(u32, VertexId, u32)]| {
         let triangles = same.iter().map(|first| first.2).collect();
         let (surface, vertex, _) = same[0];
-        let what = (FaultKind::NonManifoldVertex, false);
-        Fault::new(what, surface, triangles, &[vertex], surfaces.points)
+        Fault::new(FaultKind::NonManifoldVertex, false, surface, triangles, &[vertex], surfaces.points)
     };
     at_one_vertex.map(fault).collect()
 }

@@ -98,7 +98,8 @@ pub struct Fault {
 impl Fault {
     /// A fault located at the mean of its vertices.
     pub(super) fn new(
-        (kind, is_fatal): (FaultKind, bool),
+        kind: FaultKind,
+        is_fatal: bool,
         surface: u32,
         triangles: Vec<u32>,
         vertices: &[VertexId],

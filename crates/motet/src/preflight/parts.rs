@@ -67,9 +67,10 @@ impl Parts {
 /// A fault for each closed part that faces inward, at its first triangle.
 pub(super) fn faults(surfaces: &Surfaces, parts: &Parts) -> Vec<Fault> {
     let fault = |part: Vec<u32>| {
-        let (first, what) = (part[0], (FaultKind::InwardPart, false));
+        let first = part[0];
         let vertices = &surfaces.triangles[first as usize];
-        Fault::new(what, surfaces.surface(first), vec![first], vertices, surfaces.points)
+        let surface = surfaces.surface(first);
+        Fault::new(FaultKind::InwardPart, false, surface, vec![first], vertices, surfaces.points)
     };
     parts.inward(surfaces).into_iter().map(fault).collect()
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::fault::{Fault, FaultKind};
-use super::rims::Rim;
+use super::rims::{OpenEdges, Rim};
 use super::surfaces::Surfaces;
 use crate::base::Error;
 
@@ -48,7 +48,7 @@ impl Preflight {
     pub(super) fn new(
         surfaces: &Surfaces,
         mut faults: Vec<Fault>,
-        (rims, n_torn_edges): (Vec<Rim>, usize),
+        OpenEdges { rims, n_torn_edges }: OpenEdges,
     ) -> Self {
         faults.sort_by(|x, y| key(x).cmp(&key(y)));
         let mut is_used = vec![false; surfaces.points.len()];

@@ -72,13 +72,20 @@ impl fmt::Display for Rim {
     }
 }
 
-/// The closed rims of surfaces that have to be closed, the longest first; and the number of open edges that
-/// are in none.
-pub(super) fn of_boundaries(surfaces: &Surfaces, sides: &[Side]) -> (Vec<Rim>, usize) {
+/// The open edges of surfaces that have to be closed.
+pub(super) struct OpenEdges {
+    /// The closed rims, the longest first.
+    pub(super) rims: Vec<Rim>,
+    /// Number of open edges that are in no rim.
+    pub(super) n_torn_edges: usize,
+}
+
+/// The open edges of surfaces that have to be closed.
+pub(super) fn of_boundaries(surfaces: &Surfaces, sides: &[Side]) -> OpenEdges {
     let found = rims(surfaces.points.len(), sides, |surface| surfaces.role(surface) == Role::Boundary);
     let mut rims: Vec<Rim> = found.closed.iter().filter_map(|rim| Rim::of(surfaces.points, rim)).collect();
     rims.sort_by(|a, b| b.length.total_cmp(&a.length));
-    (rims, found.unclosed.iter().map(Vec::len).sum())
+    OpenEdges { rims, n_torn_edges: found.unclosed.iter().map(Vec::len).sum() }
 }
 
 /// The rims of one surface: first the closed ones, with their vertices in the order in which a triangle in

@@ -40,6 +40,6 @@ pub fn preflight(
 fn empty(surfaces: &Surfaces) -> Vec<Fault> {
     let mut is_empty = vec![true; surfaces.roles.len()];
     surfaces.surface_of.iter().for_each(|&s| is_empty[s as usize] = false);
-    let fault = |s| Fault::new((FaultKind::EmptySurface, true), s, Vec::new(), &[], surfaces.points);
+    let fault = |s| Fault::new(FaultKind::EmptySurface, true, s, Vec::new(), &[], surfaces.points);
     (0u32..).zip(&is_empty).filter(|(_, is_empty)| **is_empty).map(|(s, _)| fault(s)).collect()
 }

@@ -95,7 +95,7 @@ pub(super) fn faults(surfaces: &Surfaces, shapes: &[Shape], duplicates: &Duplica
         let mut record = |kind, is_fatal, triangles| {
             let vertices = &surfaces.triangles[t as usize];
             let surface = surfaces.surface(t);
-            faults.push(Fault::new((kind, is_fatal), surface, triangles, vertices, surfaces.points));
+            faults.push(Fault::new(kind, is_fatal, surface, triangles, vertices, surfaces.points));
         };
         match shape {
             Shape::Repeated => record(FaultKind::RepeatedVertex, true, vec![t]),
@@ -126,8 +126,8 @@ fn not_finite(surfaces: &Surfaces) -> Vec<Fault> {
     for (v, around) in vertices.iter().zip(triangles.iter()).filter(|(_, around)| !around.is_empty()) {
         let mut around = around.to_vec();
         around.dedup();
-        let surface = surfaces.surface(around[0]);
-        faults.push(Fault::new((FaultKind::NonFinitePoint, true), surface, around, &[*v], surfaces.points));
+        let (kind, surface) = (FaultKind::NonFinitePoint, surfaces.surface(around[0]));
+        faults.push(Fault::new(kind, true, surface, around, &[*v], surfaces.points));
     }
     faults
 }

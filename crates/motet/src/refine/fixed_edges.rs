@@ -1,15 +1,15 @@
 //! Keeps refinement away from edges that cells of other kinds hold, which must not be split.
 
-use super::forest::{Extracted, Forest, NONE};
-use crate::base::{TetId, VertexId};
+use super::forest::{Extracted, Forest, in_forest};
+use crate::base::{ForestVertexId, TetId, VertexId};
 use crate::mesh::TetMesh;
 
 /// Returns the ends, as forest vertices, of fixed edges that are split nevertheless.
-pub(super) fn ends_of_split_fixed_edges(forest: &Forest, first: &TetMesh) -> Vec<u32> {
+pub(super) fn ends_of_split_fixed_edges(forest: &Forest, first: &TetMesh) -> Vec<ForestVertexId> {
     let is_split = |edge: &&[VertexId; 2]| {
-        forest.root_edge(edge.map(|v| v.0)).is_some_and(|edge| forest.is_split[edge as usize])
+        forest.root_edge(edge.map(in_forest)).is_some_and(|edge| forest.is_split[edge.index()])
     };
-    first.fixed_edges.iter().filter(is_split).flatten().map(|v| v.0).collect()
+    first.fixed_edges.iter().filter(is_split).flatten().copied().map(in_forest).collect()
 }
 
 /// The neighbourhood of such edges: rings of tets, one more with every attempt.
@@ -25,14 +25,14 @@ impl Neighborhood {
         &mut self,
         forest: &Forest,
         now: &Extracted,
-        vertices: &[u32],
+        vertices: &[ForestVertexId],
         marked: &mut Vec<TetId>,
     ) {
         let mesh = &now.mesh;
         self.is_near.resize(mesh.points.len(), false);
         let numbers = now.numbers(forest.reference.len());
-        let known = vertices.iter().map(|&v| numbers[v as usize]).filter(|v| *v != NONE);
-        known.for_each(|v| self.is_near[v as usize] = true);
+        let known = vertices.iter().filter_map(|v| numbers[v.index()].get());
+        known.for_each(|v| self.is_near[v.index()] = true);
         (0..self.n_rings).for_each(|_| self.grow(mesh));
         self.n_rings += 1;
         let n = marked.len();

@@ -34,7 +34,7 @@ pub use choose::{
     Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Limits, Relation, Size, Target, estimate,
     fix_sizes, hessian, mark, marks_of_all, sizes, wish, wishes_of_all,
 };
-pub use memory::{Memory, UNKNOWN};
+pub use memory::Memory;
 pub use reach::{Reached, Step, Stop, Wanted};
 pub use refinement::{Left, Options, Refinement, Rule, Summary};
 pub use shapes::Shapes;

@@ -2,11 +2,11 @@
 
 use super::fixed_edges::{Neighborhood, ends_of_split_fixed_edges};
 use super::forest::{
-    Closed, Extracted, Forest, MAX_GENERATION, MAX_NODES, NONE, ShapeBounds, close, extract,
+    Closed, Extracted, Forest, MAX_GENERATION, MAX_NODES, ShapeBounds, close, extract, in_forest,
 };
 use super::inverted::vertices_of_inverted;
 use super::true_surface::{OnSurface, put_on_surface};
-use crate::base::{Error, Point, Result, TetId, Threads};
+use crate::base::{Error, ForestVertexId, NodeId, Point, Result, TetId, Threads};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
 use crate::mesh::TetMesh;
@@ -107,7 +107,7 @@ impl Refinement {
     pub fn new(mesh: &TetMesh, options: Options, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
         check_roots(mesh, threads)?;
-        let roots = mesh.tets.iter().map(|tet| (tet.map(|v| v.0), false));
+        let roots = mesh.tets.iter().map(|tet| (tet.map(in_forest), false));
         let forest = Forest::new(&mesh.points, roots);
         let bounds = ShapeBounds::new(options, &forest);
         let mut refinement = Self {
@@ -152,12 +152,12 @@ impl Refinement {
     /// The generation of each tet: how many divisions into eight it lies within. Pieces of a cut tet count as
     /// that tet.
     pub fn generations(&self) -> impl Iterator<Item = u8> + '_ {
-        self.now.nodes.iter().map(|&node| self.forest.states[node as usize].generation)
+        self.now.nodes.iter().map(|node| self.forest.states[node.index()].generation)
     }
 
     /// For each tet, the tet of the first mesh that it lies in.
     pub fn roots(&self) -> impl Iterator<Item = TetId> + '_ {
-        self.now.nodes.iter().map(|&node| TetId(self.forest.root(node)))
+        self.now.nodes.iter().map(|&node| self.forest.root(node))
     }
 
     /// The tets whose shape in the reference is worse than the options allow, because no better way of
@@ -166,22 +166,22 @@ impl Refinement {
         let shape =
             threads.map(self.now.nodes.len(), |i| match self.forest.mask(self.now.nodes[i]) {
                 0 => {
-                    let shape = self.forest.nodes[self.now.nodes[i] as usize].shape;
-                    self.forest.classes[shape.class() as usize].eas
+                    let shape = self.forest.nodes[self.now.nodes[i].index()].shape;
+                    self.forest.classes[shape.class().index()].eas
                 }
                 _ => eas(self.now.mesh.tets[i]
-                    .map(|v| self.forest.reference[self.now.vertices[v.index()] as usize]))
+                    .map(|v| self.forest.reference[self.now.vertices[v.index()].index()]))
                 .abs(),
             });
         let floor = |i: u32| {
-            let class = self.forest.nodes[self.now.nodes[i as usize] as usize].shape.class();
-            self.bounds.floor(self.forest.classes[class as usize].root_eas)
+            let class = self.forest.nodes[self.now.nodes[i as usize].index()].shape.class();
+            self.bounds.floor(self.forest.classes[class.index()].root_eas)
         };
         let bad = (0..).zip(shape).filter(|&(i, eas)| eas < floor(i));
         bad.map(|(i, eas): (u32, f64)| Left {
             tet: TetId(i),
             eas,
-            root: TetId(self.forest.root(self.now.nodes[i as usize])),
+            root: self.forest.root(self.now.nodes[i as usize]),
         })
         .collect()
     }
@@ -213,8 +213,8 @@ impl Refinement {
     fn set_positions(&mut self, points: &[Point]) {
         self.is_moved = true;
         self.now.mesh.points.copy_from_slice(points);
-        for (&vertex, &point) in self.now.vertices.iter().zip(points) {
-            self.points[vertex as usize] = point;
+        for (vertex, &point) in self.now.vertices.iter().zip(points) {
+            self.points[vertex.index()] = point;
         }
     }
 
@@ -227,7 +227,7 @@ impl Refinement {
     pub fn refine(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
         self.check(marked)?;
         let is_deepest = |tet: &&TetId| {
-            self.forest.states[self.now.nodes[tet.index()] as usize].generation >= MAX_GENERATION
+            self.forest.states[self.now.nodes[tet.index()].index()].generation >= MAX_GENERATION
         };
         if let Some(tet) = marked.iter().find(is_deepest) {
             return Err(Error::options(format!(
@@ -260,10 +260,10 @@ impl Refinement {
     /// Requests the division of the marked tets, and so of all tets they lie in.
     fn request(&mut self, marked: &[TetId]) {
         for tet in marked {
-            let mut node = self.now.nodes[tet.index()];
-            while node != NONE && !self.forest.states[node as usize].is_requested {
-                self.forest.states[node as usize].is_requested = true;
-                node = self.forest.nodes[node as usize].parent;
+            let mut next = Some(self.now.nodes[tet.index()]);
+            while let Some(node) = next.filter(|node| !self.forest.states[node.index()].is_requested) {
+                self.forest.states[node.index()].is_requested = true;
+                next = self.forest.nodes[node.index()].parent.get();
             }
         }
     }
@@ -290,16 +290,17 @@ impl Refinement {
         let Forest { nodes, states, .. } = &mut self.forest;
         // For each tet of the forest, whether all tets within it are marked. Parts come after the whole.
         let mut is_whole = vec![true; nodes.len()];
-        for (&node, is_marked) in self.now.nodes.iter().zip(is_marked) {
-            is_whole[node as usize] &= is_marked;
+        for (node, is_marked) in self.now.nodes.iter().zip(is_marked) {
+            is_whole[node.index()] &= is_marked;
         }
+        let parts = |node: usize| nodes[node].first_child.get().map(|first| first.index()..first.index() + 8);
         for node in (0..nodes.len()).rev().filter(|&node| states[node].is_divided) {
-            let first = nodes[node].first_child as usize;
-            is_whole[node] = is_whole[first..first + 8].iter().all(|&child| child);
+            let Some(parts) = parts(node) else { continue };
+            is_whole[node] = is_whole[parts].iter().all(|&child| child);
         }
         for node in (0..nodes.len()).filter(|&node| is_whole[node] && before[node]) {
-            let first = nodes[node].first_child as usize;
-            states[node].is_requested = before[first..first + 8].iter().any(|&child| child);
+            let Some(parts) = parts(node) else { continue };
+            states[node].is_requested = before[parts].iter().any(|&child| child);
         }
     }
 
@@ -321,21 +322,24 @@ impl Refinement {
                 self.summary.n_held = n_held;
                 return Ok(());
             }
-            let taken_back: Vec<u32> = (0..before.len() as u32)
-                .filter(|&n| before[n as usize] && !self.forest.states[n as usize].is_requested)
+            let taken_back: Vec<NodeId> = (0..before.len())
+                .filter(|&n| before[n] && !self.forest.states[n].is_requested)
+                .map(NodeId::new)
                 .collect();
-            let at = |&node: &u32| self.forest.local(node).iter().any(|v| new.binary_search(v).is_ok());
-            let near: Vec<u32> = taken_back.iter().copied().filter(at).collect();
+            let is_new = |v: ForestVertexId| new.binary_search(&v).is_ok();
+            let at = |&node: &NodeId| self.forest.local(node).iter().any(|v| v.get().is_some_and(is_new));
+            let near: Vec<NodeId> = taken_back.iter().copied().filter(at).collect();
             let restored = if near.is_empty() { taken_back } else { near };
             if restored.is_empty() {
                 self.accept(closed, now);
                 return Ok(());
             }
             n_held += restored.len();
-            for mut node in restored {
-                while node != NONE {
-                    self.forest.states[node as usize].is_requested = true;
-                    node = self.forest.nodes[node as usize].parent;
+            for node in restored {
+                let mut next = Some(node);
+                while let Some(node) = next {
+                    self.forest.states[node.index()].is_requested = true;
+                    next = self.forest.nodes[node.index()].parent.get();
                 }
             }
         }
@@ -381,8 +385,8 @@ impl Refinement {
 
     fn accept(&mut self, closed: Closed, now: Extracted) {
         self.points.resize(self.forest.reference.len(), [f64::NAN; 3]);
-        for (&vertex, &point) in now.vertices.iter().zip(&now.mesh.points) {
-            self.points[vertex as usize] = point;
+        for (vertex, &point) in now.vertices.iter().zip(&now.mesh.points) {
+            self.points[vertex.index()] = point;
         }
         self.summary = Summary {
             n_tets: now.mesh.tets.len(),

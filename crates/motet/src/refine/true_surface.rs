@@ -85,10 +85,9 @@ fn displacements(now: &Extracted, forest: &Forest, surface: &NearestTriangle) ->
     });
     let numbers = now.numbers(forest.reference.len());
     let displacement = |v: usize| {
-        let origin = (now.vertices[v] as usize).checked_sub(forest.n_first_vertices)?;
-        let [p, q] =
-            forest.edges[forest.origin[origin] as usize].ends.map(|end| numbers[end as usize] as usize);
-        let ([p, q], point) = ([*mesh.points.get(p)?, *mesh.points.get(q)?], mesh.points[v]);
+        let origin = now.vertices[v].index().checked_sub(forest.n_first_vertices)?;
+        let [p, q] = forest.edges[forest.origin[origin].index()].ends.map(|end| numbers[end.index()].get());
+        let ([p, q], point) = ([p?, q?].map(|end| mesh.points[end.index()]), mesh.points[v]);
         let length = distance(p, q);
         let near = |p: Point, part: f64| surface.closest_within(p, part * length).map(|found| found.point);
         let found = near(point, MAX_DISPLACEMENT)?;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::base::{Point, TetId};
+use crate::base::{CellId, Point, TetId};
 use crate::geometry::quality::{dihedral, eas};
 use crate::geometry::tent::Tent;
 use crate::geometry::tet::{EDGES, FACETS, centroid};
@@ -15,9 +15,9 @@ use crate::remesh::surface::Surface;
 
 /// A bad tet that is left.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Left {
-    /// Id of the tet in the new mesh.
-    pub tet: u32,
+pub struct Left<Tet = CellId> {
+    /// The tet: as a cell of a whole mesh, or as a tet of a mesh of tets.
+    pub tet: Tet,
     /// EAS of the tet.
     pub eas: f64,
     /// Centroid of the tet.
@@ -26,6 +26,14 @@ pub struct Left {
     pub defect: &'static str,
     /// Why it is left.
     pub reason: Reason,
+}
+
+impl Left<TetId> {
+    /// The bad tet as a cell of a whole mesh: `cell` gives that of a tet.
+    pub(super) fn in_cells(self, cell: impl Fn(TetId) -> CellId) -> Left {
+        let Self { tet, eas, place, defect, reason } = self;
+        Left { tet: cell(tet), eas, place, defect, reason }
+    }
 }
 
 /// Why a bad tet is left.
@@ -103,8 +111,8 @@ pub(super) fn explain(
     complex: &Complex,
     left: &[TetId],
     min_eas: f64,
-    new_id: impl Fn(TetId) -> u32,
-) -> Vec<Left> {
+    new_id: impl Fn(TetId) -> TetId,
+) -> Vec<Left<TetId>> {
     let (mut shell, mut star) = (Shell::default(), Star::default());
     let of = |&tet: &TetId| {
         let corners = complex.corners(tet);

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::base::{Point, TetId, reasons};
+use crate::base::{CellId, Point, TetId, reasons};
 use crate::geometry::tet::centroid;
 use crate::kernel::Complex;
 use crate::mesh::is_inverted;
@@ -72,9 +72,9 @@ impl Counts {
 
 /// The worst tet of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Worst {
-    /// Id of the tet.
-    pub tet: u32,
+pub struct Worst<Tet = CellId> {
+    /// The tet: as a cell of a whole mesh, or as a tet of a mesh of tets.
+    pub tet: Tet,
     /// EAS of the tet.
     pub eas: f64,
     /// Centroid of the tet.
@@ -83,7 +83,7 @@ pub struct Worst {
 
 /// The size and quality of a mesh at one time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct State {
+pub struct State<Tet = CellId> {
     /// How many vertices the tets have.
     pub vertices: usize,
     /// How many of these are free: inside the volume, and on no line.
@@ -99,10 +99,17 @@ pub struct State {
     /// How many tets are flat or inverted, by exact signs.
     pub inverted: usize,
     /// The worst tet; `None` if there are no tets.
-    pub worst: Option<Worst>,
+    pub worst: Option<Worst<Tet>>,
 }
 
-impl State {
+impl State<TetId> {
+    /// The state by cells of a whole mesh: `cell` gives that of a tet.
+    fn in_cells(self, cell: impl Fn(TetId) -> CellId) -> State {
+        let Self { vertices, free_vertices, tets, bad, layers, types, inverted, worst } = self;
+        let worst = worst.map(|worst| Worst { tet: cell(worst.tet), eas: worst.eas, place: worst.place });
+        State { vertices, free_vertices, tets, bad, layers, types, inverted, worst }
+    }
+
     /// The state of a complex. `bad` lists all bad tets, including flat and inverted ones; `id` gives the id
     /// of a tet that is reported.
     pub(super) fn of(complex: &Complex, bad: &[TetId], layers: usize, id: impl Fn(TetId) -> TetId) -> Self {
@@ -117,7 +124,7 @@ impl State {
             layers,
             types,
             inverted: bad.iter().filter(|&&t| is_inverted(complex.corners(t))).count(),
-            worst: worst.map(|(t, eas)| Worst { tet: id(t).0, eas, place: centroid(complex.corners(t)) }),
+            worst: worst.map(|(t, eas)| Worst { tet: id(t), eas, place: centroid(complex.corners(t)) }),
         }
     }
 }
@@ -144,15 +151,16 @@ pub struct Seconds {
     pub history: f64,
 }
 
-/// What was found, what was done, and what is left.
+/// What was found, what was done, and what is left. Tets are those of a mesh of tets ([`TetId`]), or cells of
+/// a whole mesh ([`CellId`]).
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Report {
+pub struct Report<Tet = CellId> {
     /// A tet below this EAS counts as bad.
     pub min_eas: f64,
     /// State of the input mesh.
-    pub before: State,
+    pub before: State<Tet>,
     /// State of the new mesh.
-    pub after: State,
+    pub after: State<Tet>,
     /// How often each operation was applied.
     pub operations: Counts,
     /// How many tets are as in the input, to the bit.
@@ -162,7 +170,7 @@ pub struct Report {
     /// Edge lengths compared with the requested sizes, if any.
     pub sizes: Option<SizesReport>,
     /// Bad tets that are left, worst first.
-    pub left: Vec<Left>,
+    pub left: Vec<Left<Tet>>,
     /// Tets of boundary layers below the limit in the new mesh: not bad, and unchanged.
     pub layers: usize,
     /// Held tets below the limit, which therefore stay.
@@ -171,7 +179,31 @@ pub struct Report {
     pub seconds: Seconds,
 }
 
-impl Report {
+impl Report<TetId> {
+    /// The report by cells of a whole mesh: `old` gives the cell of a tet of the input mesh, `new` that of a
+    /// tet of the new mesh.
+    pub(crate) fn in_cells(
+        self,
+        old: impl Fn(TetId) -> CellId,
+        new: impl Fn(TetId) -> CellId + Copy,
+    ) -> Report {
+        Report {
+            min_eas: self.min_eas,
+            before: self.before.in_cells(old),
+            after: self.after.in_cells(new),
+            operations: self.operations,
+            kept: self.kept,
+            kept_share: self.kept_share,
+            sizes: self.sizes,
+            left: self.left.into_iter().map(|left| left.in_cells(new)).collect(),
+            layers: self.layers,
+            held: self.held,
+            seconds: self.seconds,
+        }
+    }
+}
+
+impl<Tet> Report<Tet> {
     /// Whether no bad tet is left, and no edge that is too long and may be split.
     pub fn is_complete(&self) -> bool {
         self.not_reached().is_none()

@@ -23,7 +23,7 @@ pub struct Outcome {
     /// The new mesh, and where each of its vertices, tets and triangles came from.
     pub extract: Extract,
     /// The report of what was done.
-    pub report: Report,
+    pub report: Report<TetId>,
 }
 
 /// Repairs the bad tets of a mesh, and only those; if [`Options::sizes`] are given, brings edges to them,
@@ -128,7 +128,7 @@ pub(super) fn remesh_keeping(
     report.after = State::of(&complex, &left, report.layers, |t| extract.tet(t));
     report.kept = mesh.tets.len() - extract.removed_tets.len();
     report.kept_share = report.kept as f64 / mesh.tets.len().max(1) as f64;
-    report.left = explain(&complex, &left, min_eas, |t: TetId| extract.tet(t).0);
+    report.left = explain(&complex, &left, min_eas, |t| extract.tet(t));
     report.seconds.extract = clock.lap();
     Ok(Outcome { extract, report })
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::base::{CellId, Csr, Id, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{dot, sub};
-use crate::kernel::Extract;
+use crate::kernel::{Extract, NEW};
 use crate::mesh::history::{History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Cells, Field, Mesh, TetPart};
 use crate::remesh::held::{Held, Required};
@@ -59,8 +59,12 @@ pub fn remesh_part(
     let history = history(mesh, part, &extract, &joined, threads)?;
     let mut new = Mesh::new(extract.mesh.points, joined.cells);
     history.transfer(mesh, &mut new, rules)?;
-    number_anew(&mut new, &extract.vertex_to_old, &joined.cell_to_old);
-    new.unmark_new_points(&extract.vertex_to_old);
+    let is_new = |v: &VertexId| extract.vertex_to_old[v.index()] == NEW;
+    let new_points: Vec<VertexId> = (0..new.points.len()).map(VertexId::new).filter(is_new).collect();
+    let is_new = |cell: &CellId| joined.cell_to_old[cell.index()] == Id::NONE;
+    let new_cells: Vec<CellId> = (0..new.cells.len()).map(CellId::new).filter(is_new).collect();
+    number_anew(&mut new, &new_points, &new_cells);
+    new.unmark(&new_points);
     report.seconds.history = begin.elapsed().as_secs_f64();
     Ok(MeshOutcome { mesh: new, history, report })
 }
@@ -125,7 +129,7 @@ fn changed(mesh: &Mesh, part: &TetPart, options: &Options, threads: &Threads) ->
     let begin = Instant::now();
     let joined = Joined::of(mesh, part, &extract);
     report.seconds.extract += begin.elapsed().as_secs_f64();
-    report_cells(&mut report, &part.tet_to_cell, &joined.tet_to_cell);
+    let report = report.in_cells(|tet| part.tet_to_cell[tet.index()], |tet| joined.tet_to_cell[tet.index()]);
     Ok(Changed { report, extract, joined })
 }
 
@@ -340,12 +344,4 @@ fn history(
 
 fn labelled<const N: usize>(cells: impl Iterator<Item = (CellId, [VertexId; N], i32)>) -> Vec<Labelled<N>> {
     cells.map(|(cell, vertices, label)| Labelled { cell, vertices, label }).collect()
-}
-
-/// Replaces tet ids in a report by cell ids.
-fn report_cells(report: &mut Report, old: &[CellId], new: &[CellId]) {
-    let cell = |to_cell: &[CellId], tet: u32| to_cell[tet as usize].0;
-    report.before.worst.iter_mut().for_each(|w| w.tet = cell(old, w.tet));
-    report.after.worst.iter_mut().for_each(|w| w.tet = cell(new, w.tet));
-    report.left.iter_mut().for_each(|left| left.tet = cell(new, left.tet));
 }

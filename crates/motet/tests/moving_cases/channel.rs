@@ -1,6 +1,6 @@
 //! Figure 11 of the paper: a sphere moves along a channel.
 
-use motet::base::{Point, Threads};
+use motet::base::{Point, TetId, Threads};
 use motet::geometry::vector::{add, scale};
 use motet::mesh::TetMesh;
 use motet::remesh::{Options, Report, remesh};
@@ -46,7 +46,7 @@ pub struct Step {
     pub shift: f64,
     pub moved: TetMesh,
     pub repaired: TetMesh,
-    pub report: Report,
+    pub report: Report<TetId>,
 }
 
 /// Moves the mesh by `n` steps of `step` and repairs it after each; the next one starts from there. Calls

@@ -1,6 +1,6 @@
 //! A cube that is distorted and restored again and again: every vertex moves by the map of the cube.
 
-use motet::base::{Point, Threads, VertexId};
+use motet::base::{Point, TetId, Threads, VertexId};
 use motet::mesh::TetMesh;
 use motet::remesh::{Options, Reason, Report, remesh};
 
@@ -93,7 +93,7 @@ pub struct Step {
     pub bad_before: usize,
     pub inverted_before: usize,
     pub bad: usize,
-    pub report: Report,
+    pub report: Report<TetId>,
     /// Numbers of remaining bad tets: between walls that meet at too sharp an angle for any tet; on a wall
     /// with such an angle; others.
     pub reasons: [usize; 3],

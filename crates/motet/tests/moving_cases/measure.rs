@@ -9,7 +9,7 @@ use motet::geometry::tet::FACETS;
 use motet::geometry::triangle::area;
 use motet::geometry::vector::distance;
 use motet::mesh::TetMesh;
-use motet::mesh::tet_facets::{NO_TET, tet_neighbors};
+use motet::mesh::tet_facets::tet_neighbors;
 
 /// The EAS below which a tet is bad.
 pub const BAD: f64 = 0.2;
@@ -57,7 +57,7 @@ pub fn boundary(mesh: &TetMesh) -> Vec<[[u64; 3]; 3]> {
     let neighbors = tet_neighbors(&mesh.tets);
     let mut facets = Vec::new();
     for (tet, behind) in mesh.tets.iter().zip(&neighbors) {
-        for i in (0..4).filter(|&i| behind[i] == NO_TET) {
+        for i in (0..4).filter(|&i| behind[i].is_none()) {
             let mut facet = FACETS[i].map(|place| mesh.points[tet[place].index()].map(f64::to_bits));
             let first = (0..3).min_by_key(|&i| facet[i]).unwrap_or_default();
             facet.rotate_left(first);

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use motet::base::{Id, Point, Threads, VertexId};
-use motet::contact::{Between, BetweenOptions, Contact, GapKind, Gaps};
+use motet::base::{BodyId, Point, Threads, VertexId};
+use motet::contact::{Between, BetweenOptions, Contact, GapKind, GapTet, Gaps};
 use motet::geometry::predicates::orient3d;
 use motet::mesh::{CellKind, Cells, Field};
 use motet::{Mesh, Result};
@@ -27,7 +27,7 @@ pub(crate) struct DelaunayAccuracy {
 /// The Delaunay tets that span the gaps of a contact, and the seconds that they took.
 pub(crate) fn between(contact: &Contact, threads: &Threads) -> Result<(Between, f64)> {
     let begin = Instant::now();
-    let ids = 0..contact.n_bodies() as u32;
+    let ids = (0..contact.n_bodies()).map(BodyId::new);
     let bodies: Vec<_> = ids.clone().map(|body| contact.triangles(body).to_vec()).collect();
     let options =
         BetweenOptions { sides: ids.map(|body| contact.side(body)).collect(), ..BetweenOptions::default() };
@@ -76,14 +76,13 @@ pub(crate) fn replace(
 
 /// The gap tets with four vertices as a mesh, and the number of the others, which are flat.
 pub(crate) fn tets(contact: &Contact, between: &Between) -> (Mesh, usize) {
-    let tets = || between.tets.iter().filter(|tet| !tet.vertices.contains(&VertexId::NONE));
-    let mut used: Vec<VertexId> = tets().flat_map(|tet| tet.vertices).collect();
+    let tets = || between.tets.iter().filter(|tet| tet.corners().is_some());
+    let mut used: Vec<VertexId> = tets().filter_map(GapTet::corners).flatten().collect();
     used.sort_unstable();
     used.dedup();
     let points = used.iter().map(|v| contact.points()[v.index()]).collect();
     let mut cells = Cells::new();
-    for tet in tets() {
-        let mut vertices = tet.vertices;
+    for mut vertices in tets().filter_map(GapTet::corners) {
         if is_turned(vertices.map(|v| contact.points()[v.index()])) {
             vertices.swap(2, 3);
         }
@@ -104,7 +103,7 @@ pub(crate) fn tets(contact: &Contact, between: &Between) -> (Mesh, usize) {
         "distance",
         tets().map(|tet| distance(tet.distance)).collect::<Vec<f64>>(),
     ));
-    let pairs = |i: usize| tets().map(|tet| tet.bodies[i] as i32 + 1).collect::<Vec<i32>>();
+    let pairs = |i: usize| tets().map(|tet| tet.bodies[i].0 as i32 + 1).collect::<Vec<i32>>();
     mesh.set_cell_field(Field::scalars("body", pairs(0)));
     mesh.set_cell_field(Field::scalars("other_body", pairs(1)));
     let n_flat = between.tets.len() - mesh.cells.len();

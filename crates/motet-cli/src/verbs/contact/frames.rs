@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use motet::base::{CellId, Point};
+use motet::base::{BodyId, CellId, Point};
 use motet::contact::{Body, Contact, Room};
 use motet::{Error, Mesh, Result, io};
 
@@ -112,7 +112,7 @@ impl Frame {
 
     /// Keeps the rooms found in an earlier frame that has the same surface names but other triangles.
     pub(crate) fn keep_rooms(&mut self, earlier: &Contact) {
-        let ids = 0..earlier.n_bodies() as u32;
+        let ids = (0..earlier.n_bodies()).map(BodyId::new);
         if ids.clone().map(|id| earlier.name(id)).eq(self.bodies.iter().map(|body| body.name.as_str())) {
             ids.zip(&mut self.bodies).for_each(|(id, body)| body.room = earlier.room(id));
         }

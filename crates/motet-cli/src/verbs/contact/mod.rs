@@ -77,7 +77,7 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
         report.seconds.write += writing.elapsed().as_secs_f64();
         let (file, lost) = file.unzip();
         lost.into_iter().flatten().for_each(|what| console.warn(what));
-        let step = Step::new((frames.times[k], file), &contact, &frame, &gaps, ahead.as_ref());
+        let step = Step::new(frames.times[k], file, &contact, &frame, &gaps, ahead.as_ref());
         report.add(&contact, &frame, step.with_delaunay(accuracy));
         handle = Some((contact, frame));
         meter.step();

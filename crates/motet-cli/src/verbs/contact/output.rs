@@ -2,7 +2,7 @@
 
 use motet::Mesh;
 use motet::base::VertexId;
-use motet::contact::{Ahead, Gaps, NONE};
+use motet::contact::{Ahead, Gaps};
 use motet::mesh::{CellKind, Cells, Field, Values};
 
 use super::frames::Frame;
@@ -32,10 +32,11 @@ pub(crate) fn mesh(frame: &Frame, gaps: &Gaps, ahead: Option<&Ahead>) -> Mesh {
     let normal: Vec<_> = all().flat_map(|body| &body.normal).copied().collect();
     let warning: Vec<i32> = all().flat_map(|body| &body.warning).map(|&warns| i32::from(warns)).collect();
     let closest_body: Vec<i32> =
-        all().flat_map(|b| &b.closest_body).map(|&b| if b == NONE { 0 } else { b as i32 + 1 }).collect();
+        all().flat_map(|b| &b.closest_body).map(|b| b.get().map_or(0, |b| b.0 as i32 + 1)).collect();
     let closest_cell: Vec<i64> = all()
         .flat_map(|body| body.closest_body.iter().zip(&body.closest_triangle))
-        .map(|(&body, &t)| first_cells.get(body as usize).map_or(-1, |first| (first + t as usize) as i64))
+        .map(|(body, triangle)| Some(first_cells.get(body.get()?.index())? + triangle.get()?.index()))
+        .map(|cell| cell.map_or(-1, |cell| cell as i64))
         .collect();
     for field in [
         Field::scalars("gap", gap),

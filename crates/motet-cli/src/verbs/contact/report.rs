@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use motet::base::Point;
+use motet::base::{BodyId, Point};
 use motet::contact::{Ahead, Contact, Gaps, PairGap, Room};
 use motet::geometry::distance::Feature;
 use serde::Serialize;
@@ -158,7 +158,7 @@ impl Report {
 
     pub(super) fn add(&mut self, contact: &Contact, frame: &Frame, step: Step) {
         if self.bodies.is_empty() {
-            let all = (0..).zip(frame.bodies.iter().zip(&frame.sources)).zip(&step.gaps);
+            let all = (0..).map(BodyId).zip(frame.bodies.iter().zip(&frame.sources)).zip(&step.gaps);
             let facts = all.map(|((id, (body, source)), spread)| BodyFacts {
                 name: body.name.clone(),
                 file: source.file.clone(),
@@ -168,7 +168,7 @@ impl Report {
                 room: body.room == Room::Yes || contact.rooms().iter().any(|within| within.room == id),
             });
             self.bodies = facts.collect();
-            let name = |body: u32| contact.name(body).to_owned();
+            let name = |body: BodyId| contact.name(body).to_owned();
             let rooms = contact.rooms().iter();
             self.rooms =
                 rooms.map(|w| InRoom { room: name(w.room), surface: name(w.body), share: w.share }).collect();
@@ -186,22 +186,23 @@ impl Report {
 
 impl Step {
     pub(super) fn new(
-        (time, file): (f64, Option<PathBuf>),
+        time: f64,
+        file: Option<PathBuf>,
         contact: &Contact,
         frame: &Frame,
         gaps: &Gaps,
         ahead: Option<&Ahead>,
     ) -> Self {
-        let name = |body: u32| contact.name(body).to_owned();
-        let cell = |body: u32, triangle: u32| frame.sources[body as usize].cells[triangle as usize].index();
+        let name = |body: BodyId| contact.name(body).to_owned();
+        let cell = |body: BodyId, triangle: u32| frame.sources[body.index()].cells[triangle as usize].index();
         let spread =
-            |(id, body): (u32, &motet::contact::BodyGaps)| Spread::new(name(id), &body.gap, &body.warning);
+            |(id, body): (BodyId, &motet::contact::BodyGaps)| Spread::new(name(id), &body.gap, &body.warning);
         let group = |g: motet::contact::Warned| Group {
-            body: name(g.bodies[0]),
-            near: (g.bodies[1] != motet::contact::NONE).then(|| name(g.bodies[1])),
+            body: name(g.bodies.0),
+            near: g.bodies.1.get().map(name),
             vertices: g.n_vertices,
             gap: g.gap.is_finite().then_some(g.gap),
-            point: g.vertex.index() - frame.sources[g.bodies[0] as usize].first_point,
+            point: g.vertex.index() - frame.sources[g.bodies.0.index()].first_point,
             place: g.place,
         };
         let first = ahead.and_then(|ahead| ahead.first).map(|f| First {
@@ -216,7 +217,7 @@ impl Step {
             file,
             least: least.is_finite().then_some(least),
             warning: gaps.is_warned(),
-            gaps: (0..).zip(&gaps.bodies).map(spread).collect(),
+            gaps: (0..).map(BodyId).zip(&gaps.bodies).map(spread).collect(),
             pairs: gaps.pairs.iter().map(|pair| Pair::new(pair, &name, &cell)).collect(),
             warned: contact.warned(gaps).into_iter().map(group).collect(),
             first_contact: first,
@@ -255,7 +256,7 @@ impl Spread {
 }
 
 impl Pair {
-    fn new(pair: &PairGap, name: &impl Fn(u32) -> String, cell: &impl Fn(u32, u32) -> usize) -> Self {
+    fn new(pair: &PairGap, name: &impl Fn(BodyId) -> String, cell: &impl Fn(BodyId, u32) -> usize) -> Self {
         let cells = |triangles: [u32; 2]| [0, 1].map(|i| cell(pair.bodies[i], triangles[i]));
         let feature = |feature| match feature {
             Feature::Vertex(_) => "vertex",

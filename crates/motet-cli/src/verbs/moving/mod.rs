@@ -57,7 +57,7 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     let meter = console.meter("setting up the motion", None);
     let threads = threads.watched(meter.watch());
     if args.method == Method::Auto {
-        report.choice = Some(choose(args, (&mesh, &boundary, &patches), &mut options, &threads, console)?);
+        report.choice = Some(choose(args, &mesh, &boundary, &patches, &mut options, &threads, console)?);
     }
     let setup = Instant::now();
     let mut mover = Mover::new(&mesh, &options, &threads).map_err(|e| e.in_file(&args.mesh))?;
@@ -106,7 +106,9 @@ fn options(
 /// Chooses a method by trying all steps, and puts it into the options.
 fn choose(
     args: &MoveArgs,
-    (mesh, boundary, patches): (&Mesh, &Boundary, &Patches<'_>),
+    mesh: &Mesh,
+    boundary: &Boundary,
+    patches: &Patches<'_>,
     options: &mut Options,
     threads: &Threads,
     console: &Console,
@@ -187,11 +189,12 @@ fn frames(
     let meter = console.meter("moving", Some(n - plan.first_frame));
     let threads = threads.watched(meter.watch());
     let mut points = mover.reference().to_vec();
-    let mut before = (plan.times.first().copied().unwrap_or_default(), points.clone());
+    let mut before =
+        Position { time: plan.times.first().copied().unwrap_or_default(), points: points.clone() };
     for k in plan.first_frame..n {
         let displacements = plan.displacements(k)?;
         let certificate = mover.advance(&displacements, &mut points, &threads)?;
-        let time = before.0 + (plan.times[k] - before.0) * certificate.fraction;
+        let time = before.time + (plan.times[k] - before.time) * certificate.fraction;
         let is_last = k + 1 == n || !certificate.complete;
         let velocity = if plan.timed { Some(velocity(&before, time, &points)?) } else { None };
         let writing = Instant::now();
@@ -203,7 +206,7 @@ fn frames(
         report.seconds.moving += certificate.seconds.total;
         report.step(Step { step: k, time, file, certificate: certificate.clone() });
         report.measure_openings(&points);
-        before = (time, points.clone());
+        before = Position { time, points: points.clone() };
         meter.step();
         if !certificate.complete {
             return Ok(());
@@ -214,10 +217,16 @@ fn frames(
     Ok(())
 }
 
+/// Where the points of a mesh are at one time.
+struct Position {
+    time: f64,
+    points: Vec<Point>,
+}
+
 /// The velocities by backward difference; zero in the first frame, which has no predecessor.
-fn velocity(before: &(f64, Vec<Point>), time: f64, points: &[Point]) -> motet::Result<Vec<Point>> {
-    if time > before.0 {
-        mesh_velocity(&before.1, points, time - before.0)
+fn velocity(before: &Position, time: f64, points: &[Point]) -> motet::Result<Vec<Point>> {
+    if time > before.time {
+        mesh_velocity(&before.points, points, time - before.time)
     } else {
         Ok(vec![[0.0; 3]; points.len()])
     }

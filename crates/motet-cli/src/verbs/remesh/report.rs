@@ -121,7 +121,7 @@ impl Report {
         fields: Vec<FieldLedger>,
     ) -> Self {
         let left = |left: &remesh::Left| Left {
-            cell: left.tet,
+            cell: left.tet.0,
             eas: left.eas,
             place: left.place,
             defect: left.defect,
@@ -366,7 +366,7 @@ impl State {
             layers: state.layers,
             types: json!({ "I": i, "II": ii, "III": iii, "IV": iv, "other": other }),
             inverted: state.inverted,
-            worst_eas: state.worst.map(|w| Worst { value: w.eas, cell: w.tet, place: w.place }),
+            worst_eas: state.worst.map(|w| Worst { value: w.eas, cell: w.tet.0, place: w.place }),
             quality: Qualities::of_mesh(mesh, threads),
         }
     }

@@ -3,9 +3,10 @@
 use super::super::Side;
 use super::measure::{Pair, Part, nearest};
 use super::side::starts_on;
-use super::sites::NO_SITE;
+use super::simplices::Simplex;
+use super::sites::{BodyVertex, SiteId};
 use super::{Between, Least, VertexPair};
-use crate::base::{Id, Point, Threads, VertexId};
+use crate::base::{BodyId, MaybeId, Point, Threads, VertexId};
 use crate::geometry::distance::point_triangle;
 use crate::geometry::vector::{distance, sub};
 
@@ -14,7 +15,7 @@ use crate::geometry::vector::{distance, sub};
 struct Gap {
     distance: f64,
     end: Point,
-    body: u32,
+    body: BodyId,
     vertex: VertexId,
 }
 
@@ -35,16 +36,17 @@ impl Between {
         let gaps = threads.map(n_vertices, |i| self.vertex(self.sites.vertices[i], &measured, points));
         (self.least, self.nearest_vertices) = (None, None);
         for (tet, Measured { least, nearest_vertices: pair, .. }) in self.tets.iter_mut().zip(measured) {
-            (tet.bodies, tet.distance) = least.map_or(([0; 2], f64::INFINITY), |l| (l.bodies, l.distance));
+            (tet.bodies, tet.distance) =
+                least.map_or(([BodyId(0); 2], f64::INFINITY), |l| (l.bodies, l.distance));
             keep_nearer(&mut self.least, least, |l| l.distance);
             keep_nearer(&mut self.nearest_vertices, pair, |p| p.distance);
         }
         self.gap = vec![f64::INFINITY; points.len()];
-        self.closest = vec![VertexId::NONE; points.len()];
-        for (&(body, v, _), gap) in self.sites.vertices.iter().zip(gaps) {
+        self.closest = vec![MaybeId::NONE; points.len()];
+        for (&BodyVertex { body, vertex: v, .. }, gap) in self.sites.vertices.iter().zip(gaps) {
             let Some(gap) = gap else { continue };
             if gap.distance < self.gap[v.index()] {
-                (self.gap[v.index()], self.closest[v.index()]) = (gap.distance, gap.vertex);
+                (self.gap[v.index()], self.closest[v.index()]) = (gap.distance, gap.vertex.into());
             }
             // Nearer than in all tets if the triangles around were measured, too, or if there is no tet.
             let turn = usize::from(body > gap.body);
@@ -62,7 +64,7 @@ impl Between {
         }
     }
 
-    fn tet(&self, tet: [u32; 4], points: &[Point]) -> Measured {
+    fn tet(&self, tet: Simplex, points: &[Point]) -> Measured {
         let parts = self.parts(tet, points);
         let (mut least, mut bound, mut nearest_vertices) = (None, f64::INFINITY, None);
         for (i, b) in parts.iter().enumerate() {
@@ -75,9 +77,9 @@ impl Between {
                     let found = Least { distance: pair.distance_squared.sqrt(), bodies, points: ends };
                     keep_nearer(&mut least, Some(found), |l| l.distance);
                 }
-                for v in a.has() {
-                    for w in b.has() {
-                        let vertices = [a.vertices[v], b.vertices[w]];
+                for v in a.own_vertices() {
+                    for w in b.own_vertices() {
+                        let vertices = [v, w];
                         let [p, q] = vertices.map(|v| points[v.index()]);
                         let found = VertexPair { distance: distance(p, q), bodies, vertices };
                         keep_nearer(&mut nearest_vertices, Some(found), |p| p.distance);
@@ -89,32 +91,29 @@ impl Between {
     }
 
     /// The gap of a vertex of a body; `None` if no other body is near it.
-    fn vertex(
-        &self,
-        (body, v, site): (u32, VertexId, u32),
-        measured: &[Measured],
-        points: &[Point],
-    ) -> Option<Gap> {
-        let first = self.sites.vertex(site, body);
+    fn vertex(&self, of: BodyVertex, measured: &[Measured], points: &[Point]) -> Option<Gap> {
+        let BodyVertex { body, site, .. } = of;
+        let first = self.sites.vertex(site.into(), body)?;
         let mut best = None;
-        for &(body, vertex) in self.sites.owners(site).iter().filter(|owner| owner.0 != body) {
-            let end = points[vertex.index()];
-            let found = Gap { distance: distance(points[first.index()], end), end, body, vertex };
+        for owner in self.sites.owners(site.into()).iter().filter(|owner| owner.body != body) {
+            let end = points[owner.vertex.index()];
+            let apart = distance(points[first.index()], end);
+            let found = Gap { distance: apart, end, body: owner.body, vertex: owner.vertex };
             keep_nearer(&mut best, Some(found), |gap| gap.distance);
         }
-        let mut others: Vec<(u32, u32)> = Vec::new();
-        for &t in self.at_site.list(site as usize) {
+        let mut others: Vec<(BodyId, SiteId)> = Vec::new();
+        for &t in self.at_site.list(site.index()) {
             let is_far = best.is_some_and(|best: Gap| measured[t as usize].bound >= best.distance);
             if is_far && !self.stars {
                 continue;
             }
             let tet = self.simplices[t as usize];
-            let place = tet.iter().position(|&s| s == site).unwrap_or(0);
+            let place = tet.iter().position(|&s| s == site.into()).unwrap_or(0);
             let own = Part::new(tet, body, &self.sites, points).vertex(place);
             for other in self.parts(tet, points).iter().filter(|part| part.body != body) {
                 self.offer(&own, other, &nearest(&own, other, &self.sites), points, &mut best);
                 if self.stars {
-                    others.extend(other.has().map(|i| (other.body, other.sites[i])));
+                    others.extend(other.own_sites().map(|site| (other.body, site)));
                 }
             }
         }
@@ -126,24 +125,32 @@ impl Between {
         // Vertices of one body at one place are measured once; if they have moved apart, this remains a
         // bound.
         best.map(|gap| Gap {
-            distance: gap.distance + distance(points[v.index()], points[first.index()]),
+            distance: gap.distance + distance(points[of.vertex.index()], points[first.index()]),
             ..gap
         })
     }
 
     /// Measures a vertex against all triangles around these sites of other bodies.
-    fn stars(&self, body: u32, site: u32, others: &[(u32, u32)], points: &[Point], best: &mut Option<Gap>) {
-        let around = |&(body, s): &(u32, u32)| self.sites.star(body, s).map(move |t| (t, body));
-        let mut triangles: Vec<(usize, u32)> = others.iter().flat_map(around).collect();
+    fn stars(
+        &self,
+        body: BodyId,
+        site: SiteId,
+        others: &[(BodyId, SiteId)],
+        points: &[Point],
+        best: &mut Option<Gap>,
+    ) {
+        let around = |&(body, s): &(BodyId, SiteId)| self.sites.star(body, s).map(move |t| (t, body));
+        let mut triangles: Vec<(usize, BodyId)> = others.iter().flat_map(around).collect();
         triangles.sort_unstable();
         triangles.dedup();
-        let own = Part::new([site, NO_SITE, NO_SITE, NO_SITE], body, &self.sites, points);
+        let none = MaybeId::NONE;
+        let own = Part::new([site.into(), none, none, none], body, &self.sites, points);
         let from = own.at(&[1.0, 0.0, 0.0, 0.0]);
         for (t, body) in triangles {
             let closest = point_triangle::closest(from, self.sites.corners[t].map(|v| points[v.index()]));
             if best.is_none_or(|best| closest.distance() < best.distance) {
                 let [a, b, c] = self.sites.triangles[t];
-                let other = Part::new([a, b, c, NO_SITE], body, &self.sites, points);
+                let other = Part::new([a.into(), b.into(), c.into(), none], body, &self.sites, points);
                 self.offer(&own, &other, &nearest(&own, &other, &self.sites), points, best);
             }
         }
@@ -151,18 +158,20 @@ impl Between {
 
     fn offer(&self, own: &Part, other: &Part, pair: &Pair, points: &[Point], best: &mut Option<Gap>) {
         let distance = pair.distance_squared.sqrt();
-        if best.is_none_or(|best| distance < best.distance) && self.counts(own, other, pair, points) {
-            let heaviest = (1..4).fold(0, |m, i| if pair.on_b[i] > pair.on_b[m] { i } else { m });
-            let (body, vertex) = (other.body, other.vertices[heaviest]);
+        if best.is_none_or(|best| distance < best.distance)
+            && self.counts(own, other, pair, points)
+            && let Some(vertex) = other.heaviest(&pair.on_b)
+        {
+            let body = other.body;
             *best = Some(Gap { distance, end: other.at(&pair.on_b), body, vertex });
         }
     }
 
     /// The part that each body has of a tet, in the order of the bodies.
-    fn parts(&self, tet: [u32; 4], points: &[Point]) -> Vec<Part> {
-        let mut bodies: Vec<u32> = Vec::with_capacity(4);
+    fn parts(&self, tet: Simplex, points: &[Point]) -> Vec<Part> {
+        let mut bodies: Vec<BodyId> = Vec::with_capacity(4);
         for site in tet {
-            bodies.extend(self.sites.owners(site).iter().map(|owner| owner.0));
+            bodies.extend(self.sites.owners(site).iter().map(|owner| owner.body));
         }
         bodies.sort_unstable();
         bodies.dedup();
@@ -171,7 +180,7 @@ impl Between {
 
     /// Whether the line between two points is on the side that counts, at both ends.
     fn counts(&self, a: &Part, b: &Part, pair: &Pair, points: &[Point]) -> bool {
-        let [on_a, on_b] = [a, b].map(|part| self.sides[part.body as usize]);
+        let [on_a, on_b] = [a, b].map(|part| self.sides[part.body.index()]);
         if [on_a, on_b] == [Side::Both; 2] {
             return true;
         }

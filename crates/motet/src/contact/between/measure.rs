@@ -1,17 +1,18 @@
 //! How near two bodies come within one tet, by those of its features that really are on their surfaces.
 
-use super::sites::{NO_SITE, Sites};
-use crate::base::{Id, Point, VertexId};
+use super::simplices::Simplex;
+use super::sites::{SiteId, Sites};
+use crate::base::{BodyId, MaybeId, Point, VertexId};
 use crate::geometry::distance::{Closest, point_segment, point_triangle, segment_segment};
 use crate::geometry::vector::{add, dot, scale, sub};
 
 /// The part that one body has of a tet: its vertices there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
-    pub(super) body: u32,
-    /// The sites of the tet; [`NO_SITE`] where this body has no vertex.
-    pub(super) sites: [u32; 4],
-    pub(super) vertices: [VertexId; 4],
+    pub(super) body: BodyId,
+    /// The sites of the tet; none where this body has no vertex.
+    pub(super) sites: Simplex,
+    vertices: [MaybeId<VertexId>; 4],
     points: [Point; 4],
 }
 
@@ -28,15 +29,14 @@ const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
 
 impl Part {
     /// The part that `body` has of a tet.
-    pub(super) fn new(tet: [u32; 4], body: u32, sites: &Sites, points: &[Point]) -> Self {
-        let vertices = tet.map(|s| sites.vertex(s, body));
+    pub(super) fn new(tet: Simplex, body: BodyId, sites: &Sites, points: &[Point]) -> Self {
+        let vertices: [MaybeId<VertexId>; 4] = tet.map(|s| sites.vertex(s, body).into());
         let mut own = tet;
         let mut places = [[0.0; 3]; 4];
         for i in 0..4 {
-            if vertices[i] == VertexId::NONE {
-                own[i] = NO_SITE;
-            } else {
-                places[i] = points[vertices[i].index()];
+            match vertices[i].get() {
+                None => own[i] = MaybeId::NONE,
+                Some(v) => places[i] = points[v.index()],
             }
         }
         Self { body, sites: own, vertices, points: places }
@@ -45,7 +45,7 @@ impl Part {
     /// The part with only the vertex at this place.
     pub(super) fn vertex(mut self, i: usize) -> Self {
         for k in (0..4).filter(|&k| k != i) {
-            self.sites[k] = NO_SITE;
+            self.sites[k] = MaybeId::NONE;
         }
         self
     }
@@ -59,7 +59,23 @@ impl Part {
 
     /// The places at which this body has a vertex.
     pub(super) fn has(&self) -> impl Iterator<Item = usize> + Clone + '_ {
-        (0..4).filter(|&i| self.sites[i] != NO_SITE)
+        (0..4).filter(|&i| self.sites[i].is_some())
+    }
+
+    /// The vertices of this body.
+    pub(super) fn own_vertices(&self) -> impl Iterator<Item = VertexId> + Clone + '_ {
+        self.has().filter_map(|i| self.vertices[i].get())
+    }
+
+    /// The sites of this body.
+    pub(super) fn own_sites(&self) -> impl Iterator<Item = SiteId> + Clone + '_ {
+        self.sites.into_iter().filter_map(MaybeId::get)
+    }
+
+    /// The vertex of the largest weight, the first of those equally large.
+    pub(super) fn heaviest(&self, weights: &[f64; 4]) -> Option<VertexId> {
+        let heaviest = (1..4).fold(0, |m, i| if weights[i] > weights[m] { i } else { m });
+        self.vertices[heaviest].get()
     }
 
     fn is_vertex(&self) -> bool {
@@ -74,7 +90,8 @@ impl Part {
     ) -> impl Iterator<Item = [usize; N]> + 'a {
         let own = move |places: &&[usize; N]| {
             let own = places.map(|i| self.sites[i]);
-            !own.contains(&NO_SITE) && sites.is_real(self.body, &own)
+            own.iter().all(|site| site.is_some())
+                && sites.is_real(self.body, &own.map(|site| site.get().unwrap_or_default()))
         };
         all.iter().filter(own).copied()
     }

@@ -35,8 +35,9 @@ mod sites;
 
 use super::input::check_finite;
 use super::side::Side;
-use crate::base::{Csr, Error, Id, Point, Result, Threads, VertexId};
-use sites::{NO_SITE, Sites};
+use crate::base::{BodyId, Csr, Error, MaybeId, Point, Result, Threads, VertexId};
+use simplices::Simplex;
+use sites::{SiteId, Sites};
 
 /// The kind of a tet, by the bodies that its vertices belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
@@ -63,15 +64,23 @@ pub enum GapKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GapTet {
     /// The vertices, those of the body with most of them first: the two edges of a two-two, or the facet and
-    /// the lone vertex of a three-one; not oriented. In a [`GapKind::Flat`] one the last is [`Id::NONE`], or
-    /// the last two are.
-    pub vertices: [VertexId; 4],
+    /// the lone vertex of a three-one; not oriented. In a [`GapKind::Flat`] one the last is none, or the last
+    /// two are.
+    pub vertices: [MaybeId<VertexId>; 4],
     /// Which vertices of the tet belong to which bodies.
     pub kind: GapKind,
     /// The two bodies that come nearest in it, the smaller first.
-    pub bodies: [u32; 2],
+    pub bodies: [BodyId; 2],
     /// How near they come in it; infinite if the line from one to the other is on a side that does not count.
     pub distance: f64,
+}
+
+impl GapTet {
+    /// All four vertices; `None` for a [flat](GapKind::Flat) one.
+    pub fn corners(&self) -> Option<[VertexId; 4]> {
+        let [a, b, c, d] = self.vertices.map(MaybeId::get);
+        Some([a?, b?, c?, d?])
+    }
 }
 
 /// Where two bodies come nearest.
@@ -80,7 +89,7 @@ pub struct Least {
     /// Their distance.
     pub distance: f64,
     /// The bodies, the smaller first.
-    pub bodies: [u32; 2],
+    pub bodies: [BodyId; 2],
     /// The point on each.
     pub points: [Point; 2],
 }
@@ -91,7 +100,7 @@ pub struct VertexPair {
     /// Their distance.
     pub distance: f64,
     /// The bodies, the smaller first.
-    pub bodies: [u32; 2],
+    pub bodies: [BodyId; 2],
     /// The vertex of each.
     pub vertices: [VertexId; 2],
 }
@@ -117,9 +126,9 @@ pub struct Between {
     /// For each point, its distance from the features of other bodies that share a tet with it: an upper
     /// bound of its distance to these bodies; infinite if there are none, and for points that no body uses.
     pub gap: Vec<f64>,
-    /// For each point, the vertex of another body that is nearest to where its gap ends; [`Id::NONE`] if the
-    /// gap is infinite.
-    pub closest: Vec<VertexId>,
+    /// For each point, the vertex of another body that is nearest to where its gap ends; none if the gap
+    /// is infinite.
+    pub closest: Vec<MaybeId<VertexId>>,
     /// Where two bodies come nearest, over all tets: an upper bound; `None` if no tet spans a gap.
     pub least: Option<Least>,
     /// The nearest two vertices of different bodies, regardless of the sides: exact after [`Between::new`].
@@ -130,7 +139,7 @@ pub struct Between {
     stars: bool,
     sites: Sites,
     /// The gap tets as sites, and the gap tets at each site.
-    simplices: Vec<[u32; 4]>,
+    simplices: Vec<Simplex>,
     at_site: Csr<u32>,
 }
 
@@ -156,20 +165,22 @@ impl Between {
         let classified = threads.map(found.tets.len(), |t| simplices::classified(found.tets[t], &sites));
         let spans = |kind: GapKind| kind != GapKind::Four;
         let n_tets = classified.len();
-        let (kinds, simplices): (Vec<GapKind>, Vec<[u32; 4]>) =
+        let (kinds, simplices): (Vec<GapKind>, Vec<Simplex>) =
             classified.into_iter().filter(|(kind, _)| spans(*kind)).unzip();
-        let vertex = |site: u32| sites.owners(site).first().map_or(VertexId::NONE, |owner| owner.1);
-        let unmeasured = |(kind, tet): (&GapKind, &[u32; 4])| GapTet {
+        let vertex = |site: MaybeId<SiteId>| -> MaybeId<VertexId> {
+            sites.owners(site).first().map(|owner| owner.vertex).into()
+        };
+        let unmeasured = |(kind, tet): (&GapKind, &Simplex)| GapTet {
             vertices: tet.map(vertex),
             kind: *kind,
-            bodies: [0; 2],
+            bodies: [BodyId(0); 2],
             distance: f64::INFINITY,
         };
         let sides = (0..bodies.len()).map(|b| options.sides.get(b).copied().unwrap_or_default());
         let at_site = Csr::from_pairs(used.len(), || {
             (0..)
                 .zip(&simplices)
-                .flat_map(|(t, tet)| tet.iter().filter(|&&s| s != NO_SITE).map(move |&s| (s as usize, t)))
+                .flat_map(|(t, tet)| tet.iter().filter_map(|s| s.get()).map(move |s| (s.index(), t)))
         });
         let mut between = Self {
             tets: kinds.iter().zip(&simplices).map(unmeasured).collect(),
@@ -201,7 +212,7 @@ impl Between {
             return Err(Error::input(format!("got {has} points, but {had} were triangulated"))
                 .remedy("build a new measurement for surfaces with other vertices"));
         }
-        check_finite("the bodies", self.sites.vertices.iter().map(|(_, v, _)| *v), points)?;
+        check_finite("the bodies", self.sites.vertices.iter().map(|of| of.vertex), points)?;
         self.measure(points, threads);
         Ok(())
     }

@@ -32,13 +32,14 @@ pub fn three_one(facet: [Point; 3], lone: Point) -> f64 {
 /// The paper's distance in a gap tet, which takes every edge and facet of the tet for one of the surfaces;
 /// `None` for kinds of tets that the paper does not treat.
 pub fn within(tet: &GapTet, points: &[Point]) -> Option<f64> {
+    let corners = tet.corners()?.map(|v| points[v.index()]);
     match tet.kind {
         GapKind::TwoTwo => {
-            let [p, q, r, s] = tet.vertices.map(|v| points[v.index()]);
+            let [p, q, r, s] = corners;
             Some(two_two([p, q], [r, s]))
         }
         GapKind::ThreeOne => {
-            let [p, q, r, lone] = tet.vertices.map(|v| points[v.index()]);
+            let [p, q, r, lone] = corners;
             Some(three_one([p, q, r], lone))
         }
         _ => None,

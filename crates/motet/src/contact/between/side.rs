@@ -2,8 +2,8 @@
 
 use super::super::Side;
 use super::measure::Part;
-use super::sites::{NO_SITE, Sites};
-use crate::base::Point;
+use super::sites::{SiteId, Sites};
+use crate::base::{BodyId, Point};
 use crate::geometry::distance::{Feature, point_segment, point_triangle};
 use crate::geometry::triangle::{area_vector, normal_where_they_meet};
 use crate::geometry::vector::{dot, norm, scale, sub};
@@ -26,7 +26,8 @@ pub(super) fn starts_on(
     if side == Side::Both {
         return true;
     }
-    let feature: Vec<u32> = (0..4).filter(|&i| on[i] != 0.0).map(|i| part.sites[i]).collect();
+    let held = (0..4).filter(|&i| on[i] != 0.0);
+    let feature: Vec<SiteId> = held.filter_map(|i| part.sites[i].get()).collect();
     let from = part.at(on);
     let star = Star::new(part.body, &feature, from, sites, points);
     let length = norm(along);
@@ -44,13 +45,13 @@ pub(super) fn starts_on(
 /// The triangles around a point of a surface, relative to it.
 struct Star {
     triangles: Vec<[Point; 3]>,
-    sites: Vec<[u32; 3]>,
+    sites: Vec<[SiteId; 3]>,
     /// The distance of the nearest edge that the point is not on.
     reach: f64,
 }
 
 impl Star {
-    fn new(body: u32, feature: &[u32], from: Point, sites: &Sites, points: &[Point]) -> Self {
+    fn new(body: BodyId, feature: &[SiteId], from: Point, sites: &Sites, points: &[Point]) -> Self {
         let mut star = Self { triangles: Vec::new(), sites: Vec::new(), reach: f64::INFINITY };
         for t in sites.star_of(body, feature) {
             let corners = sites.corners[t].map(|v| sub(points[v.index()], from));
@@ -83,8 +84,8 @@ impl Star {
         };
         let around = self.sites.iter().zip(&self.triangles);
         let around = around.filter(|(ids, _)| own.iter().all(|s| ids.contains(s)));
-        let corner = |ids: &[u32; 3]| match own.as_slice() {
-            &[one] => ids.iter().position(|&s| s == one && s != NO_SITE),
+        let corner = |ids: &[SiteId; 3]| match own.as_slice() {
+            &[one] => ids.iter().position(|&s| s == one),
             _ => None,
         };
         let sum = normal_where_they_meet(around.map(|(ids, t)| (*t, corner(ids))));

@@ -1,23 +1,26 @@
 //! The Delaunay tets of all vertices, and which of them span a gap.
 
 use super::GapKind;
-use super::sites::{NO_SITE, Sites};
-use crate::base::{Point, Result, Threads, VertexId};
+use super::sites::{Duplicate, SiteId, Sites};
+use crate::base::{BodyId, MaybeId, Point, Result, Threads, VertexId};
 use crate::delaunay::Triangulation;
 use crate::geometry::vector::{add, scale, sub};
 
-/// Tets as indices into a list of points, and pairs of indices `(duplicate, kept)` of points that coincide.
+/// The sites of a tet; none in the last places of a triangle, a segment or a vertex.
+pub(super) type Simplex = [MaybeId<SiteId>; 4];
+
+/// Tets over a list of points, and the points that coincide.
 pub(super) struct Simplices {
-    pub(super) tets: Vec<[u32; 4]>,
-    pub(super) duplicates: Vec<(u32, u32)>,
+    pub(super) tets: Vec<Simplex>,
+    pub(super) duplicates: Vec<Duplicate>,
 }
 
-/// The Delaunay tets of any finite points. Points in one plane give triangles instead, with [`NO_SITE`] in
-/// the last place; points on one line give segments, with two of it; points at one place give nothing but
-/// duplicates.
+/// The Delaunay tets of any finite points. Points in one plane give triangles instead, points on one line
+/// segments, and points at one place nothing but duplicates.
 pub(super) fn simplices(points: &[Point], threads: &Threads) -> Result<Simplices> {
     if points.iter().all(|p| *p == points[0]) {
-        let duplicates = (1..points.len() as u32).map(|i| (i, 0)).collect();
+        let of_first = |i: u32| Duplicate { duplicate: SiteId(i), kept: SiteId(0) };
+        let duplicates = (1..points.len() as u32).map(of_first).collect();
         return Ok(Simplices { tets: Vec::new(), duplicates });
     }
     match Triangulation::new(points, threads) {
@@ -29,7 +32,7 @@ pub(super) fn simplices(points: &[Point], threads: &Threads) -> Result<Simplices
             more.extend(corners_around(points));
             let mut flat = taken(&Triangulation::new(&more, threads)?, points.len());
             flat.tets.iter_mut().for_each(|tet| tet.sort_unstable());
-            flat.tets.retain(|tet| tet[1] != NO_SITE);
+            flat.tets.retain(|tet| tet[1].is_some());
             flat.tets.sort_unstable();
             flat.tets.dedup();
             Ok(flat)
@@ -52,27 +55,32 @@ fn corners_around(points: &[Point]) -> [Point; 8] {
     })
 }
 
-/// Tets and duplicates below `n`; vertices from `n` on become [`NO_SITE`].
+/// Tets and duplicates below `n`; vertices from `n` on are none.
 fn taken(delaunay: &Triangulation, n: usize) -> Simplices {
-    let place = |v: &VertexId| if v.index() < n { v.0 } else { NO_SITE };
+    let place = |v: &VertexId| -> MaybeId<SiteId> { (v.index() < n).then_some(SiteId(v.0)).into() };
     let tets = delaunay.tets().iter().map(|[a, b, c, d]| [place(a), place(b), place(c), place(d)]).collect();
     let own = delaunay.duplicates().iter().filter(|(duplicate, _)| duplicate.index() < n);
-    Simplices { tets, duplicates: own.map(|(duplicate, kept)| (duplicate.0, kept.0)).collect() }
+    let pair = |&(duplicate, kept): &(VertexId, VertexId)| Duplicate {
+        duplicate: SiteId(duplicate.0),
+        kept: SiteId(kept.0),
+    };
+    Simplices { tets, duplicates: own.map(pair).collect() }
 }
 
 /// The kind of a tet, by the bodies its vertices belong to, and its sites in the order that [`super::GapTet`]
 /// promises.
-pub(super) fn classified(tet: [u32; 4], sites: &Sites) -> (GapKind, [u32; 4]) {
+pub(super) fn classified(tet: Simplex, sites: &Sites) -> (GapKind, Simplex) {
     let mut ordered = tet;
     if tet.iter().any(|&s| sites.owners(s).len() > 1) {
         return (GapKind::Touching, ordered);
     }
-    let body = |s: u32| sites.owners(s).first().map_or(u32::MAX, |owner| owner.0);
-    let alike = |s: u32| tet.iter().filter(|&&other| body(other) == body(s)).count();
+    let body =
+        |s: MaybeId<SiteId>| -> MaybeId<BodyId> { sites.owners(s).first().map(|owner| owner.body).into() };
+    let alike = |s: MaybeId<SiteId>| tet.iter().filter(|&&other| body(other) == body(s)).count();
     // The larger share first, then the smaller body; missing vertices last.
-    ordered.sort_by_key(|&s| (s == NO_SITE, 4 - alike(s), body(s)));
+    ordered.sort_by_key(|&s| (s.is_none(), 4 - alike(s), body(s)));
     let of = ordered.map(body);
-    let real = ordered.iter().filter(|&&s| s != NO_SITE).count();
+    let real = ordered.iter().filter(|s| s.is_some()).count();
     let n_bodies = 1 + (1..real).filter(|&i| of[i] != of[i - 1]).count();
     let kind = match (real, n_bodies, alike(ordered[0])) {
         (_, 1, _) => GapKind::Four,

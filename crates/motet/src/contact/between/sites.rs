@@ -2,10 +2,28 @@
 //! there.
 
 use super::super::input::vertices_of;
-use crate::base::{Csr, Error, Id, Point, Result, VertexId};
+use crate::base::{BodyId, Csr, Error, MaybeId, Point, Result, VertexId, id};
 
-/// Stands for no site.
-pub(super) const NO_SITE: u32 = u32::MAX;
+id!(
+    /// A place at which bodies have vertices.
+    pub(super) SiteId
+);
+
+/// A body that has a vertex at a site.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Owner {
+    pub(super) body: BodyId,
+    /// The first vertex of the body there.
+    pub(super) vertex: VertexId,
+}
+
+/// A vertex of a body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BodyVertex {
+    pub(super) body: BodyId,
+    pub(super) vertex: VertexId,
+    pub(super) site: SiteId,
+}
 
 /// Vertices at the same place are one site, with an owner for each body that has a vertex there.
 ///
@@ -13,12 +31,12 @@ pub(super) const NO_SITE: u32 = u32::MAX;
 /// two owners.
 #[derive(Clone, Debug)]
 pub(super) struct Sites {
-    /// The owners of each site in the order of bodies, each with its first vertex there.
-    pub(super) owners: Csr<(u32, VertexId)>,
-    /// Every vertex that a triangle uses, with its body and site; in the order of bodies, then of ids.
-    pub(super) vertices: Vec<(u32, VertexId, u32)>,
+    /// The owners of each site in the order of bodies.
+    pub(super) owners: Csr<Owner>,
+    /// Every vertex that a triangle uses, in the order of bodies, then of ids.
+    pub(super) vertices: Vec<BodyVertex>,
     /// The triangles of all bodies, one body after the other, as sites.
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) triangles: Vec<[SiteId; 3]>,
     /// The triangles of all bodies as vertices, in the same order.
     pub(super) corners: Vec<[VertexId; 3]>,
     /// Where the triangles of each body end.
@@ -40,41 +58,52 @@ pub(super) fn used_vertices(points: &[Point], bodies: &[Vec<[VertexId; 3]>]) -> 
     Ok((0..used.len()).filter(|&v| used[v]).map(VertexId::new).collect())
 }
 
+/// A point that coincides with another one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Duplicate {
+    pub(super) duplicate: SiteId,
+    /// The point that stands for both.
+    pub(super) kept: SiteId,
+}
+
 impl Sites {
-    /// `duplicates` are pairs `(duplicate, kept)` of indices into `used`; a site is the index of a kept one.
+    /// A site is the index of a vertex in `used` that is kept.
     pub(super) fn new(
         n_points: usize,
         used: &[VertexId],
-        duplicates: &[(u32, u32)],
+        duplicates: &[Duplicate],
         bodies: &[Vec<[VertexId; 3]>],
     ) -> Self {
-        let mut of_vertex = vec![NO_SITE; n_points];
-        used.iter().zip(0..).for_each(|(v, site)| of_vertex[v.index()] = site);
-        for &(duplicate, kept) in duplicates {
-            of_vertex[used[duplicate as usize].index()] = kept;
+        let mut of_vertex = vec![SiteId::default(); n_points];
+        used.iter().zip(0..).for_each(|(v, site)| of_vertex[v.index()] = SiteId(site));
+        for &Duplicate { duplicate, kept } in duplicates {
+            of_vertex[used[duplicate.index()].index()] = kept;
         }
         let corners: Vec<[VertexId; 3]> = bodies.concat();
-        let triangles: Vec<[u32; 3]> = corners.iter().map(|t| t.map(|v| of_vertex[v.index()])).collect();
+        let triangles: Vec<[SiteId; 3]> = corners.iter().map(|t| t.map(|v| of_vertex[v.index()])).collect();
         let mut vertices = Vec::with_capacity(used.len());
         let mut ends = Vec::with_capacity(bodies.len());
-        for (body, triangles) in (0..).zip(bodies) {
+        for (body, triangles) in (0..).map(BodyId).zip(bodies) {
             let mut own: Vec<VertexId> = triangles.as_flattened().to_vec();
             own.sort_unstable();
             own.dedup();
-            vertices.extend(own.into_iter().map(|v| (body, v, of_vertex[v.index()])));
+            let of = |vertex: VertexId| BodyVertex { body, vertex, site: of_vertex[vertex.index()] };
+            vertices.extend(own.into_iter().map(of));
             ends.push(ends.last().copied().unwrap_or(0) + triangles.len() as u32);
         }
         // Of the vertices that a body has at one site, only the first is its owner.
-        let mut last = vec![NO_SITE; used.len()];
-        let is_first = |&(body, _, site): &(u32, VertexId, u32)| {
-            std::mem::replace(&mut last[site as usize], body) != body
+        let mut last: Vec<MaybeId<BodyId>> = vec![MaybeId::NONE; used.len()];
+        let is_first = |of: &BodyVertex| {
+            let body = MaybeId::from(of.body);
+            std::mem::replace(&mut last[of.site.index()], body) != body
         };
-        let first: Vec<(u32, VertexId, u32)> = vertices.iter().copied().filter(is_first).collect();
-        let owners = Csr::from_pairs(used.len(), || first.iter().map(|&(b, v, s)| (s as usize, (b, v))));
+        let first: Vec<BodyVertex> = vertices.iter().copied().filter(is_first).collect();
+        let owner = |of: &BodyVertex| (of.site.index(), Owner { body: of.body, vertex: of.vertex });
+        let owners = Csr::from_pairs(used.len(), || first.iter().map(owner));
         let star = Csr::from_pairs(used.len(), || {
             (0..).zip(&triangles).flat_map(|(t, &[a, b, c])| {
                 let once = [Some(a), (b != a).then_some(b), (c != a && c != b).then_some(c)];
-                once.into_iter().flatten().map(move |site| (site as usize, t))
+                once.into_iter().flatten().map(move |site| (site.index(), t))
             })
         });
         Self { owners, vertices, triangles, corners, ends, star }
@@ -85,20 +114,23 @@ impl Sites {
         self.ends.len()
     }
 
-    /// The owners of a site; none for [`NO_SITE`].
-    pub(super) fn owners(&self, site: u32) -> &[(u32, VertexId)] {
-        if site == NO_SITE { &[] } else { self.owners.list(site as usize) }
+    /// The owners of a site.
+    pub(super) fn owners(&self, site: MaybeId<SiteId>) -> &[Owner] {
+        site.get().map_or(&[][..], |site| self.owners.list(site.index()))
     }
 
-    /// The vertex of a body at a site; [`Id::NONE`] if it has none.
-    pub(super) fn vertex(&self, site: u32, body: u32) -> VertexId {
-        let found = self.owners(site).iter().find(|owner| owner.0 == body);
-        found.map_or(VertexId::NONE, |owner| owner.1)
+    /// The vertex of a body at a site, if it has one there.
+    pub(super) fn vertex(&self, site: MaybeId<SiteId>, body: BodyId) -> Option<VertexId> {
+        self.owners(site).iter().find(|owner| owner.body == body).map(|owner| owner.vertex)
     }
 
     /// The triangles of a body that contain all these sites, at least one.
-    pub(super) fn star_of<'a>(&'a self, body: u32, sites: &'a [u32]) -> impl Iterator<Item = usize> + 'a {
-        let lists = sites.iter().map(|&s| self.star.list(s as usize));
+    pub(super) fn star_of<'a>(
+        &'a self,
+        body: BodyId,
+        sites: &'a [SiteId],
+    ) -> impl Iterator<Item = usize> + 'a {
+        let lists = sites.iter().map(|s| self.star.list(s.index()));
         let shortest = lists.min_by_key(|list| list.len()).unwrap_or(&[]);
         let range = self.of_body(body);
         let holds =
@@ -107,19 +139,19 @@ impl Sites {
     }
 
     /// The triangles of a body at a site.
-    pub(super) fn star(&self, body: u32, site: u32) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn star(&self, body: BodyId, site: SiteId) -> impl Iterator<Item = usize> + '_ {
         let range = self.of_body(body);
-        let list = self.star.list(site as usize).iter().filter(move |t| range.contains(t));
+        let list = self.star.list(site.index()).iter().filter(move |t| range.contains(t));
         list.map(|&t| t as usize)
     }
 
-    fn of_body(&self, body: u32) -> std::ops::Range<u32> {
-        let start = if body == 0 { 0 } else { self.ends[body as usize - 1] };
-        start..self.ends[body as usize]
+    fn of_body(&self, body: BodyId) -> std::ops::Range<u32> {
+        let start = if body.0 == 0 { 0 } else { self.ends[body.index() - 1] };
+        start..self.ends[body.index()]
     }
 
     /// Whether these sites are a vertex, an edge or a triangle of the surface of a body.
-    pub(super) fn is_real(&self, body: u32, sites: &[u32]) -> bool {
+    pub(super) fn is_real(&self, body: BodyId, sites: &[SiteId]) -> bool {
         self.star_of(body, sites).next().is_some()
     }
 }

@@ -242,7 +242,9 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> SweepJob<'a, F> {
 
     /// The first of the pairs with the least time.
     fn first(&self, tree: &MovingTree) -> Option<Touch> {
-        let (i, time) = (0u32..).zip(self.times[0].iter().map(read)).min_by(by_time_last)?;
+        let (i, time) = (0u32..)
+            .zip(self.times[0].iter().map(read))
+            .min_by(|x, y| x.1.total_cmp(&y.1).then(x.0.cmp(&y.0)))?;
         if time == f64::INFINITY {
             return None;
         }
@@ -286,8 +288,4 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> SweepJob<'a, F> {
         let is_sound = corners.iter().chain(&velocities).all(|&p| is_finite(p));
         is_sound.then(|| MovingBox::new(corners, velocities))
     }
-}
-
-fn by_time_last(x: &(u32, f64), y: &(u32, f64)) -> std::cmp::Ordering {
-    x.1.total_cmp(&y.1).then(x.0.cmp(&y.0))
 }

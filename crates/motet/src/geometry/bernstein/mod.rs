@@ -130,7 +130,8 @@ impl Product {
     /// Multiplies coefficients with `times`, and sums the products with `add`, starting from `zero`.
     pub fn of<A: Copy, B: Copy, C: Copy>(
         &self,
-        (a, b): (&[A], &[B]),
+        a: &[A],
+        b: &[B],
         zero: C,
         times: impl Fn(A, B) -> C,
         add: impl Fn(C, C) -> C,
@@ -182,7 +183,7 @@ mod tests {
         };
         let product = Product::new(&a, &b, &c);
         let both =
-            product.of((&monomial(&a, &p), &monomial(&b, &q)), 0.0, |x: f64, y: f64| x * y, |x, y| x + y);
+            product.of(&monomial(&a, &p), &monomial(&b, &q), 0.0, |x: f64, y: f64| x * y, |x, y| x + y);
         let both: Vec<f64> = both.iter().enumerate().map(|(i, x)| x / c.multinomial(i)).collect();
         for at in [[0.25, 0.75, 0.5, 0.5, 0.125, 0.875], [0.0, 1.0, 1.0, 0.0, 0.3, 0.7]] {
             let expected = value(&a, &p, &at) * value(&b, &q, &at);

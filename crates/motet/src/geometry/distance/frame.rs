@@ -54,8 +54,10 @@ pub(super) fn at<const N: usize>(points: &[Point; N], weights: &[f64; N]) -> Poi
 /// The vector from the point with weights `on_a` of `a` to the one with weights `on_b` of `b`.
 #[inline(always)]
 pub(super) fn offset<const A: usize, const B: usize>(
-    (a, on_a): (&[Point; A], &[f64; A]),
-    (b, on_b): (&[Point; B], &[f64; B]),
+    a: &[Point; A],
+    on_a: &[f64; A],
+    b: &[Point; B],
+    on_b: &[f64; B],
 ) -> Point {
     sub(at(b, on_b), at(a, on_a))
 }

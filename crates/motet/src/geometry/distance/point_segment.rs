@@ -9,7 +9,7 @@ use crate::geometry::segment;
 pub fn closest(p: Point, segment: [Point; 2]) -> Closest<1, 2> {
     let (frame, p, segment) = Frame::around([p], segment);
     let on_b = weights(p[0], segment);
-    frame.closest([1.0], on_b, offset((&p, &[1.0]), (&segment, &on_b)))
+    frame.closest([1.0], on_b, offset(&p, &[1.0], &segment, &on_b))
 }
 
 /// Weights of the ends that give the point of the segment closest to `p`, in local coordinates; exactly 0 and

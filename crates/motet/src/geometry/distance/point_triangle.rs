@@ -9,5 +9,5 @@ use crate::geometry::triangle;
 pub fn closest(p: Point, triangle: [Point; 3]) -> Closest<1, 3> {
     let (frame, p, triangle) = Frame::around([p], triangle);
     let on_b = triangle::closest(triangle, p[0]);
-    frame.closest([1.0], on_b, offset((&p, &[1.0]), (&triangle, &on_b)))
+    frame.closest([1.0], on_b, offset(&p, &[1.0], &triangle, &on_b))
 }

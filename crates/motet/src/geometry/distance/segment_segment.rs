@@ -20,7 +20,7 @@ pub fn closest(a: [Point; 2], b: [Point; 2]) -> Closest<2, 2> {
         (point_segment::weights(b[1], a), [0.0, 1.0]),
     ];
     let measured = |(on_a, on_b)| {
-        let offset = offset((&a, &on_a), (&b, &on_b));
+        let offset = offset(&a, &on_a, &b, &on_b);
         (dot(offset, offset), on_a, on_b, offset)
     };
     let mut best = measured(ends[0]);

@@ -121,7 +121,7 @@ impl Search {
 
     #[inline(always)]
     fn offer(&mut self, on_a: [f64; 3], on_b: [f64; 3]) {
-        let offset = offset((&self.a, &on_a), (&self.b, &on_b));
+        let offset = offset(&self.a, &on_a, &self.b, &on_b);
         let distance_squared = dot(offset, offset);
         if distance_squared < self.distance_squared {
             (self.on_a, self.on_b, self.offset, self.distance_squared) =

@@ -51,32 +51,48 @@ pub(crate) fn orient3d_ratios<const N: usize>(tets: [[Point; 4]; N]) -> [f64; N]
     determinants.map(|x| x.ratio_to_power(bits))
 }
 
-/// Decodes `x = mantissa * 2^exponent` with an odd mantissa; zero has the exponent `i32::MAX`.
+/// The number `mantissa * 2^exponent`.
+#[derive(Clone, Copy)]
+struct Dyadic {
+    /// Odd, or zero.
+    mantissa: i64,
+    /// `i32::MAX` for zero.
+    exponent: i32,
+}
+
+impl Dyadic {
+    /// The number as a multiple of `2^unit`, which divides it.
+    fn in_big_units(self, unit: i32) -> Big {
+        Big::shifted(self.mantissa, if self.mantissa == 0 { 0 } else { self.exponent.abs_diff(unit) })
+    }
+}
+
+/// Decodes a finite number.
 #[inline]
-fn decode(x: f64) -> (i64, i32) {
+fn decode(x: f64) -> Dyadic {
     let bits = x.to_bits();
     let biased = ((bits >> 52) & 0x7ff) as i32;
     let fraction = (bits & ((1 << 52) - 1)) as i64;
     let (mantissa, exponent) =
         if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
     if mantissa == 0 {
-        return (0, i32::MAX);
+        return Dyadic { mantissa: 0, exponent: i32::MAX };
     }
     let zeros = mantissa.trailing_zeros();
     let odd = mantissa >> zeros;
-    (if x < 0.0 { -odd } else { odd }, exponent + zeros as i32)
+    Dyadic { mantissa: if x < 0.0 { -odd } else { odd }, exponent: exponent + zeros as i32 }
 }
 
 /// The exponent of the largest power of two of which all coordinates are integer multiples.
 fn common_exponent(points: &[Point]) -> i32 {
-    points.iter().flatten().map(|&x| decode(x).1).min().unwrap_or(0)
+    points.iter().flatten().map(|&x| decode(x).exponent).min().unwrap_or(0)
 }
 
 /// `x` in units of `2^unit`, if that stays below 2^120.
 #[inline]
-fn in_units((mantissa, exponent): (i64, i32), unit: i32) -> Option<i128> {
-    let shift = if mantissa == 0 { 0 } else { exponent - unit };
-    (shift <= 66).then(|| i128::from(mantissa) << shift)
+fn in_units(x: Dyadic, unit: i32) -> Option<i128> {
+    let shift = if x.mantissa == 0 { 0 } else { x.exponent - unit };
+    (shift <= 66).then(|| i128::from(x.mantissa) << shift)
 }
 
 /// The differences from `a` in common units, if all stay below 2^61.
@@ -84,7 +100,7 @@ fn in_units((mantissa, exponent): (i64, i32), unit: i32) -> Option<i128> {
 fn small_rows<const N: usize>(a: Point, others: [Point; N]) -> Option<[Row; N]> {
     let origin = a.map(decode);
     let decoded = others.map(|p| p.map(decode));
-    let unit = decoded.iter().flatten().chain(&origin).map(|&(_, exponent)| exponent).min()?;
+    let unit = decoded.iter().flatten().chain(&origin).map(|x| x.exponent).min()?;
     let mut rows = [[0; 3]; N];
     for i in 0..3 {
         let from = in_units(origin[i], unit)?;
@@ -166,10 +182,8 @@ impl Exact {
         let shares = shares.map(decode);
         // Shares below 1 have exponents below 0, so a unit of the corners is an integer multiple of the
         // result's.
-        let down = shares[0].1.min(shares[1].1).min(0);
-        let shares = shares.map(|(mantissa, exponent)| {
-            Big::shifted(mantissa, if mantissa == 0 { 0 } else { exponent.abs_diff(down) })
-        });
+        let down = shares[0].exponent.min(shares[1].exponent).min(0);
+        let shares = shares.map(|share| share.in_big_units(down));
         let coordinate = |i: usize| {
             let start = in_big_units(from[i], unit);
             let along = |k: usize| in_big_units(to[k][i], unit).minus(&start).times(&shares[k]);
@@ -191,8 +205,7 @@ impl Exact {
 
 /// `x` as a multiple of `2^unit`, which divides it.
 fn in_big_units(x: f64, unit: i32) -> Big {
-    let (mantissa, exponent) = decode(x);
-    Big::shifted(mantissa, if mantissa == 0 { 0 } else { exponent.abs_diff(unit) })
+    decode(x).in_big_units(unit)
 }
 
 /// The exponent of the largest power of two of which all coordinates of the points are known to be multiples.

@@ -229,16 +229,31 @@ mod spots {
         )
     }
 
+    /// A point on a segment or in a triangle of some of the given points, or a given point itself.
+    #[derive(Clone, Debug)]
+    struct Kind {
+        is_between: bool,
+        corners: [usize; 3],
+        shares: [f64; 2],
+    }
+
     /// Which of five points lie on segments or in triangles, between which of the points, and where.
-    fn kinds() -> impl Strategy<Value = Vec<(bool, [usize; 3], f64, f64)>> {
+    fn kinds() -> impl Strategy<Value = Vec<Kind>> {
         let share = prop_oneof![Just(0.5), Just(0.25), 0.01..0.99f64, Just(1e-9), Just(1.0 - 1e-12)];
         let second =
             prop_oneof![Just(0.0), Just(0.5), 0.01..0.99f64, Just(1e-9), -1e-17..1e-17f64, Just(-1e-25)];
-        prop::collection::vec((any::<bool>(), [0..7usize, 0..7usize, 0..7usize], share, second), 5)
+        let kind = (any::<bool>(), [0..7usize, 0..7usize, 0..7usize], share, second);
+        let kind = kind.prop_map(|(is_between, corners, share, second)| Kind {
+            is_between,
+            corners,
+            shares: [share, second * (1.0 - share)],
+        });
+        prop::collection::vec(kind, 5)
     }
 
-    fn between(p: &[Point], &(_, [i, j, k], share, second): &(bool, [usize; 3], f64, f64)) -> Between {
-        Between::within(p[i], [p[j], p[k]], [share, second * (1.0 - share)])
+    fn between(p: &[Point], kind: &Kind) -> Between {
+        let [i, j, k] = kind.corners;
+        Between::within(p[i], [p[j], p[k]], kind.shares)
     }
 
     proptest! {
@@ -246,7 +261,7 @@ mod spots {
         #[test]
         fn signs_of_points_on_segments_and_in_triangles_are_exact(p in points(7), kinds in kinds()) {
             let on: Vec<Between> = kinds.iter().map(|kind| between(&p, kind)).collect();
-            let spot = |k: usize| if kinds[k].0 { Spot::On(&on[k]) } else { Spot::Given(p[k]) };
+            let spot = |k: usize| if kinds[k].is_between { Spot::On(&on[k]) } else { Spot::Given(p[k]) };
             let spots = [spot(0), spot(1), spot(2), spot(3), spot(4)];
             // Differences of numbers near the largest f64 overflow; such points are scaled before they get
             // here.

@@ -1,7 +1,7 @@
 //! Triangles that can be changed: an edge flipped, two vertices merged, a vertex moved.
 
 use super::skin::Skin;
-use crate::base::{Id, Point, VertexId};
+use crate::base::{Point, VertexId};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot, norm, scale, sub, unit};
 
@@ -14,8 +14,9 @@ const MIN_TURN_COSINE: f64 = 0.906;
 /// Triangles over points, and the triangles at each vertex.
 pub(super) struct Sheet {
     pub(super) points: Vec<Point>,
-    /// Removed triangles name no vertex.
-    pub(super) triangles: Vec<[VertexId; 3]>,
+    /// All triangles, removed ones among them.
+    triangles: Vec<[VertexId; 3]>,
+    is_removed: Vec<bool>,
     at_vertex: Vec<Vec<u32>>,
 }
 
@@ -34,11 +35,21 @@ impl Sheet {
         for (t, triangle) in (0..).zip(&skin.triangles) {
             triangle.iter().for_each(|v| at_vertex[v.index()].push(t));
         }
-        Self { points: skin.points.clone(), triangles: skin.triangles.clone(), at_vertex }
+        let (points, triangles) = (skin.points.clone(), skin.triangles.clone());
+        Self { points, is_removed: vec![false; triangles.len()], triangles, at_vertex }
     }
 
     pub(super) fn exists(&self, t: u32) -> bool {
-        self.triangles[t as usize][0] != VertexId::NONE
+        !self.is_removed[t as usize]
+    }
+
+    pub(super) fn triangle(&self, t: u32) -> [VertexId; 3] {
+        self.triangles[t as usize]
+    }
+
+    /// The triangles that exist, by their ids.
+    pub(super) fn existing(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.triangles.len() as u32).filter(|&t| self.exists(t))
     }
 
     pub(super) fn corners(&self, t: u32) -> [Point; 3] {
@@ -145,10 +156,12 @@ impl Sheet {
 
     pub(super) fn commit(&mut self, change: Change) {
         for &t in &change.removed {
-            let triangle = std::mem::replace(&mut self.triangles[t as usize], [Id::NONE; 3]);
+            self.is_removed[t as usize] = true;
+            let triangle = self.triangles[t as usize];
             triangle.iter().for_each(|v| self.at_vertex[v.index()].retain(|other| *other != t));
         }
         for (&t, triangle) in change.removed.iter().zip(&change.added) {
+            self.is_removed[t as usize] = false;
             self.triangles[t as usize] = *triangle;
             triangle.iter().for_each(|v| self.at_vertex[v.index()].push(t));
         }

@@ -2,7 +2,7 @@
 
 use super::cubes::Lattice;
 use super::old::OriginalSurface;
-use crate::base::{DisjointSets, Id, Point, Threads, VertexId, sorted_ids};
+use crate::base::{DisjointSets, MaybeId, Point, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::{EDGES, FACETS, volume};
 use crate::geometry::vector::{add, distance, scale, sub};
 use crate::spatial::runs::in_runs;
@@ -58,15 +58,13 @@ impl Skin {
 
     /// The triangles, with their vertices numbered in the order of first use, and only those points.
     pub(super) fn compact(all: &[Point], mut triangles: Vec<[VertexId; 3]>) -> Self {
-        let mut new: Vec<VertexId> = vec![Id::NONE; all.len()];
+        let mut new = vec![MaybeId::NONE; all.len()];
         let mut points = Vec::new();
         for v in triangles.as_flattened_mut() {
-            let place = &mut new[v.index()];
-            if *place == Id::NONE {
-                *place = VertexId::new(points.len());
+            *v = new[v.index()].get_or_insert_with(|| {
                 points.push(all[v.index()]);
-            }
-            *v = *place;
+                VertexId::new(points.len() - 1)
+            });
         }
         Self { points, triangles }
     }

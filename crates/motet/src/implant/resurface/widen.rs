@@ -7,7 +7,7 @@
 use super::old::OriginalSurface;
 use super::sheet::{Change, Sheet, largest_cosine};
 use super::skin::Skin;
-use crate::base::{Id, Point, Threads, VertexId};
+use crate::base::{Point, Threads, VertexId};
 use crate::geometry::triangle::centroid;
 use crate::geometry::vector::{add, scale, sub};
 use crate::preflight::crossings;
@@ -38,11 +38,10 @@ impl OriginalSurface {
         for _ in 0..RETRIES {
             let mut work = Widening { old: self, sheet: Sheet::new(skin), is_held: &is_held, tolerance };
             work.run();
-            let Sheet { points, triangles, .. } = work.sheet;
-            let changed = changed(skin, &points, &triangles);
-            let left: Vec<[VertexId; 3]> = triangles.iter().copied().filter(is_left).collect();
-            let new: Vec<[VertexId; 3]> = changed.iter().map(|&t| triangles[t]).collect();
-            let met = crossings(&points, &new, &left, threads);
+            let sheet = work.sheet;
+            let left: Vec<[VertexId; 3]> = sheet.existing().map(|t| sheet.triangle(t)).collect();
+            let new: Vec<[VertexId; 3]> = changed(skin, &sheet).map(|t| sheet.triangle(t)).collect();
+            let met = crossings(&sheet.points, &new, &left, threads);
             let mut is_free = true;
             for [i, j] in
                 met.into_iter().map(|[i, j]| [new[i as usize], left[j as usize]]).filter(|[s, t]| s != t)
@@ -51,24 +50,21 @@ impl OriginalSurface {
                 [i, j].as_flattened().iter().for_each(|v| is_held[v.index()] = true);
             }
             if is_free {
-                return Some(Skin::compact(&points, left));
+                return Some(Skin::compact(&sheet.points, left));
             }
         }
         None
     }
 }
 
-fn is_left(triangle: &[VertexId; 3]) -> bool {
-    triangle[0] != VertexId::NONE
-}
-
 /// The triangles that have changed.
-fn changed(before: &Skin, points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<usize> {
-    let is_same = |t: usize| {
-        triangles[t] == before.triangles[t]
-            && triangles[t].iter().all(|v| points[v.index()] == before.points[v.index()])
+fn changed<'a>(before: &'a Skin, sheet: &'a Sheet) -> impl Iterator<Item = u32> + 'a {
+    let is_same = |t: u32| {
+        let triangle = sheet.triangle(t);
+        triangle == before.triangles[t as usize]
+            && triangle.iter().all(|v| sheet.points[v.index()] == before.points[v.index()])
     };
-    (0..triangles.len()).filter(|&t| is_left(&triangles[t]) && !is_same(t)).collect()
+    sheet.existing().filter(move |&t| !is_same(t))
 }
 
 struct Widening<'a> {
@@ -82,9 +78,9 @@ struct Widening<'a> {
 impl Widening<'_> {
     fn run(&mut self) {
         for _ in 0..ROUNDS {
-            let all = 0..self.sheet.triangles.len() as u32;
-            let mut narrow: Vec<(f64, u32)> = all
-                .filter(|&t| self.sheet.exists(t))
+            let mut narrow: Vec<(f64, u32)> = self
+                .sheet
+                .existing()
                 .map(|t| (largest_cosine(self.sheet.corners(t)), t))
                 .filter(|(cosine, _)| *cosine > MAX_COSINE)
                 .collect();
@@ -116,7 +112,7 @@ impl Widening<'_> {
     }
 
     fn changes(&self, t: u32) -> Vec<Change> {
-        let corners = self.sheet.triangles[t as usize];
+        let corners = self.sheet.triangle(t);
         let mut changes = Vec::new();
         for k in 0..3 {
             let [u, v] = [corners[k], corners[(k + 1) % 3]];
@@ -143,7 +139,7 @@ impl Widening<'_> {
     /// Whether nothing held changes, no triangle turns away, and all new triangles are near the old surface.
     /// Triangles that close a hole are not, and stay as they are.
     fn is_allowed(&self, change: &Change) -> bool {
-        let of = |t: &u32| self.sheet.triangles[*t as usize];
+        let of = |t: &u32| self.sheet.triangle(*t);
         if change.removed.iter().flat_map(of).any(|v| self.is_held[v.index()])
             || !self.sheet.keeps_facing(change)
         {

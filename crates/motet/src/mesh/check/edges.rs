@@ -1,6 +1,6 @@
 //! Edges and vertices where a surface is open, inconsistently oriented, or not a manifold.
 
-use crate::base::{DisjointSets, VertexId};
+use crate::base::{DisjointSets, MaybeId, VertexId, id};
 use crate::mesh::Mesh;
 use crate::mesh::check::SurfaceFacets;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
@@ -73,17 +73,21 @@ pub(super) fn defects(mesh: &Mesh, facets: &SurfaceFacets) -> Vec<Defect> {
     vec![open, misoriented, non_manifold, pinched(mesh, facets, &mut corners)]
 }
 
+id!(
+    /// A fan of facets around a vertex, by one of its corners.
+    FanId
+);
+
 /// Vertices whose corners form more than one connected set.
 fn pinched(mesh: &Mesh, facets: &SurfaceFacets, corners: &mut DisjointSets) -> Defect {
     let mut defect = Defect::empty(DefectKind::NonManifoldVertex);
-    let mut fan_of = vec![u32::MAX; mesh.points.len()];
+    let mut fan_of = vec![MaybeId::NONE; mesh.points.len()];
     let mut reported = vec![false; mesh.points.len()];
     for (corner, &v) in facets.rings.items().iter().enumerate() {
-        let fan = corners.root(corner as u32);
-        let known = &mut fan_of[v.index()];
-        if *known == u32::MAX {
-            *known = fan;
-        } else if *known != fan && !std::mem::replace(&mut reported[v.index()], true) {
+        let fan = FanId(corners.root(corner as u32));
+        if fan_of[v.index()].get_or_insert_with(|| fan) != fan
+            && !std::mem::replace(&mut reported[v.index()], true)
+        {
             defect.add(|| Example::new(&[], &[v], &mesh.points));
         }
     }

@@ -62,8 +62,8 @@ impl Jacobian {
         let net: Vec<Point> = tables.points.iter().map(weighted).collect();
         let [a, b, c] = [0, 1, 2].map(|i| tables.columns[i].of(&net));
         let [first, second] = &tables.products;
-        let of_two = first.of((&a, &b), [0.0; 3], cross, add);
-        let mut coefficients = second.of((&of_two, &c), 0.0, dot, |x: f64, y| x + y);
+        let of_two = first.of(&a, &b, [0.0; 3], cross, add);
+        let mut coefficients = second.of(&of_two, &c, 0.0, dot, |x: f64, y| x + y);
         for (i, x) in coefficients.iter_mut().enumerate() {
             *x /= tables.determinant.multinomial(i);
         }

@@ -1,6 +1,6 @@
 //! Arrays that number points and cells: a new one must not get the number of another.
 
-use crate::base::{CellId, Id};
+use crate::base::{CellId, VertexId};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
 /// SimVascular's arrays that number points and cells.
@@ -15,21 +15,21 @@ pub(crate) fn numbers_cells(array: &str) -> bool {
 }
 
 /// Gives new points and new tets numbers of their own, after the largest in use, and sets the [`REFINE_ROOT`]
-/// of new tets to -1. `point_to_old` has [`u32::MAX`] for a new point.
-pub fn number_anew(mesh: &mut Mesh, point_to_old: &[u32], cell_to_old: &[CellId]) {
+/// of new tets to -1. Both lists are in rising order.
+pub fn number_anew(mesh: &mut Mesh, new_points: &[VertexId], new_cells: &[CellId]) {
     let is_named = |field: &&mut Field, name: &str| field.name == name && field.components == 1;
-    let is_new = |c: &usize| cell_to_old[*c] == Id::NONE && mesh.cells.kinds()[*c] == CellKind::TETRA;
-    let new_cells: Vec<usize> = (0..cell_to_old.len()).filter(is_new).collect();
+    let is_tet = |c: &usize| mesh.cells.kinds()[*c] == CellKind::TETRA;
+    let new_tets: Vec<usize> = new_cells.iter().map(|cell| cell.index()).filter(is_tet).collect();
     if let Some(ids) = mesh.point_data.iter_mut().find(|f| is_named(f, NODE_ID)) {
-        number(&mut ids.values, (0..point_to_old.len()).filter(|&v| point_to_old[v] == u32::MAX));
+        number(&mut ids.values, new_points.iter().map(|v| v.index()));
     }
     if let Some(ids) = mesh.cell_data.iter_mut().find(|f| is_named(f, ELEMENT_ID)) {
-        number(&mut ids.values, new_cells.iter().copied());
+        number(&mut ids.values, new_tets.iter().copied());
     }
     if let Some(Values::I32(roots)) =
         mesh.cell_data.iter_mut().find(|f| is_named(f, REFINE_ROOT)).map(|field| &mut field.values)
     {
-        new_cells.iter().for_each(|&c| roots[c] = -1);
+        new_tets.iter().for_each(|&c| roots[c] = -1);
     }
 }
 

@@ -10,7 +10,7 @@
 //!   +-----------+
 //! ```
 
-use crate::base::{Point, VertexId};
+use crate::base::{MaybeId, Point, VertexId};
 use crate::geometry::vector::{norm, scale};
 use crate::mesh::shapes::labelled::labelled;
 use crate::mesh::shapes::split::to_tets;
@@ -83,11 +83,12 @@ impl Shell {
             .collect();
         places.sort_by_key(|place| (std::cmp::Reverse(farness(place)), *place));
         let index = |place: [usize; 3]| place[0] + (n + 1) * (place[1] + (n + 1) * place[2]);
-        let mut ids = vec![VertexId(u32::MAX); (n + 1).pow(3)];
+        let mut ids = vec![MaybeId::NONE; (n + 1).pow(3)];
         for (i, place) in places.iter().enumerate() {
-            ids[index(*place)] = VertexId::new(i);
+            ids[index(*place)] = VertexId::new(i).into();
         }
-        let quads = quads(n).map(|quad| quad.map(|place| ids[index(place)])).collect();
+        let vertex = |place| ids[index(place)].get().expect("corners of quads lie on the shell");
+        let quads = quads(n).map(|quad| quad.map(vertex)).collect();
         Self { directions: places.iter().map(|p| direction(*p)).collect(), quads, places }
     }
 

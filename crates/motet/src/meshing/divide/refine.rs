@@ -7,7 +7,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::triangulation::{Blocked, TriangleId, Triangulation};
+use super::triangulation::{Blocked, Plane, TriangleId, Triangulation};
 use crate::base::{Point, Result, VertexId, Watch};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
@@ -88,10 +88,7 @@ pub(super) fn refine(triangulation: &mut Triangulation, size: f64, most: usize, 
         let corners = triangulation.corners(triangle);
         let inserted = match triangulation.insert(
             triangle,
-            circumcentre(
-                corners,
-                triangulation.planes[triangulation.facet_of[triangle as usize] as usize].at,
-            ),
+            circumcentre(corners, &triangulation.planes[triangulation.facet_of[triangle as usize] as usize]),
         ) {
             Ok(inserted) => inserted,
             Err(Blocked::NoSpace) => continue,
@@ -131,10 +128,9 @@ fn candidate(triangulation: &Triangulation, triangle: TriangleId, size: f64) -> 
 }
 
 /// The circumcentre of a triangle, in the plane of its facet.
-fn circumcentre([a, b, c]: [Point; 3], (at, normal): (Point, Point)) -> Point {
+fn circumcentre([a, b, c]: [Point; 3], plane: &Plane) -> Point {
     let [u, v] = [sub(b, a), sub(c, a)];
     let w = cross(u, v);
     let to = add(scale(cross(w, u), dot(v, v)), scale(cross(v, w), dot(u, u)));
-    let centre = add(a, scale(to, 0.5 / dot(w, w)));
-    sub(centre, scale(normal, dot(sub(centre, at), normal)))
+    plane.project(add(a, scale(to, 0.5 / dot(w, w))))
 }

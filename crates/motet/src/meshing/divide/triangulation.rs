@@ -10,15 +10,17 @@ use hashbrown::HashMap;
 use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::predicates::{insphere, orient3d};
 use crate::geometry::triangle::area_vector;
-use crate::geometry::vector::{distance, dot, sub, unit};
+use crate::geometry::vector::{distance, dot, scale, sub, unit};
 
 /// The plane of a flat facet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
     /// A point beside the plane, on the side that its triangles face away from.
     beside: Point,
-    /// A point of the plane, and its unit normal.
-    pub(super) at: (Point, Point),
+    /// A point of the plane.
+    within: Point,
+    /// The unit normal.
+    normal: Point,
 }
 
 impl Plane {
@@ -28,7 +30,12 @@ impl Plane {
         let reach = distance(a, b) + distance(b, c);
         let beside = |sign: f64| -> Point { std::array::from_fn(|i| a[i] + sign * reach * normal[i]) };
         let beside = [beside(1.0), beside(-1.0)].into_iter().find(|&p| orient3d(a, b, c, p) > 0)?;
-        Some(Self { beside, at: (a, normal) })
+        Some(Self { beside, within: a, normal })
+    }
+
+    /// The nearest point of the plane.
+    pub(super) fn project(&self, p: Point) -> Point {
+        sub(p, scale(self.normal, dot(sub(p, self.within), self.normal)))
     }
 
     /// The orientation of three points: 1 if they turn as the triangles of the facet do.

@@ -21,8 +21,13 @@ use crate::base::{Point, VertexId};
 use crate::geometry::vector::{add, scale};
 use crate::mesh::CellKind;
 
-/// A place in a column: the vertex of the skin at its foot, and the level.
-pub(super) type Site = (VertexId, u32);
+/// A place in a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Site {
+    /// The vertex of the skin at the foot of the column.
+    pub(super) foot: VertexId,
+    pub(super) level: u32,
+}
 
 /// Columns of given heights.
 pub(super) struct Columns<'a> {
@@ -43,8 +48,9 @@ impl<'a> Columns<'a> {
     }
 
     /// The position of a site.
-    pub(super) fn at(&self, (vertex, level): Site) -> Point {
-        let (foot, w) = (self.skin.points[vertex.index()], vertex.index());
+    pub(super) fn at(&self, Site { foot, level }: Site) -> Point {
+        let w = foot.index();
+        let foot = self.skin.points[w];
         let stack = self.heights.stack_of[w];
         if level == 0 || stack == NONE {
             return foot;
@@ -55,14 +61,15 @@ impl<'a> Columns<'a> {
 
     /// The topmost site of a column.
     pub(super) fn top(&self, vertex: VertexId) -> Site {
-        (vertex, self.count(vertex))
+        Site { foot: vertex, level: self.count(vertex) }
     }
 
     /// The prisms on a triangle of the skin, from the wall inward.
     pub(super) fn prisms(&self, triangle: u32) -> impl Iterator<Item = Prism> + '_ {
         let corners = self.skin.triangles[triangle as usize];
         let counts = corners.map(|v| if self.skin.has_stack(triangle) { self.count(v) } else { 0 });
-        let at_level = move |level: u32| [0, 1, 2].map(|k| (corners[k], level.min(counts[k])));
+        let at_level =
+            move |level: u32| [0, 1, 2].map(|k| Site { foot: corners[k], level: level.min(counts[k]) });
         let most = counts.into_iter().max().unwrap_or(0);
         (0..most).map(move |level| Prism { bottom: at_level(level), top: at_level(level + 1) })
     }

@@ -1,7 +1,7 @@
 //! The core that the layers leave, as surfaces to be filled: walls replaced by the tops of their layers, caps
 //! with their rims moved inward.
 
-use super::columns::Columns;
+use super::columns::{Columns, Site};
 use super::skin::{Sides, Skin};
 use crate::base::{Id, Point, VertexId};
 use crate::geometry::vector::add;
@@ -54,7 +54,9 @@ impl Core {
         };
         let places: Vec<Point> = (0..skin.points.len())
             .map(|w| match columns.top(VertexId::new(w)) {
-                (_, 0) if skin.walls(VertexId::new(w)).next().is_none() => add(skin.points[w], motions[w]),
+                Site { level: 0, .. } if skin.walls(VertexId::new(w)).next().is_none() => {
+                    add(skin.points[w], motions[w])
+                }
                 top => columns.at(top),
             })
             .collect();

@@ -43,16 +43,16 @@ impl<'a> Numbers<'a> {
             }
             feet[w] = *foot;
             between[w] = points.len() as u32;
-            points.extend((1..n).map(|level| columns.at((vertex, level))));
+            points.extend((1..n).map(|level| columns.at(Site { foot: vertex, level })));
         }
         Self { columns, feet, tops: core.of_skin.iter().map(in_mesh).collect(), between }
     }
 
-    fn of(&self, (vertex, level): Site) -> VertexId {
+    fn of(&self, Site { foot, level }: Site) -> VertexId {
         match level {
-            0 => self.feet[vertex.index()],
-            level if level == self.columns.count(vertex) => self.tops[vertex.index()],
-            level => VertexId(self.between[vertex.index()] + level - 1),
+            0 => self.feet[foot.index()],
+            level if level == self.columns.count(foot) => self.tops[foot.index()],
+            level => VertexId(self.between[foot.index()] + level - 1),
         }
     }
 }

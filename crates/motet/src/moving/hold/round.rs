@@ -162,7 +162,8 @@ impl<'a> Round<'a> {
             let (i, time) = hits[k];
             let element = &self.elements[i];
             let here = element.corners.map(|v| lerp(self.start[v.index()], to[v.index()], time));
-            self.normals(element, here, reach(element))
+            let (within, who) = reach(element);
+            self.normals(element, here, within, who)
                 .into_iter()
                 .map(|(v, n)| (v, time, n))
                 .collect::<Vec<_>>()
@@ -186,7 +187,8 @@ impl<'a> Round<'a> {
         &self,
         element: &Element,
         here: [Point; 3],
-        (reach, who): (f64, SlidingNodes),
+        reach: f64,
+        who: SlidingNodes,
     ) -> Vec<(VertexId, Point)> {
         let mut all = Vec::new();
         for t in self.around(here, reach) {

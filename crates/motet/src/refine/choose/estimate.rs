@@ -8,7 +8,7 @@ use crate::geometry::tet;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot, norm, scale, sub};
 use crate::mesh::TetMesh;
-use crate::mesh::tet_facets::{NO_TET, tet_neighbors};
+use crate::mesh::tet_facets::tet_neighbors;
 
 /// The derivatives of a velocity: row `i` is the gradient of its component `i`.
 pub type Tensor = [Point; 3];
@@ -53,10 +53,10 @@ pub fn gradient_jump(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<f
     let neighbors = tet_neighbors(&mesh.tets);
     threads.map(mesh.tets.len(), |t| {
         let corners = corners(mesh, mesh.tets[t]);
-        let jumps = (0..4).filter(|&i| neighbors[t][i] != NO_TET).map(|i| {
+        let jumps = (0..4).filter_map(|i| Some((i, neighbors[t][i].get()?))).map(|(i, neighbor)| {
             let normal = area_vector(tet::FACETS[i].map(|k| corners[k]));
             let area = norm(normal);
-            let jump = dot(sub(gradients[neighbors[t][i] as usize], gradients[t]), normal);
+            let jump = dot(sub(gradients[neighbor.index()], gradients[t]), normal);
             // The square of the derivative along the unit normal, times the area.
             if area > 0.0 { jump * jump / area } else { 0.0 }
         });

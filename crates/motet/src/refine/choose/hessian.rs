@@ -6,7 +6,7 @@ use crate::geometry::symmetric::{Symmetric, eigenvalues};
 use crate::geometry::tet;
 use crate::geometry::vector::{add, scale};
 use crate::mesh::TetMesh;
-use crate::mesh::tet_facets::{NO_TET, tet_neighbors};
+use crate::mesh::tet_facets::tet_neighbors;
 
 /// How many times values spread from vertices where they are reliable to neighbours where they are not.
 const ROUNDS: usize = 2;
@@ -72,7 +72,7 @@ impl<'a> Recovery<'a> {
         let volumes = threads.map(mesh.tets.len(), |t| tet::volume(corners(mesh, mesh.tets[t])).abs());
         let mut is_boundary = vec![false; mesh.points.len()];
         for (tet, neighbors) in mesh.tets.iter().zip(tet_neighbors(&mesh.tets)) {
-            for i in (0..4).filter(|&i| neighbors[i] == NO_TET) {
+            for i in (0..4).filter(|&i| neighbors[i].is_none()) {
                 tet::FACETS[i].into_iter().for_each(|k| is_boundary[tet[k].index()] = true);
             }
         }

@@ -5,7 +5,7 @@
 //! recomputed where a class needs it.
 
 use super::Forest;
-use super::classes::inner_part;
+use super::classes::{ClassId, inner_part};
 use super::eight::ends;
 use crate::geometry::tet::EDGES;
 
@@ -19,7 +19,7 @@ const CHILDREN: [[[usize; 2]; 4]; 4] = [
 
 /// Returns which of the three ways divides tets of a class. Corner parts have the order of the whole. An
 /// image has the reversed order of its original, which gives the same way.
-pub(super) fn way(forest: &Forest, class: u32) -> usize {
+pub(super) fn way(forest: &Forest, class: ClassId) -> usize {
     let steps = forest.steps_to_class(class);
     way_along(
         steps.into_iter().fold([0, 1, 2, 3], |order, (way, inner)| below(order, inner_part(way, inner))),

@@ -6,22 +6,27 @@
 //! are left out.
 
 use super::eight::{INNER, eight};
-use super::{Forest, NONE, with_middles};
-use crate::base::Point;
+use super::{Forest, with_middles};
+use crate::base::{MaybeId, NodeId, Point, id};
 use crate::geometry::quality::eas;
+
+id!(
+    /// A class of tets of one shape. The class of a root has the root's number.
+    pub(in crate::refine) ClassId
+);
 
 /// The class of a tet, and whether the tet is a mirror image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::refine) struct Shape(u32);
 
 impl Shape {
-    pub(in crate::refine) fn new(class: u32, is_mirrored: bool) -> Self {
-        Self(class << 1 | u32::from(is_mirrored))
+    pub(in crate::refine) fn new(class: ClassId, is_mirrored: bool) -> Self {
+        Self(class.0 << 1 | u32::from(is_mirrored))
     }
 
     #[inline]
-    pub(in crate::refine) fn class(self) -> u32 {
-        self.0 >> 1
+    pub(in crate::refine) fn class(self) -> ClassId {
+        ClassId(self.0 >> 1)
     }
 
     #[inline]
@@ -29,7 +34,7 @@ impl Shape {
         self.0 & 1 == 1
     }
 
-    pub(in crate::refine) fn of_class(self, class: u32) -> Self {
+    pub(in crate::refine) fn of_class(self, class: ClassId) -> Self {
         Self::new(class, self.is_mirrored())
     }
 
@@ -41,9 +46,8 @@ impl Shape {
 /// A class of tets of one shape.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::refine) struct Class {
-    /// The class of the tets that these are parts of; [`NONE`] for the class of a root, which has the root's
-    /// id.
-    above: u32,
+    /// The class of the tets that these are parts of; none for the class of a root, which has the root's id.
+    above: MaybeId<ClassId>,
     /// The way in which these were divided.
     way: u8,
     /// Which of [`INNER`] these are.
@@ -54,38 +58,36 @@ pub(in crate::refine) struct Class {
     pub(in crate::refine) eas: f64,
     /// The EAS of the root that these are parts of.
     pub(in crate::refine) root_eas: f64,
-    /// For each way to divide, the first of the two consecutive inner classes; [`NONE`] if they do not exist
-    /// yet.
-    below: [u32; 3],
+    /// For each way to divide, the first of the two consecutive inner classes; none if they do not exist yet.
+    below: [MaybeId<ClassId>; 3],
 }
 
 impl Class {
     pub(in crate::refine) fn of_root(corners: [Point; 4]) -> Self {
         let eas = eas(corners).abs();
-        Self { above: NONE, way: 0, inner: 0, best: None, eas, root_eas: eas, below: [NONE; 3] }
+        let (above, below) = (MaybeId::NONE, [MaybeId::NONE; 3]);
+        Self { above, way: 0, inner: 0, best: None, eas, root_eas: eas, below }
     }
 
     /// One of the two inner parts of this class when divided in a way; `above` is this class's own id.
-    fn part(&self, above: u32, [way, inner]: [u8; 2], eas: f64) -> Self {
-        Self { above, way, inner, best: None, eas, root_eas: self.root_eas, below: [NONE; 3] }
+    fn part(&self, above: ClassId, [way, inner]: [u8; 2], eas: f64) -> Self {
+        let (above, below) = (above.into(), [MaybeId::NONE; 3]);
+        Self { above, way, inner, best: None, eas, root_eas: self.root_eas, below }
     }
 }
 
 impl Forest {
     /// The corners of the first tet of a class.
-    pub(in crate::refine) fn corners_of_class(&self, class: u32) -> [Point; 4] {
-        let Class { above, way, inner, .. } = self.classes[class as usize];
-        if above == NONE {
-            return self.corners(class);
-        }
+    pub(in crate::refine) fn corners_of_class(&self, class: ClassId) -> [Point; 4] {
+        let Class { above, way, inner, .. } = self.classes[class.index()];
+        let Some(above) = above.get() else { return self.corners(NodeId(class.0)) };
         let places = with_middles(self.corners_of_class(above));
         corners_at(&places, inner_part(usize::from(way), usize::from(inner)))
     }
 
     /// Makes the two inner classes of a class divided in a way; returns the first.
-    pub(in crate::refine) fn make_classes(&mut self, class: u32, way: usize) -> u32 {
-        let known = self.classes[class as usize].below[way];
-        if known != NONE {
+    pub(in crate::refine) fn make_classes(&mut self, class: ClassId, way: usize) -> ClassId {
+        if let Some(known) = self.classes[class.index()].below[way].get() {
             return known;
         }
         let places = with_middles(self.corners_of_class(class));
@@ -93,30 +95,29 @@ impl Forest {
     }
 
     /// Adds the two inner classes of a class divided in a way, given their EAS; returns the first.
-    pub(in crate::refine) fn add_classes(&mut self, class: u32, way: usize, eas: [f64; 2]) -> u32 {
-        let known = self.classes[class as usize].below[way];
-        if known != NONE {
+    pub(in crate::refine) fn add_classes(&mut self, class: ClassId, way: usize, eas: [f64; 2]) -> ClassId {
+        if let Some(known) = self.classes[class.index()].below[way].get() {
             return known;
         }
-        let first = self.classes.len() as u32;
-        let whole = self.classes[class as usize];
+        let first = ClassId::new(self.classes.len());
+        let whole = self.classes[class.index()];
         self.classes.extend([0, 1].map(|k| whole.part(class, [way as u8, k as u8], eas[k])));
-        self.classes[class as usize].below[way] = first;
+        self.classes[class.index()].below[way] = first.into();
         first
     }
 
     /// The two inner classes of a class divided in its best way, if that is known.
-    pub(in crate::refine) fn best_classes(&self, class: u32) -> Option<[&Class; 2]> {
-        let Class { best, below, .. } = self.classes[class as usize];
-        let first = below[usize::from(best?)] as usize;
+    pub(in crate::refine) fn best_classes(&self, class: ClassId) -> Option<[&Class; 2]> {
+        let Class { best, below, .. } = self.classes[class.index()];
+        let first = below[usize::from(best?)].get()?.index();
         Some([&self.classes[first], &self.classes[first + 1]])
     }
 
     /// The steps from the root down to a class: ways, and which of [`INNER`].
-    pub(in crate::refine) fn steps_to_class(&self, mut class: u32) -> Vec<(usize, usize)> {
+    pub(in crate::refine) fn steps_to_class(&self, mut class: ClassId) -> Vec<(usize, usize)> {
         let mut steps = Vec::new();
-        while let Class { above, way, inner, .. } = self.classes[class as usize]
-            && above != NONE
+        while let Class { above, way, inner, .. } = self.classes[class.index()]
+            && let Some(above) = above.get()
         {
             steps.push((usize::from(way), usize::from(inner)));
             class = above;

@@ -5,17 +5,17 @@
 //! previous sweep. So neither the order of visiting, nor the number of threads, nor earlier divisions matter,
 //! and withdrawing a request restores the previous mesh.
 
+use super::Forest;
 use super::bounds::ShapeBounds;
 use super::eight::INNER;
 use super::fills::Finder;
 use super::patterns::{FACET_EDGES, FULL};
-use super::{Forest, NONE};
-use crate::base::{Error, Result, Threads};
+use crate::base::{EdgeId, Error, MaybeId, NodeId, Result, Threads};
 
 /// A tet cut to fit its neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::refine) struct Cut {
-    pub(in crate::refine) node: u32,
+    pub(in crate::refine) node: NodeId,
     pub(in crate::refine) goal: Goal,
 }
 
@@ -39,7 +39,7 @@ impl Goal {
 struct Verdict {
     /// The root or group of eight that was examined.
     place: u32,
-    node: u32,
+    node: NodeId,
     mask: u8,
     goal: Goal,
 }
@@ -67,8 +67,8 @@ pub(in crate::refine) fn close(
     threads: &Threads,
 ) -> Result<Closed> {
     forest.reset();
-    for node in 0..forest.nodes.len() as u32 {
-        if forest.states[node as usize].is_requested {
+    for node in (0..forest.nodes.len()).map(NodeId::new) {
+        if forest.states[node.index()].is_requested {
             forest.check_limit()?;
             divide(forest, node, bounds);
         }
@@ -86,10 +86,10 @@ pub(in crate::refine) fn close(
                 forest.check_limit()?;
                 eights.push(divide(forest, node, bounds));
             } else if goal.mask != mask {
-                let edges = forest.edges_of[node as usize];
+                let edges = forest.edges_of[node.index()];
                 for (_, edge) in edges.into_iter().enumerate().filter(|(e, _)| goal.mask >> e & 1 == 1) {
                     forest.middle(edge);
-                    forest.is_split[edge as usize] = true;
+                    forest.is_split[edge.index()] = true;
                 }
             }
             is_done &= goal.mask == mask && mask != FULL;
@@ -98,7 +98,7 @@ pub(in crate::refine) fn close(
             closed.cuts =
                 verdicts.iter().map(|verdict| Cut { node: verdict.node, goal: verdict.goal }).collect();
             closed.cuts.sort_unstable_by_key(|cut| cut.node);
-            closed.cuts.iter().for_each(|cut| forest.states[cut.node as usize].is_cut = true);
+            closed.cuts.iter().for_each(|cut| forest.states[cut.node.index()].is_cut = true);
             return Ok(closed);
         }
     }
@@ -108,7 +108,7 @@ pub(in crate::refine) fn close(
 /// previous sweep, which still hold for tets with the same edges split.
 fn sweep(
     forest: &mut Forest,
-    eights: &[u32],
+    eights: &[NodeId],
     before: &[Verdict],
     bounds: ShapeBounds,
     threads: &Threads,
@@ -122,11 +122,11 @@ fn sweep(
         for place in run {
             let nodes = match place.checked_sub(n_roots) {
                 None => place as u32..place as u32 + 1,
-                Some(k) if shared.is_any_split_of(eights[k]) => eights[k]..eights[k] + 8,
+                Some(k) if shared.is_any_split_of(eights[k]) => eights[k].0..eights[k].0 + 8,
                 Some(_) => continue,
             };
             let place = place as u32;
-            for node in nodes.filter(|&node| !shared.states[node as usize].is_divided) {
+            for node in nodes.map(NodeId).filter(|node| !shared.states[node.index()].is_divided) {
                 let mask = shared.mask(node);
                 if mask == 0 {
                     continue;
@@ -154,11 +154,11 @@ fn sweep(
     verdicts
 }
 
-fn divide(forest: &mut Forest, node: u32, bounds: ShapeBounds) -> u32 {
-    let way = forest.decide(forest.nodes[node as usize].shape.class(), bounds);
+fn divide(forest: &mut Forest, node: NodeId, bounds: ShapeBounds) -> NodeId {
+    let way = forest.decide(forest.nodes[node.index()].shape.class(), bounds);
     let first = forest.divide(node, way);
-    for edge in forest.edges_of[node as usize] {
-        forest.is_split[edge as usize] = true;
+    for edge in forest.edges_of[node.index()] {
+        forest.is_split[edge.index()] = true;
     }
     first
 }
@@ -166,13 +166,13 @@ fn divide(forest: &mut Forest, node: u32, bounds: ShapeBounds) -> u32 {
 /// Finds what a tet needs to be cut well, from the reference alone. Pieces are compared with what dividing
 /// would leave: compared with the whole, a tet with bad inner parts could never be cut well enough, and in a
 /// mesh of such tets division would spread without end.
-fn goal(finder: &mut Finder, leaf: u32, mask: u8) -> Goal {
+fn goal(finder: &mut Finder, leaf: NodeId, mask: u8) -> Goal {
     let Finder { forest, bounds, .. } = *finder;
-    let class = forest.nodes[leaf as usize].shape.class();
+    let class = forest.nodes[leaf.index()].shape.class();
     let (cuts, fill) = finder.cut(leaf, mask);
     let as_it_is = Goal { mask, cuts, way: fill.way };
     // What is good enough compared with the whole is also good enough compared with its parts.
-    let whole = &forest.classes[class as usize];
+    let whole = &forest.classes[class.index()];
     if fill.worst >= bounds.of(whole.root_eas, whole.eas) {
         return as_it_is;
     }
@@ -207,12 +207,12 @@ impl Forest {
     fn reset(&mut self) {
         self.is_split.fill(false);
         for &edge in &self.pinned {
-            self.is_split[edge as usize] = true;
+            self.is_split[edge.index()] = true;
         }
         let mut n_new = 0;
         for (state, node) in self.states.iter_mut().zip(&self.nodes) {
             (state.is_divided, state.is_cut) = (false, false);
-            n_new += usize::from(state.is_requested && node.first_child == NONE);
+            n_new += usize::from(state.is_requested && node.first_child.is_none());
         }
         self.nodes.reserve(8 * n_new);
         self.states.reserve(8 * n_new);
@@ -220,26 +220,26 @@ impl Forest {
     }
 
     /// For each divided tet the first of its eight parts, unless all of these are divided.
-    fn eights(&self) -> Vec<u32> {
+    fn eights(&self) -> Vec<NodeId> {
         // The roots are followed by groups of eight with a common parent.
-        let eights = (self.n_roots as u32..self.nodes.len() as u32).step_by(8);
-        let is_there = |first: &u32| {
-            let parts = *first as usize..*first as usize + 8;
-            self.states[self.nodes[*first as usize].parent as usize].is_divided
-                && !self.states[parts].iter().all(|state| state.is_divided)
+        let eights = (self.n_roots..self.nodes.len()).step_by(8);
+        let is_there = |first: &usize| {
+            let parent = self.nodes[*first].parent.get();
+            parent.is_some_and(|parent| self.states[parent.index()].is_divided)
+                && !self.states[*first..*first + 8].iter().all(|state| state.is_divided)
         };
-        eights.filter(is_there).collect()
+        eights.filter(is_there).map(NodeId::new).collect()
     }
 
     /// Whether an edge of a group of eight is split. The corner parts have all edges but the diagonal, which
     /// is the first edge of the first inner part.
     #[inline]
-    fn is_any_split_of(&self, eight: u32) -> bool {
-        let first = eight as usize;
-        let mut is_any = self.is_split[self.edges_of[first + INNER[0]][0] as usize];
+    fn is_any_split_of(&self, eight: NodeId) -> bool {
+        let first = eight.index();
+        let mut is_any = self.is_split[self.edges_of[first + INNER[0]][0].index()];
         for edges in &self.edges_of[first..first + 4] {
             for &edge in edges {
-                is_any |= self.is_split[edge as usize];
+                is_any |= self.is_split[edge.index()];
             }
         }
         is_any
@@ -247,15 +247,15 @@ impl Forest {
 
     /// Whether a tet must be divided: all its edges are split, or one is split that exists only when it is
     /// divided, namely half of a split edge, or an edge between the middles of two edges of a facet.
-    fn must_be_divided(&self, leaf: u32, mask: u8) -> bool {
+    fn must_be_divided(&self, leaf: NodeId, mask: u8) -> bool {
         if mask == FULL {
             return true;
         }
-        let edges = &self.edges_of[leaf as usize];
-        let is_split = |edge: u32| edge != NONE && self.is_split[edge as usize];
+        let edges = &self.edges_of[leaf.index()];
+        let is_split = |edge: MaybeId<EdgeId>| edge.get().is_some_and(|edge| self.is_split[edge.index()]);
         for (e, edge) in edges.iter().enumerate() {
             if mask >> e & 1 == 1 {
-                let [first, second] = self.edges[*edge as usize].halves;
+                let [first, second] = self.edges[edge.index()].halves;
                 if is_split(first) || is_split(second) {
                     return true;
                 }
@@ -268,12 +268,9 @@ impl Forest {
             if (mask >> a & 1) + (mask >> b & 1) + (mask >> c & 1) < least {
                 continue;
             }
-            let middle = |e: usize| self.edges[edges[e] as usize].middle;
-            let middles = [middle(a), middle(b), middle(c)];
-            if middles.contains(&NONE) {
-                continue;
-            }
-            if let Some([x, y, z]) = self.inner_edges(middles)
+            let middle = |e: usize| self.edges[edges[e].index()].middle.get();
+            if let [Some(a), Some(b), Some(c)] = [middle(a), middle(b), middle(c)]
+                && let Some([x, y, z]) = self.inner_edges([a, b, c])
                 && (is_split(x) || is_split(y) || is_split(z))
             {
                 return true;

@@ -6,9 +6,11 @@
 
 use std::sync::OnceLock;
 
+use super::classes::ClassId;
 use super::eight::{IMAGES, INNER, eight, ends};
 use super::patterns::FACET_EDGES;
-use super::{Forest, NONE, Node, State};
+use super::{Forest, Node, State};
+use crate::base::{EdgeId, ForestVertexId, MaybeId, NodeId};
 use crate::geometry::tet::EDGES;
 
 const DIAGONAL: usize = 24;
@@ -59,24 +61,23 @@ fn parts_between() -> [[u8; 10]; 10] {
 impl Forest {
     /// Divides a tet into eight in one of the three ways, unless it was divided before; returns the first
     /// part.
-    pub(in crate::refine) fn divide(&mut self, node: u32, way: usize) -> u32 {
-        self.states[node as usize].is_divided = true;
-        let Node { vertices, first_child, shape, .. } = self.nodes[node as usize];
-        if first_child != NONE {
+    pub(in crate::refine) fn divide(&mut self, node: NodeId, way: usize) -> NodeId {
+        self.states[node.index()].is_divided = true;
+        let Node { vertices, first_child, shape, .. } = self.nodes[node.index()];
+        if let Some(first_child) = first_child.get() {
             return first_child;
         }
-        let edges = self.edges_of[node as usize];
-        let mut local = [NONE; 10];
+        let edges = self.edges_of[node.index()];
+        let mut local = [vertices[0]; 10];
         local[..4].copy_from_slice(&vertices);
         for e in 0..6 {
             local[4 + e] = self.middle(edges[e]);
         }
-        let mut parts = self.parts(&edges, &local);
-        parts[DIAGONAL] = self.make_edge(ends(way).map(|v| local[v]));
-        let first = self.nodes.len() as u32;
-        self.nodes[node as usize].first_child = first;
-        let mut tets = [Node { vertices: [NONE; 4], parent: node, first_child: NONE, shape }; 8];
-        let mut edges_of = [[NONE; 6]; 8];
+        let parts = self.parts(&edges, &local, way);
+        let first = NodeId::new(self.nodes.len());
+        self.nodes[node.index()].first_child = first.into();
+        let mut tets = [Node { vertices, parent: node.into(), first_child: MaybeId::NONE, shape }; 8];
+        let mut edges_of = [edges; 8];
         for (k, eighth) in eighths(way).iter().enumerate() {
             for i in 0..4 {
                 tets[k].vertices[i] = local[usize::from(eighth.vertices[i])];
@@ -86,23 +87,28 @@ impl Forest {
             }
         }
         let classes = self.make_classes(shape.class(), way);
-        for ((class, inner), image) in (classes..).zip(INNER).zip(IMAGES) {
-            tets[inner].shape = shape.of_class(class);
+        for ((class, inner), image) in (classes.0..).zip(INNER).zip(IMAGES) {
+            tets[inner].shape = shape.of_class(ClassId(class));
             tets[image].shape = tets[inner].shape.mirrored();
         }
-        let generation = self.states[node as usize].generation + 1;
+        let generation = self.states[node.index()].generation + 1;
         self.nodes.extend_from_slice(&tets);
         self.edges_of.extend_from_slice(&edges_of);
         self.states.extend_from_slice(&[State { generation, ..State::default() }; 8]);
         first
     }
 
-    /// The edges of the parts, except for the diagonal.
-    fn parts(&mut self, edges: &[u32; 6], local: &[u32; 10]) -> [u32; DIAGONAL + 1] {
-        let mut parts = [NONE; DIAGONAL + 1];
+    /// The edges of the parts, with the diagonal of a way.
+    fn parts(
+        &mut self,
+        edges: &[EdgeId; 6],
+        local: &[ForestVertexId; 10],
+        way: usize,
+    ) -> [EdgeId; DIAGONAL + 1] {
+        let mut parts = [edges[0]; DIAGONAL + 1];
         for (e, [i, _]) in EDGES.into_iter().enumerate() {
             let [at_first, at_second] = self.halves(edges[e]);
-            let is_turned = self.edges[edges[e] as usize].ends[0] != local[i];
+            let is_turned = self.edges[edges[e].index()].ends[0] != local[i];
             parts[2 * e] = if is_turned { at_second } else { at_first };
             parts[2 * e + 1] = if is_turned { at_first } else { at_second };
         }
@@ -110,6 +116,7 @@ impl Forest {
             let within = self.make_inner_edges([local[4 + a], local[4 + b], local[4 + c]]);
             parts[12 + 3 * f..15 + 3 * f].copy_from_slice(&within);
         }
+        parts[DIAGONAL] = self.make_edge(ends(way).map(|v| local[v]));
         parts
     }
 }

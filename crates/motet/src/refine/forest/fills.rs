@@ -6,11 +6,11 @@ use hashbrown::HashMap;
 
 use super::bey;
 use super::bounds::ShapeBounds;
-use super::classes::{Class, corners_at, inner_part};
+use super::classes::{Class, ClassId, corners_at, inner_part};
 use super::eight::ends;
 use super::patterns::patterns;
 use super::{Forest, with_middles};
-use crate::base::Point;
+use crate::base::{NodeId, Point};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{dot, sub};
 use crate::refine::Rule;
@@ -30,7 +30,7 @@ pub(super) struct Fills {
     /// Cuts, keyed by class, split edges and cuts of facets.
     cuts: HashMap<u64, Fill>,
     /// Ways to divide classes none of whose tets was divided yet.
-    divisions: HashMap<u32, Way>,
+    divisions: HashMap<ClassId, Way>,
 }
 
 impl Fills {
@@ -42,7 +42,7 @@ impl Fills {
     /// The size in bytes: an entry of a hash map takes one byte more.
     pub(super) fn memory(&self) -> usize {
         self.cuts.capacity() * (size_of::<(u64, Fill)>() + 1)
-            + self.divisions.capacity() * (size_of::<(u32, Way)>() + 1)
+            + self.divisions.capacity() * (size_of::<(ClassId, Way)>() + 1)
     }
 }
 
@@ -64,20 +64,20 @@ impl<'a> Finder<'a> {
     }
 
     /// How the facets of a tet are cut, and how it is then filled.
-    pub(super) fn cut(&mut self, node: u32, mask: u8) -> (u8, Fill) {
+    pub(super) fn cut(&mut self, node: NodeId, mask: u8) -> (u8, Fill) {
         let forest = self.forest;
         let cuts = forest.cuts(node, mask);
-        let class = forest.nodes[node as usize].shape.class();
-        let key = u64::from(class) << 10 | u64::from(mask) << 4 | u64::from(cuts);
+        let class = forest.nodes[node.index()].shape.class();
+        let key = u64::from(class.0) << 10 | u64::from(mask) << 4 | u64::from(cuts);
         let find = || best_cut(&with_middles(forest.corners_of_class(class)), mask, cuts);
         let known = forest.fills.cuts.get(&key);
         (cuts, known.copied().unwrap_or_else(|| *self.found.cuts.entry(key).or_insert_with(find)))
     }
 
     /// The worst EAS after dividing tets of a class.
-    pub(super) fn divided(&mut self, class: u32) -> f64 {
+    pub(super) fn divided(&mut self, class: ClassId) -> f64 {
         let forest = self.forest;
-        let whole = forest.classes[class as usize].eas;
+        let whole = forest.classes[class.index()].eas;
         if let Some([first, second]) = forest.best_classes(class) {
             return whole.min(first.eas).min(second.eas);
         }
@@ -89,22 +89,22 @@ impl<'a> Finder<'a> {
 
 impl Forest {
     /// Decides which way tets of a class are divided.
-    pub(super) fn decide(&mut self, class: u32, bounds: ShapeBounds) -> usize {
-        if let Some(way) = self.classes[class as usize].best {
+    pub(super) fn decide(&mut self, class: ClassId, bounds: ShapeBounds) -> usize {
+        if let Some(way) = self.classes[class.index()].best {
             return usize::from(way);
         }
         let way = self.fills.divisions.remove(&class).unwrap_or_else(|| best_division(self, class, bounds));
-        self.classes[class as usize].best = Some(way.place as u8);
+        self.classes[class.index()].best = Some(way.place as u8);
         self.add_classes(class, way.place, way.inner);
         way.place
     }
 }
 
-fn best_division(forest: &Forest, class: u32, bounds: ShapeBounds) -> Way {
+fn best_division(forest: &Forest, class: ClassId, bounds: ShapeBounds) -> Way {
     let places = with_middles(forest.corners_of_class(class));
     match bounds.rule {
         Rule::Shortest => {
-            let Class { eas, root_eas, .. } = forest.classes[class as usize];
+            let Class { eas, root_eas, .. } = forest.classes[class.index()];
             best_way(&places, eas, bounds.floor(root_eas))
         }
         Rule::Bey => Way::new(&places, bey::way(forest, class)),

@@ -32,17 +32,14 @@ pub(super) use eight::{IMAGES, eight};
 pub(super) use extract::{Extracted, extract};
 pub(super) use patterns::{FACET_EDGES, patterns};
 
-use classes::{Class, Shape};
+use classes::{Class, ClassId, Shape};
 use facets::{Facets, Middles};
 use fills::Fills;
 use hashbrown::HashMap;
 
-use crate::base::Point;
+use crate::base::{EdgeId, ForestVertexId, MaybeId, NodeId, Point, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, dot, scale, sub};
-
-/// An id that means: none.
-pub(super) const NONE: u32 = u32::MAX;
 
 /// The largest depth of division: what a path of 64 bits can hold, and far beyond the resolution of
 /// coordinates.
@@ -55,20 +52,20 @@ pub(super) const MAX_NODES: usize = 2_000_000_000;
 /// An edge of tets of some generation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
-    pub(super) ends: [u32; 2],
-    /// The vertex in its middle, or [`NONE`] if it was never split.
-    pub(super) middle: u32,
-    /// The halves, one at each end, or [`NONE`].
-    pub(super) halves: [u32; 2],
+    pub(super) ends: [ForestVertexId; 2],
+    /// The vertex in its middle; none if it was never split.
+    pub(super) middle: MaybeId<ForestVertexId>,
+    /// The halves, one at each end; either both or none.
+    pub(super) halves: [MaybeId<EdgeId>; 2],
 }
 
 /// A tet of the first mesh, or one of eight that a tet was divided into.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
-    pub(super) vertices: [u32; 4],
-    pub(super) parent: u32,
-    /// The first of its eight parts, which are consecutive; [`NONE`] if it was never divided.
-    pub(super) first_child: u32,
+    pub(super) vertices: [ForestVertexId; 4],
+    pub(super) parent: MaybeId<NodeId>,
+    /// The first of its eight parts, which are consecutive; none if it was never divided.
+    pub(super) first_child: MaybeId<NodeId>,
     pub(super) shape: Shape,
 }
 
@@ -90,22 +87,22 @@ pub(super) struct Forest {
     /// For each vertex, its position in the reference.
     pub(super) reference: Vec<Point>,
     /// For each vertex that is not of the first mesh, the edge in whose middle it lies.
-    pub(super) origin: Vec<u32>,
+    pub(super) origin: Vec<EdgeId>,
     pub(super) edges: Vec<Edge>,
     /// For each edge, whether it is currently split; stored separately because it is read most.
     pub(super) is_split: Vec<bool>,
     pub(super) nodes: Vec<Node>,
     pub(super) states: Vec<State>,
     /// For each tet, its edges.
-    pub(super) edges_of: Vec<[u32; 6]>,
+    pub(super) edges_of: Vec<[EdgeId; 6]>,
     pub(super) n_roots: usize,
     pub(super) n_first_vertices: usize,
     /// No tet is divided once there are this many.
     pub(super) max_nodes: usize,
     /// Edges that stay split because a root has a vertex in their middle.
-    pub(super) pinned: Vec<u32>,
+    pub(super) pinned: Vec<EdgeId>,
     /// The edges of roots, by their ends.
-    root_edges: HashMap<[u32; 2], u32>,
+    root_edges: HashMap<[ForestVertexId; 2], EdgeId>,
     /// The three edges between the middles of a facet's edges; see [`Self::inner_edges`].
     facet_edges: Facets,
     /// The classes of shapes: first those of the roots.
@@ -116,7 +113,10 @@ pub(super) struct Forest {
 impl Forest {
     /// Makes a root of every tet, in either orientation; the flag says whether the mesh has it in the
     /// opposite one.
-    pub(super) fn new(points: &[Point], tets: impl ExactSizeIterator<Item = ([u32; 4], bool)>) -> Self {
+    pub(super) fn new(
+        points: &[Point],
+        tets: impl ExactSizeIterator<Item = ([ForestVertexId; 4], bool)>,
+    ) -> Self {
         let n_roots = tets.len();
         let mut forest = Self {
             reference: points.to_vec(),
@@ -131,9 +131,10 @@ impl Forest {
         };
         for ((vertices, is_turned), root) in tets.zip(0..) {
             let edges = EDGES.map(|[i, j]| forest.make_root_edge([vertices[i], vertices[j]]));
-            let shape = Shape::new(root, is_turned);
-            forest.nodes.push(Node { vertices, parent: NONE, first_child: NONE, shape });
-            forest.classes.push(Class::of_root(vertices.map(|v| points[v as usize])));
+            let shape = Shape::new(ClassId(root), is_turned);
+            let (parent, first_child) = (MaybeId::NONE, MaybeId::NONE);
+            forest.nodes.push(Node { vertices, parent, first_child, shape });
+            forest.classes.push(Class::of_root(vertices.map(|v| points[v.index()])));
             forest.states.push(State::default());
             forest.edges_of.push(edges);
         }
@@ -141,31 +142,32 @@ impl Forest {
     }
 
     /// The edge between two vertices of the first mesh.
-    pub(super) fn root_edge(&self, [u, v]: [u32; 2]) -> Option<u32> {
+    pub(super) fn root_edge(&self, [u, v]: [ForestVertexId; 2]) -> Option<EdgeId> {
         self.root_edges.get(&[u.min(v), u.max(v)]).copied()
     }
 
     /// The edge between two vertices of the first mesh; a new one if there is none.
-    fn make_root_edge(&mut self, [u, v]: [u32; 2]) -> u32 {
+    fn make_root_edge(&mut self, [u, v]: [ForestVertexId; 2]) -> EdgeId {
         let ends = [u.min(v), u.max(v)];
         *self.root_edges.entry(ends).or_insert_with(|| push_edge(&mut self.edges, &mut self.is_split, ends))
     }
 
     /// The edges within a facet between the middles of its edges, if it was ever divided, by tets here or by
-    /// roots: edge `k` is opposite middle `k`, or [`NONE`].
-    pub(super) fn inner_edges(&self, middles: [u32; 3]) -> Option<[u32; 3]> {
+    /// roots: edge `k` is opposite middle `k`; none where a facet of roots has no such edge.
+    pub(super) fn inner_edges(&self, middles: [ForestVertexId; 3]) -> Option<[MaybeId<EdgeId>; 3]> {
         let middles = Middles::new(middles);
         let first = self.facet_edges.get(&middles);
-        if first.is_none() && middles.rising.iter().any(|v| (*v as usize) >= self.n_first_vertices) {
+        if first.is_none() && middles.rising.iter().any(|v| v.index() >= self.n_first_vertices) {
             return None;
         }
-        Some(self.or_root_edges(&middles, first.map_or([NONE; 3], |first| middles.named(first))))
+        let edges = first.map_or([MaybeId::NONE; 3], |first| middles.named(first).map(MaybeId::from));
+        Some(self.or_root_edges(&middles, edges))
     }
 
     /// The edges within a facet between the middles of its edges, as for [`Self::inner_edges`]; new ones if
     /// there are none.
     #[inline]
-    pub(super) fn make_inner_edges(&mut self, middles: [u32; 3]) -> [u32; 3] {
+    pub(super) fn make_inner_edges(&mut self, middles: [ForestVertexId; 3]) -> [EdgeId; 3] {
         let middles = Middles::new(middles);
         let first = self.facet_edges.get(&middles).unwrap_or_else(|| {
             let [x, y, z] = middles.rising;
@@ -180,18 +182,17 @@ impl Forest {
 
     /// Replaces edges between two of three middles by edges of roots, where there are such.
     #[inline]
-    fn or_root_edges(&self, middles: &Middles, edges: [u32; 3]) -> [u32; 3] {
-        let are_of_roots = (middles.rising[1] as usize) < self.n_first_vertices;
+    fn or_root_edges<E: From<EdgeId> + Copy>(&self, middles: &Middles, edges: [E; 3]) -> [E; 3] {
+        let are_of_roots = middles.rising[1].index() < self.n_first_vertices;
         if are_of_roots { self.root_edges_or(middles, edges) } else { edges }
     }
 
     #[cold]
-    fn root_edges_or(&self, middles: &Middles, mut edges: [u32; 3]) -> [u32; 3] {
+    fn root_edges_or<E: From<EdgeId> + Copy>(&self, middles: &Middles, mut edges: [E; 3]) -> [E; 3] {
         let [x, y, z] = middles.rising;
-        let places = middles.named(0);
-        for (edge, place) in edges.iter_mut().zip(places) {
-            let opposite = [[y, z], [x, z], [x, y]][place as usize];
-            *edge = self.known_edge(opposite).unwrap_or(*edge);
+        for (edge, place) in edges.iter_mut().zip(middles.ranks()) {
+            let opposite = [[y, z], [x, z], [x, y]][place];
+            *edge = self.known_edge(opposite).map_or(*edge, E::from);
         }
         edges
     }
@@ -199,14 +200,14 @@ impl Forest {
     /// The edge of a root between two vertices. Returns at once if a vertex belongs to no root, the usual
     /// case for vertices made by divisions.
     #[inline]
-    fn known_edge(&self, ends: [u32; 2]) -> Option<u32> {
-        let are_of_roots = ends.iter().all(|v| (*v as usize) < self.n_first_vertices);
+    fn known_edge(&self, ends: [ForestVertexId; 2]) -> Option<EdgeId> {
+        let are_of_roots = ends.iter().all(|v| v.index() < self.n_first_vertices);
         if are_of_roots { self.root_edge(ends) } else { None }
     }
 
     /// The edge of a root between two vertices, or a new edge.
     #[inline]
-    pub(super) fn make_edge(&mut self, ends: [u32; 2]) -> u32 {
+    pub(super) fn make_edge(&mut self, ends: [ForestVertexId; 2]) -> EdgeId {
         match self.known_edge(ends) {
             Some(edge) => edge,
             None => push_edge(&mut self.edges, &mut self.is_split, ends),
@@ -215,8 +216,10 @@ impl Forest {
 
     /// Finds the edges that stay split.
     pub(super) fn pin(&mut self) {
-        let is_pinned = |edge: &u32| (self.edges[*edge as usize].middle as usize) < self.n_first_vertices;
-        self.pinned = (0..self.edges.len() as u32).filter(is_pinned).collect();
+        let n = self.n_first_vertices;
+        let is_pinned =
+            |edge: &EdgeId| self.edges[edge.index()].middle.get().is_some_and(|middle| middle.index() < n);
+        self.pinned = (0..self.edges.len()).map(EdgeId::new).filter(is_pinned).collect();
         // Their halves may be edges of roots, whether or not a tet here was divided.
         for i in 0..self.pinned.len() {
             self.halves(self.pinned[i]);
@@ -225,60 +228,74 @@ impl Forest {
 
     /// The vertex in the middle of an edge; a new one if there is none.
     #[inline]
-    pub(super) fn middle(&mut self, edge: u32) -> u32 {
-        let Edge { ends: [u, v], middle, .. } = self.edges[edge as usize];
-        if middle != NONE {
+    pub(super) fn middle(&mut self, edge: EdgeId) -> ForestVertexId {
+        let Edge { ends: [u, v], middle, .. } = self.edges[edge.index()];
+        if let Some(middle) = middle.get() {
             return middle;
         }
-        let new = self.reference.len() as u32;
-        let sum = add(self.reference[u as usize], self.reference[v as usize]);
+        let new = ForestVertexId::new(self.reference.len());
+        let sum = add(self.reference[u.index()], self.reference[v.index()]);
         self.reference.push(scale(sum, 0.5));
         self.origin.push(edge);
-        self.edges[edge as usize].middle = new;
+        self.edges[edge.index()].middle = new.into();
         new
     }
 
+    /// The halves of an edge, one at each end; new ones, and a new middle, if there are none.
     #[inline]
-    pub(super) fn halves(&mut self, edge: u32) -> [u32; 2] {
-        let Edge { ends: [u, v], middle, halves, .. } = self.edges[edge as usize];
-        if halves[0] != NONE {
-            return halves;
+    pub(super) fn halves(&mut self, edge: EdgeId) -> [EdgeId; 2] {
+        let Edge { ends: [u, v], halves, .. } = self.edges[edge.index()];
+        if let [Some(first), Some(second)] = halves.map(MaybeId::get) {
+            return [first, second];
         }
+        let middle = self.middle(edge);
         let halves = [self.make_edge([u, middle]), self.make_edge([v, middle])];
-        self.edges[edge as usize].halves = halves;
+        self.edges[edge.index()].halves = halves.map(MaybeId::from);
         halves
     }
 
+    /// The eight parts of a divided tet, given the first.
+    #[inline]
+    pub(super) fn parts_from(first: NodeId) -> impl DoubleEndedIterator<Item = NodeId> {
+        (first.0..first.0 + 8).map(NodeId)
+    }
+
+    /// A tet of the forest, and those that it is a part of.
+    pub(super) fn ancestors(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
+        std::iter::successors(Some(node), move |node| self.nodes[node.index()].parent.get())
+    }
+
     /// The positions of a tet's corners.
-    pub(super) fn corners(&self, node: u32) -> [Point; 4] {
-        let [a, b, c, d] = self.nodes[node as usize].vertices;
-        let place = |v: u32| self.reference[v as usize];
+    pub(super) fn corners(&self, node: NodeId) -> [Point; 4] {
+        let [a, b, c, d] = self.nodes[node.index()].vertices;
+        let place = |v: ForestVertexId| self.reference[v.index()];
         [place(a), place(b), place(c), place(d)]
     }
 
     /// Which edges of a tet are split, as bits.
     #[inline]
-    pub(super) fn mask(&self, node: u32) -> u8 {
+    pub(super) fn mask(&self, node: NodeId) -> u8 {
         let mut mask = 0;
-        for (e, edge) in self.edges_of[node as usize].iter().enumerate() {
-            mask |= u8::from(self.is_split[*edge as usize]) << e;
+        for (e, edge) in self.edges_of[node.index()].iter().enumerate() {
+            mask |= u8::from(self.is_split[edge.index()]) << e;
         }
         mask
     }
 
     /// Whether the facets with two split edges are cut from the middle of the second, as bits. The cut starts
     /// from the middle of the longer edge, so both tets at a facet agree.
-    pub(super) fn cuts(&self, node: u32, mask: u8) -> u8 {
+    pub(super) fn cuts(&self, node: NodeId, mask: u8) -> u8 {
         (0..4).fold(0, |cuts, facet| {
             let (split, n) = patterns::split_edges(facet, mask);
-            let [first, second, _] = split.map(|e| self.edges_of[node as usize][e]);
+            let [first, second, _] = split.map(|e| self.edges_of[node.index()][e]);
             cuts | u8::from(n == 2 && self.is_longer(second, first)) << facet
         })
     }
 
-    /// Whether a triangle with two split edges is cut from the middle of the second of them.
-    pub(super) fn is_cut_from_second(&self, edges: [u32; 3], middles: [Option<u32>; 3]) -> bool {
-        let mut split = (0..3).filter(|&k| middles[k].is_some()).map(|k| edges[k]);
+    /// Whether a triangle is cut from the middle of the second of its split edges, given by rank: it has two,
+    /// and the second is longer.
+    pub(super) fn is_cut_from_second(&self, split: [Option<EdgeId>; 3]) -> bool {
+        let mut split = split.into_iter().flatten();
         match (split.next(), split.next(), split.next()) {
             (Some(first), Some(second), None) => self.is_longer(second, first),
             _ => false,
@@ -287,10 +304,10 @@ impl Forest {
 
     /// Which of two edges that share a vertex is longer; ties are broken by the coordinates, then the id, of
     /// the other end.
-    fn is_longer(&self, one: u32, other: u32) -> bool {
-        let [[a, b], [c, d]] = [one, other].map(|edge| self.edges[edge as usize].ends);
-        let place = |v: u32| self.reference[v as usize];
-        let length = |u: u32, v: u32| {
+    fn is_longer(&self, one: EdgeId, other: EdgeId) -> bool {
+        let [[a, b], [c, d]] = [one, other].map(|edge| self.edges[edge.index()].ends);
+        let place = |v: ForestVertexId| self.reference[v.index()];
+        let length = |u: ForestVertexId, v: ForestVertexId| {
             let along = sub(place(u), place(v));
             dot(along, along)
         };
@@ -317,6 +334,11 @@ impl Forest {
     }
 }
 
+/// The vertex of the forest that a vertex of the first mesh is.
+pub(super) fn in_forest(v: VertexId) -> ForestVertexId {
+    ForestVertexId(v.0)
+}
+
 /// The corners of a tet, then the middles of its edges.
 pub(super) fn with_middles(corners: [Point; 4]) -> [Point; 10] {
     let mut places = [[0.0; 3]; 10];
@@ -328,8 +350,8 @@ pub(super) fn with_middles(corners: [Point; 4]) -> [Point; 10] {
 }
 
 #[inline]
-fn push_edge(edges: &mut Vec<Edge>, is_split: &mut Vec<bool>, ends: [u32; 2]) -> u32 {
-    edges.push(Edge { ends, middle: NONE, halves: [NONE; 2] });
+fn push_edge(edges: &mut Vec<Edge>, is_split: &mut Vec<bool>, ends: [ForestVertexId; 2]) -> EdgeId {
+    edges.push(Edge { ends, middle: MaybeId::NONE, halves: [MaybeId::NONE; 2] });
     is_split.push(false);
-    (edges.len() - 1) as u32
+    EdgeId::new(edges.len() - 1)
 }

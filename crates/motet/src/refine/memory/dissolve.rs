@@ -3,23 +3,22 @@
 use std::collections::HashSet;
 
 use super::super::forest::FACET_EDGES;
-use super::super::forest::NONE;
-use super::trees::{TreeNode, Trees};
-use crate::base::{Id, Point, VertexId, sorted_ids};
+use super::trees::{TreeNode, TreeNodeId, Trees};
+use crate::base::{MaybeId, Point, VertexId, sorted_ids};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::{EDGES, FACETS};
 use crate::mesh::TetMesh;
-use crate::mesh::tet_facets::{NO_TET, tet_neighbors};
+use crate::mesh::tet_facets::tet_neighbors;
 
 /// Motion has spoilt a tet if its EAS falls below this fraction of that in the reference.
 const SPOILT: f64 = 0.9;
 
 /// Dissolves nodes spoilt by motion: as a whole they would be inverted, or worse than every tet of the mesh.
 pub(super) fn misshapen(trees: &mut Trees, reference: &[Point], points: &[Point], worst: f64) {
-    for node in 0..trees.nodes.len() as u32 {
-        let vertices: [VertexId; 4] = std::array::from_fn(|i| trees.nodes[node as usize].vertices[i]);
-        let [was, is] = [reference, points].map(|points| vertices.map(|v| points[v.index()]));
+    for node in (0..trees.nodes.len()).map(TreeNodeId::new) {
+        let corners = trees.nodes[node.index()].corners;
+        let [was, is] = [reference, points].map(|points| corners.map(|v| points[v.index()]));
         let side = |[a, b, c, d]: [Point; 4]| orient3d(a, b, c, d);
         let is_worse = || eas(is).abs() < worst && eas(is).abs() < SPOILT * eas(was).abs();
         if side(is) == 0 || side(is) != side(was) || is_worse() {
@@ -31,16 +30,16 @@ pub(super) fn misshapen(trees: &mut Trees, reference: &[Point], points: &[Point]
 /// Dissolves nodes with a split edge that a tet from elsewhere has unsplit: this is possible beside a middle
 /// vertex that has moved off its edge.
 pub(super) fn bridged(trees: &mut Trees, mesh: &TetMesh) {
-    let of_others = mesh.tets.iter().zip(&trees.node_of).filter(|(_, node)| **node == NONE);
+    let of_others = mesh.tets.iter().zip(&trees.node_of).filter(|(_, node)| node.is_none());
     let edges = of_others.flat_map(|(tet, _)| EDGES.map(|[i, j]| sorted_ids([tet[i], tet[j]])));
     let edges: HashSet<[VertexId; 2]> = edges.collect();
     if edges.is_empty() {
         return;
     }
-    for node in 0..trees.nodes.len() as u32 {
-        let vertices = trees.nodes[node as usize].vertices;
-        let mut split = EDGES.iter().enumerate().filter(|(e, _)| vertices[4 + e] != VertexId::NONE);
-        if split.any(|(_, &[i, j])| edges.contains(&sorted_ids([vertices[i], vertices[j]]))) {
+    for node in (0..trees.nodes.len()).map(TreeNodeId::new) {
+        let TreeNode { corners, middles, .. } = trees.nodes[node.index()];
+        let mut split = EDGES.iter().zip(middles).filter(|(_, middle)| middle.is_some());
+        if split.any(|(&[i, j], _)| edges.contains(&sorted_ids([corners[i], corners[j]]))) {
             trees.dissolve(node);
         }
     }
@@ -50,13 +49,13 @@ pub(super) fn bridged(trees: &mut Trees, mesh: &TetMesh) {
 /// step towards a facet divided in four, so the tet on the other side must be able to take it back, too.
 pub(super) fn unmatched(trees: &mut Trees, mesh: &TetMesh) {
     let pairs = meetings(trees, mesh);
-    let mut open: Vec<u32> =
-        pairs.iter().filter(|(_, other)| *other == NONE).map(|(node, _)| *node).collect();
-    let is_dissolved = |trees: &Trees, node: u32| !trees.nodes[node as usize].is_whole;
+    let mut open: Vec<TreeNodeId> =
+        pairs.iter().filter(|(_, other)| other.is_none()).map(|(node, _)| *node).collect();
+    let is_dissolved = |trees: &Trees, node: TreeNodeId| !trees.nodes[node.index()].is_whole;
     open.extend(
         pairs
             .iter()
-            .filter(|(_, other)| *other != NONE && is_dissolved(trees, *other))
+            .filter(|(_, other)| other.get().is_some_and(|other| is_dissolved(trees, other)))
             .map(|(node, _)| *node),
     );
     while let Some(node) = open.pop() {
@@ -66,27 +65,27 @@ pub(super) fn unmatched(trees: &mut Trees, mesh: &TetMesh) {
         trees.dissolve(node);
         let first = pairs.partition_point(|(one, _)| *one < node);
         let others = pairs[first..].iter().take_while(|(one, _)| *one == node).map(|(_, other)| *other);
-        open.extend(others.filter(|other| *other != NONE));
+        open.extend(others.filter_map(MaybeId::get));
     }
 }
 
-/// Pairs each cut tet with each tet that shares a facet cut by one or two middles; [`NONE`] if the other side
+/// Pairs each cut tet with each tet that shares a facet cut by one or two middles; none if the other side
 /// does not have that facet. Sorted.
-fn meetings(trees: &Trees, mesh: &TetMesh) -> Vec<(u32, u32)> {
+fn meetings(trees: &Trees, mesh: &TetMesh) -> Vec<(TreeNodeId, MaybeId<TreeNodeId>)> {
     let neighbors = tet_neighbors(&mesh.tets);
     let mut pairs = Vec::new();
     for (t, behind) in neighbors.iter().enumerate() {
-        let node = trees.node_of[t];
-        if node == NONE || trees.nodes[node as usize].vertices[4..].iter().all(|v| *v == VertexId::NONE) {
+        let Some(node) = trees.node_of[t].get() else { continue };
+        if trees.nodes[node.index()].middles.iter().all(|middle| middle.is_none()) {
             continue;
         }
-        for (i, &other) in behind.iter().enumerate().filter(|(_, other)| **other != NO_TET) {
+        for (i, other) in behind.iter().enumerate() {
+            let Some(other) = other.get() else { continue };
             let triangle = FACETS[i].map(|k| mesh.tets[t][k]);
-            let Some(corners) = cut_facet(&trees.nodes[node as usize], triangle) else { continue };
-            let other = Some(trees.node_of[other as usize]).filter(|&other| {
-                other != NONE && cut_facet(&trees.nodes[other as usize], triangle) == Some(corners)
-            });
-            pairs.push((node, other.unwrap_or(NONE)));
+            let Some(corners) = cut_facet(&trees.nodes[node.index()], triangle) else { continue };
+            let has_it =
+                |other: &TreeNodeId| cut_facet(&trees.nodes[other.index()], triangle) == Some(corners);
+            pairs.push((node, trees.node_of[other.index()].get().filter(has_it).into()));
         }
     }
     pairs.sort_unstable();
@@ -98,10 +97,10 @@ fn meetings(trees: &Trees, mesh: &TetMesh) -> Vec<(u32, u32)> {
 /// two of its edges are split.
 fn cut_facet(node: &TreeNode, triangle: [VertexId; 3]) -> Option<[VertexId; 3]> {
     let facet = (0..4).find(|&facet| {
-        let corners = FACETS[facet].map(|k| node.vertices[k]);
-        let middles = FACET_EDGES[facet].map(|e| node.vertices[4 + e]);
-        triangle.iter().all(|v| corners.contains(v) || middles.contains(v))
+        let corners = FACETS[facet].map(|k| node.corners[k]);
+        let middles = FACET_EDGES[facet].map(|e| node.middles[e]);
+        triangle.iter().all(|v| corners.contains(v) || middles.contains(&(*v).into()))
     })?;
-    let n = FACET_EDGES[facet].iter().filter(|e| node.vertices[4 + **e] != VertexId::NONE).count();
-    (n == 1 || n == 2).then(|| sorted_ids(FACETS[facet].map(|k| node.vertices[k])))
+    let n = FACET_EDGES[facet].iter().filter(|e| node.middles[**e].is_some()).count();
+    (n == 1 || n == 2).then(|| sorted_ids(FACETS[facet].map(|k| node.corners[k])))
 }

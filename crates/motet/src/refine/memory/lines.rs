@@ -6,7 +6,7 @@ use hashbrown::HashMap;
 
 use super::trees::Trees;
 use super::unfit;
-use crate::base::{Id, Result, VertexId};
+use crate::base::{LineId, Result, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::mesh::TetMesh;
 
@@ -15,7 +15,7 @@ pub(super) struct Gathered {
     pub(super) lines: Vec<[VertexId; 2]>,
     pub(super) labels: Vec<i32>,
     /// For each line of the mesh, which of these it is a part of.
-    pub(super) part_of: Vec<u32>,
+    pub(super) part_of: Vec<LineId>,
 }
 
 /// No edge is halved more often than this.
@@ -33,14 +33,14 @@ pub(super) fn gather(mesh: &TetMesh, trees: &Trees) -> Result<Gathered> {
     let whole_of = whole_edges(trees);
     // Duplicate lines stay apart: of two on one edge, the second is a part of the second whole.
     let mut n_seen: BTreeMap<([VertexId; 2], i32), u32> = BTreeMap::new();
-    let mut numbers: BTreeMap<([VertexId; 2], i32, u32), u32> = BTreeMap::new();
+    let mut numbers: BTreeMap<([VertexId; 2], i32, u32), LineId> = BTreeMap::new();
     let mut shares: Vec<u64> = Vec::new();
     for (line, (&part, &label)) in mesh.lines.iter().zip(&mesh.line_labels).enumerate() {
         let seen = n_seen.entry((sorted(part), label)).or_default();
         let copy = std::mem::replace(seen, *seen + 1);
         let (whole, n_halvings) = undivided_edge(part, &whole_of)
             .ok_or_else(|| unfit(&format!("line {line} lies in an edge that was divided too often")))?;
-        let next = gathered.lines.len() as u32;
+        let next = LineId::new(gathered.lines.len());
         let number = *numbers.entry((sorted(whole), label, copy)).or_insert(next);
         if number == next {
             gathered.lines.push(whole);
@@ -48,7 +48,7 @@ pub(super) fn gather(mesh: &TetMesh, trees: &Trees) -> Result<Gathered> {
             shares.push(0);
         }
         gathered.part_of.push(number);
-        shares[number as usize] += 1 << (MAX_HALVINGS - n_halvings);
+        shares[number.index()] += 1 << (MAX_HALVINGS - n_halvings);
     }
     match shares.iter().position(|&share| share != 1 << MAX_HALVINGS) {
         None => Ok(gathered),
@@ -65,8 +65,8 @@ fn whole_edges(trees: &Trees) -> HashMap<[VertexId; 2], [VertexId; 2]> {
     let mut whole_of = HashMap::new();
     for node in trees.nodes.iter().filter(|node| node.is_whole) {
         for (e, [i, j]) in EDGES.into_iter().enumerate() {
-            let ([a, b], middle) = ([node.vertices[i], node.vertices[j]], node.vertices[4 + e]);
-            if middle != VertexId::NONE {
+            let [a, b] = [node.corners[i], node.corners[j]];
+            if let Some(middle) = node.middles[e].get() {
                 whole_of.extend([a, b].map(|end| (sorted([end, middle]), sorted([a, b]))));
             }
         }

@@ -20,19 +20,16 @@ mod record;
 mod trees;
 mod triangles;
 
-use crate::base::{Error, Point, Result};
+use crate::base::{Error, MaybeId, Point, Result, TetId};
 use crate::kernel::{Extract, NEW};
 use crate::mesh::TetMesh;
-
-/// A root number that means: not known.
-pub const UNKNOWN: u32 = u32::MAX;
 
 /// The memory of a refined mesh, array by array.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Memory {
-    /// For each tet, a number shared by all tets of the same tet of the first mesh; [`UNKNOWN`] for a tet
-    /// that does not come from refinement.
-    pub roots: Vec<u32>,
+    /// For each tet, the tet of the first mesh that it lies in; none for a tet that does not come from
+    /// refinement.
+    pub roots: Vec<MaybeId<TetId>>,
     /// For each tet, the path down from its root: a one bit, then three bits per generation giving which of
     /// the eight parts it lies in.
     pub paths: Vec<u64>,
@@ -58,7 +55,7 @@ impl Memory {
             old => self.reference[old as usize],
         };
         Self {
-            roots: of_tets().map(|old| old.map_or(UNKNOWN, |t| self.roots[t])).collect(),
+            roots: of_tets().map(|old| old.map_or(MaybeId::NONE, |t| self.roots[t])).collect(),
             paths: of_tets().map(|old| old.map_or(0, |t| self.paths[t])).collect(),
             pieces: of_tets().map(|old| old.map_or(0, |t| self.pieces[t])).collect(),
             n_requested: of_tets().map(|old| old.map_or(0, |t| self.n_requested[t])).collect(),

@@ -1,13 +1,13 @@
 //! Rebuilds the forest from a stored memory.
 
-use super::super::forest::{Extracted, extract};
-use super::super::forest::{Forest, NONE};
-use super::super::forest::{ShapeBounds, close};
+use super::super::forest::{Extracted, Forest, ShapeBounds, close, extract, in_forest};
 use super::super::refinement::{Options, Refinement, Summary, check_roots};
-use super::trees::Trees;
+use super::trees::{TreeNodeId, Trees};
 use super::triangles::Gathered;
 use super::{Memory, dissolve, lines, triangles, unfit};
-use crate::base::{Id, Point, Result, Threads, VertexId};
+use crate::base::{
+    EdgeId, ForestVertexId, LineId, MaybeId, NodeId, Point, Result, TetId, Threads, TriangleId, VertexId,
+};
 use crate::geometry::quality::eas;
 use crate::mesh::TetMesh;
 
@@ -23,7 +23,7 @@ impl Refinement {
         mesh.validate()?;
         memory.check(mesh)?;
         let mut trees = Trees::gather(mesh, memory);
-        let is_changed = trees.node_of.contains(&NONE);
+        let is_changed = trees.node_of.contains(&MaybeId::NONE);
         let reference = if is_changed { &mesh.points } else { &memory.reference };
         if is_changed {
             let shape = |t: usize| eas(mesh.tets[t].map(|v| mesh.points[v.index()])).abs();
@@ -46,14 +46,14 @@ impl Refinement {
 struct Roots {
     /// The first mesh, with the vertex ids of the given mesh.
     first: TetMesh,
-    /// For each root, its node in the trees; [`NONE`] if it is a single tet without one.
-    tree_nodes: Vec<u32>,
+    /// For each root, its node in the trees; none if it is a single tet without one.
+    tree_nodes: Vec<MaybeId<TreeNodeId>>,
     /// For each tet, its root.
-    root_of: Vec<u32>,
+    root_of: Vec<NodeId>,
     /// For each triangle of the mesh, its triangle of the first mesh.
-    triangle_of: Vec<u32>,
+    triangle_of: Vec<TriangleId>,
     /// For each line of the mesh, its line of the first mesh.
-    line_of: Vec<u32>,
+    line_of: Vec<LineId>,
     n_dissolved: usize,
 }
 
@@ -66,22 +66,21 @@ impl Roots {
         (first.lines, first.line_labels) = (gathered.lines, gathered.labels);
         let mut tree_nodes = Vec::new();
         let mut root_of = Vec::with_capacity(mesh.tets.len());
-        let mut root_of_tree_node = vec![NONE; trees.nodes.len()];
+        let mut root_of_tree_node: Vec<MaybeId<NodeId>> = vec![MaybeId::NONE; trees.nodes.len()];
         for (t, &tet) in mesh.tets.iter().enumerate() {
-            let top = trees.top_of(t);
-            let known = top.map_or(NONE, |top| root_of_tree_node[top as usize]);
-            if known != NONE {
+            let top = trees.top_of(TetId::new(t));
+            if let Some(known) = top.and_then(|top| root_of_tree_node[top.index()].get()) {
                 root_of.push(known);
                 continue;
             }
-            let root = tree_nodes.len() as u32;
+            let root = NodeId::new(tree_nodes.len());
             root_of.push(root);
-            tree_nodes.push(top.unwrap_or(NONE));
+            tree_nodes.push(top.into());
             first.regions.push(mesh.regions[t]);
             first.tets.push(top.map_or(tet, |top| {
-                root_of_tree_node[top as usize] = root;
-                let tree_node = &trees.nodes[top as usize];
-                let [a, b, c, d]: [VertexId; 4] = std::array::from_fn(|i| tree_node.vertices[i]);
+                root_of_tree_node[top.index()] = root.into();
+                let tree_node = &trees.nodes[top.index()];
+                let [a, b, c, d] = tree_node.corners;
                 if tree_node.is_turned { [b, a, c, d] } else { [a, b, c, d] }
             }));
         }
@@ -93,7 +92,7 @@ impl Roots {
     fn middles(&self, mesh: &TetMesh, trees: &Trees) -> Vec<bool> {
         let mut is_middle = vec![false; mesh.points.len()];
         let whole = trees.nodes.iter().filter(|tree_node| tree_node.is_whole);
-        let middles = whole.flat_map(|tree_node| &tree_node.vertices[4..]).filter(|v| **v != VertexId::NONE);
+        let middles = whole.flat_map(|tree_node| tree_node.middles).filter_map(MaybeId::get);
         middles.for_each(|v| is_middle[v.index()] = true);
         let stay = self.first.tets.iter().flatten().chain(&mesh.fixed_vertices);
         let stay = stay.chain(mesh.fixed_edges.iter().flatten()).chain(self.first.lines.iter().flatten());
@@ -110,43 +109,41 @@ impl Roots {
         threads: &Threads,
     ) -> Result<Recalled> {
         let is_middle = self.middles(mesh, trees);
-        let mut to_forest = vec![NONE; mesh.points.len()];
+        let mut to_forest = vec![MaybeId::NONE; mesh.points.len()];
         let firsts: Vec<usize> = (0..is_middle.len()).filter(|&v| !is_middle[v]).collect();
-        firsts.iter().zip(0..).for_each(|(&v, number)| to_forest[v] = number);
-        self.rename(&to_forest);
+        firsts.iter().zip(0..).for_each(|(&v, number)| to_forest[v] = ForestVertexId(number).into());
+        self.rename(&to_forest)?;
         self.first.points = firsts.iter().map(|&v| reference[v]).collect();
         check_roots(&self.first, threads)?;
-        let turned = |tree_node: u32| tree_node != NONE && trees.nodes[tree_node as usize].is_turned;
+        let turned = |tree_node: TreeNodeId| trees.nodes[tree_node.index()].is_turned;
         let roots =
-            self.first.tets.iter().zip(&self.tree_nodes).map(|(tet, &tree_node)| match tet.map(|v| v.0) {
-                [a, b, c, d] if turned(tree_node) => ([b, a, c, d], true),
+            self.first.tets.iter().zip(&self.tree_nodes).map(|(tet, tree_node)| match tet.map(in_forest) {
+                [a, b, c, d] if tree_node.get().is_some_and(turned) => ([b, a, c, d], true),
                 tet => (tet, false),
             });
         let forest = Forest::new(&self.first.points, roots);
         let bounds = ShapeBounds::new(options, &forest);
         self.first.points = firsts.iter().map(|&v| mesh.points[v]).collect();
 
-        let mut building =
-            Building { trees, forest, to_forest, forest_node_of: vec![NONE; trees.nodes.len()] };
-        for (root, &tree_node) in (0..).zip(&self.tree_nodes).filter(|(_, tree_node)| **tree_node != NONE) {
-            building.build(root, tree_node)?;
+        let forest_node_of = vec![MaybeId::NONE; trees.nodes.len()];
+        let mut building = Building { trees, forest, to_forest, forest_node_of };
+        for (root, tree_node) in self.tree_nodes.iter().enumerate() {
+            if let Some(tree_node) = tree_node.get() {
+                building.build(NodeId::new(root), tree_node)?;
+            }
         }
         let Building { mut forest, to_forest, forest_node_of, .. } = building;
         forest.pin();
-        let nodes = |t: usize| match trees.node_of[t] {
-            tree_node if tree_node != NONE && forest_node_of[tree_node as usize] != NONE => {
-                forest_node_of[tree_node as usize]
-            }
-            _ => self.root_of[t],
-        };
-        let nodes: Vec<u32> = (0..mesh.tets.len()).map(nodes).collect();
+        let node =
+            |t: usize| trees.node_of[t].get().and_then(|tree_node| forest_node_of[tree_node.index()].get());
+        let nodes: Vec<NodeId> = (0..mesh.tets.len()).map(|t| node(t).unwrap_or(self.root_of[t])).collect();
+        let known =
+            |v: &MaybeId<ForestVertexId>| v.get().ok_or_else(|| unfit("a point is not accounted for"));
+        let vertices = to_forest.iter().map(known).collect::<Result<Vec<_>>>()?;
         let mut points = vec![[f64::NAN; 3]; forest.reference.len()];
-        for (v, &known) in to_forest.iter().enumerate() {
-            *points.get_mut(known as usize).ok_or_else(|| unfit("a point is not accounted for"))? =
-                mesh.points[v];
-        }
+        vertices.iter().zip(&mesh.points).for_each(|(v, point)| points[v.index()] = *point);
         let (triangles, lines) = (self.triangle_of, self.line_of);
-        let now = Extracted { mesh: mesh.clone(), vertices: to_forest, nodes, triangles, lines };
+        let now = Extracted { mesh: mesh.clone(), vertices, nodes, triangles, lines };
         // A memory of another mesh may request arbitrarily many divisions.
         let max_nodes = std::mem::replace(&mut forest.max_nodes, 100 * forest.nodes.len() + 100_000);
         let closed = close(&mut forest, bounds, threads).map_err(|_| unfit("its divisions do not end"))?;
@@ -162,13 +159,18 @@ impl Roots {
     }
 
     /// Renames the vertices of the first mesh to those of the forest.
-    fn rename(&mut self, to_forest: &[u32]) {
-        let new = |v: &mut VertexId| *v = VertexId(to_forest[v.index()]);
-        self.first.tets.iter_mut().flatten().for_each(new);
-        self.first.triangles.iter_mut().flatten().for_each(new);
-        self.first.lines.iter_mut().flatten().for_each(new);
-        self.first.fixed_vertices.iter_mut().for_each(new);
-        self.first.fixed_edges.iter_mut().flatten().for_each(new);
+    ///
+    /// # Errors
+    /// When a triangle has a vertex that exists only because of a division.
+    fn rename(&mut self, to_forest: &[MaybeId<ForestVertexId>]) -> Result<()> {
+        let first = &mut self.first;
+        let corners = first.tets.iter_mut().flatten().chain(first.triangles.iter_mut().flatten());
+        let ends = first.lines.iter_mut().flatten().chain(first.fixed_edges.iter_mut().flatten());
+        for v in corners.chain(ends).chain(&mut first.fixed_vertices) {
+            let new = to_forest[v.index()].get().ok_or_else(|| unfit("a triangle is not accounted for"))?;
+            *v = VertexId(new.0);
+        }
+        Ok(())
     }
 }
 
@@ -208,38 +210,39 @@ struct Building<'a> {
     trees: &'a Trees,
     forest: Forest,
     /// For each vertex of the mesh, its id in the forest, once it has one.
-    to_forest: Vec<u32>,
-    /// For each node of the trees, its tet in the forest; [`NONE`] if it has none yet.
-    forest_node_of: Vec<u32>,
+    to_forest: Vec<MaybeId<ForestVertexId>>,
+    /// For each node of the trees, its tet in the forest, once it has one.
+    forest_node_of: Vec<MaybeId<NodeId>>,
 }
 
 impl Building<'_> {
     /// Divides a root as its node in the trees is divided.
-    fn build(&mut self, root: u32, tree_node: u32) -> Result<()> {
+    fn build(&mut self, root: NodeId, tree_node: TreeNodeId) -> Result<()> {
         let mut open = vec![(root, tree_node)];
         while let Some((node, tree_node)) = open.pop() {
-            let of = &self.trees.nodes[tree_node as usize];
-            self.forest_node_of[tree_node as usize] = node;
-            for (e, middle) in of.vertices[4..].iter().enumerate().filter(|(_, v)| **v != VertexId::NONE) {
-                self.set_middle(self.forest.edges_of[node as usize][e], middle.index())?;
+            let of = &self.trees.nodes[tree_node.index()];
+            self.forest_node_of[tree_node.index()] = node.into();
+            for (e, middle) in of.middles.iter().enumerate() {
+                if let Some(middle) = middle.get() {
+                    self.set_middle(self.forest.edges_of[node.index()][e], middle)?;
+                }
             }
             let Some((way, children)) = of.divided else { continue };
             let first = self.forest.divide(node, way);
-            self.forest.states[node as usize].is_requested = u32::from(of.n_requested) > of.generation;
-            open.extend((first..first + 8).zip(children));
+            self.forest.states[node.index()].is_requested = u32::from(of.n_requested) > of.generation;
+            open.extend(Forest::parts_from(first).zip(children));
         }
         Ok(())
     }
 
-    fn set_middle(&mut self, edge: u32, middle: usize) -> Result<()> {
-        let known = self.forest.edges[edge as usize].middle;
-        let is_new = self.to_forest[middle] == NONE;
-        match (known, is_new) {
-            (NONE, true) => self.to_forest[middle] = self.forest.middle(edge),
-            (NONE, false) if (self.to_forest[middle] as usize) < self.forest.n_first_vertices => {
-                self.forest.edges[edge as usize].middle = self.to_forest[middle];
+    fn set_middle(&mut self, edge: EdgeId, middle: VertexId) -> Result<()> {
+        let of_edge = self.forest.edges[edge.index()].middle.get();
+        match (of_edge, self.to_forest[middle.index()].get()) {
+            (None, None) => self.to_forest[middle.index()] = self.forest.middle(edge).into(),
+            (None, Some(v)) if v.index() < self.forest.n_first_vertices => {
+                self.forest.edges[edge.index()].middle = v.into();
             }
-            _ if known == self.to_forest[middle] => {}
+            (Some(known), Some(v)) if known == v => {}
             _ => return Err(unfit("a point is the middle of two edges")),
         }
         Ok(())

@@ -1,10 +1,9 @@
 //! Records what must be remembered of a refined mesh.
 
-use super::super::forest::Extracted;
-use super::super::forest::{Forest, NONE};
+use super::super::forest::{Extracted, Forest, in_forest};
 use super::super::refinement::Refinement;
 use super::Memory;
-use crate::base::Threads;
+use crate::base::{TetId, Threads, TriangleId};
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
 
@@ -14,18 +13,18 @@ impl Refinement {
         let (forest, now) = (&self.forest, &self.now);
         let of_tets = threads.map(now.nodes.len(), |t| entry(forest, now, t));
         Memory {
-            roots: of_tets.iter().map(|entry| entry.root).collect(),
+            roots: of_tets.iter().map(|entry| entry.root.into()).collect(),
             paths: of_tets.iter().map(|entry| entry.path).collect(),
             pieces: of_tets.iter().map(|entry| entry.piece).collect(),
             n_requested: of_tets.iter().map(|entry| entry.n_requested).collect(),
             corners: corners(forest, &self.first_mesh, &now.triangles),
-            reference: now.vertices.iter().map(|&v| forest.reference[v as usize]).collect(),
+            reference: now.vertices.iter().map(|v| forest.reference[v.index()]).collect(),
         }
     }
 }
 
 struct Entry {
-    root: u32,
+    root: TetId,
     path: u64,
     piece: u16,
     n_requested: u8,
@@ -37,32 +36,31 @@ fn entry(forest: &Forest, now: &Extracted, t: usize) -> Entry {
     let mut piece = 0;
     for (i, v) in now.mesh.tets[t].into_iter().enumerate() {
         let vertex = now.vertices[v.index()];
-        let place = local.iter().position(|&other| other == vertex).unwrap_or(15);
+        let place = local.iter().position(|&other| other == vertex.into()).unwrap_or(15);
         piece |= (place as u16) << (4 * i);
     }
     let (mut node, mut path, mut shift, mut n_requested) = (leaf, 0, 0, 0);
-    while forest.nodes[node as usize].parent != NONE {
-        let parent = forest.nodes[node as usize].parent;
-        let above = &forest.nodes[parent as usize];
-        path |= u64::from(node - above.first_child) << shift;
+    while let Some(parent) = forest.nodes[node.index()].parent.get() {
+        let first = forest.nodes[parent.index()].first_child.get().unwrap_or(node);
+        path |= u64::from(node.0 - first.0) << shift;
         shift += 3;
-        n_requested += u8::from(forest.states[parent as usize].is_requested);
+        n_requested += u8::from(forest.states[parent.index()].is_requested);
         node = parent;
     }
-    Entry { root: node, path: path | 1 << shift, piece, n_requested }
+    Entry { root: TetId(node.0), path: path | 1 << shift, piece, n_requested }
 }
 
 /// For each triangle, the corner that the first vertex of the whole triangle is in the first tet that has it
 /// as a facet.
-fn corners(forest: &Forest, first: &TetMesh, triangles: &[u32]) -> Vec<u8> {
+fn corners(forest: &Forest, first: &TetMesh, triangles: &[TriangleId]) -> Vec<u8> {
     let mut of_first = vec![0; first.triangles.len()];
     for_each_tet_facet(&first.tets, &first.triangles, |sharing| {
         let Some(root) = sharing.tets.iter().map(|(tet, _)| *tet).min() else { return };
         let vertices = forest.nodes[root.index()].vertices;
         for &t in sharing.triangles {
-            let begin = first.triangles[t as usize][0].0;
+            let begin = in_forest(first.triangles[t as usize][0]);
             of_first[t as usize] = vertices.iter().position(|&v| v == begin).unwrap_or(0) as u8;
         }
     });
-    triangles.iter().map(|&t| of_first[t as usize]).collect()
+    triangles.iter().map(|t| of_first[t.index()]).collect()
 }

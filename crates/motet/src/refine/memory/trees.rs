@@ -1,25 +1,30 @@
 //! Merges tets of one origin: the pieces of a cut tet into that tet, eight parts into the tet they come from,
 //! and so on.
 
-use super::super::forest::NONE;
 use super::super::forest::patterns;
 use super::super::forest::{IMAGES, eight};
-use super::{Memory, UNKNOWN, generation, locals, step};
-use crate::base::{Id, VertexId};
+use super::{Memory, generation, locals, step};
+use crate::base::{MaybeId, TetId, VertexId, id};
 use crate::mesh::TetMesh;
+
+id!(
+    /// A node of a tree of tets that are merged again.
+    pub(super) TreeNodeId
+);
 
 /// A node of a tree: a tet of the mesh, several pieces of one, or eight such nodes.
 #[derive(Clone, Debug)]
 pub(super) struct TreeNode {
-    /// The corners, then the middles of split edges; [`Id::NONE`] for edges that are not split.
-    pub(super) vertices: [VertexId; 10],
-    pub(super) parent: u32,
+    pub(super) corners: [VertexId; 4],
+    /// The middles of edges; none for edges that are not split.
+    pub(super) middles: [MaybeId<VertexId>; 6],
+    pub(super) parent: MaybeId<TreeNodeId>,
     /// Which of the eight parts of its parent it is.
     pub(super) place: usize,
     /// If it is divided, the index of the diagonal, and the eight parts.
-    pub(super) divided: Option<(usize, [u32; 8])>,
+    pub(super) divided: Option<(usize, [TreeNodeId; 8])>,
     /// A tet of the mesh that lies in it, the first.
-    pub(super) tet: u32,
+    pub(super) tet: TetId,
     pub(super) generation: u32,
     /// How many divisions on the path down to it and below were requested.
     pub(super) n_requested: u8,
@@ -30,20 +35,11 @@ pub(super) struct TreeNode {
     pub(super) is_whole: bool,
 }
 
-impl Default for TreeNode {
-    fn default() -> Self {
-        Self {
-            vertices: [VertexId::NONE; 10],
-            parent: NONE,
-            place: 0,
-            divided: None,
-            tet: NONE,
-            generation: 0,
-            n_requested: 0,
-            is_turned: false,
-            region: 0,
-            is_whole: true,
-        }
+impl TreeNode {
+    /// The local number of a vertex: corners, then middles.
+    pub(super) fn local(&self, v: VertexId) -> Option<usize> {
+        let middle = || self.middles.iter().position(|middle| *middle == v.into()).map(|e| 4 + e);
+        self.corners.iter().position(|corner| *corner == v).or_else(middle)
     }
 }
 
@@ -51,43 +47,43 @@ impl Default for TreeNode {
 #[derive(Debug, Default)]
 pub(super) struct Trees {
     pub(super) nodes: Vec<TreeNode>,
-    /// For each tet, the node that it is or is a piece of; [`NONE`] if unknown.
-    pub(super) node_of: Vec<u32>,
+    /// For each tet, the node that it is or is a piece of; none if unknown.
+    pub(super) node_of: Vec<MaybeId<TreeNodeId>>,
 }
 
 impl Trees {
     pub(super) fn gather(mesh: &TetMesh, memory: &Memory) -> Self {
-        let mut order: Vec<u32> = (0..mesh.tets.len() as u32).collect();
-        order.retain(|&t| memory.roots[t as usize] != UNKNOWN && memory.paths[t as usize] != 0);
-        let key = |t: u32| {
-            let path = memory.paths[t as usize];
-            (memory.roots[t as usize], path << path.leading_zeros() << 1, t)
+        let mut order: Vec<TetId> = (0..mesh.tets.len()).map(TetId::new).collect();
+        order.retain(|t| memory.roots[t.index()].is_some() && memory.paths[t.index()] != 0);
+        let key = |t: TetId| {
+            let path = memory.paths[t.index()];
+            (memory.roots[t.index()], path << path.leading_zeros() << 1, t)
         };
         order.sort_unstable_by_key(|&t| key(t));
-        let nodes = Vec::new();
-        let mut gathering =
-            Gathering { mesh, memory, trees: Self { nodes, node_of: vec![NONE; mesh.tets.len()] } };
-        for tree in order.chunk_by(|&s, &t| memory.roots[s as usize] == memory.roots[t as usize]) {
+        let trees = Self { nodes: Vec::new(), node_of: vec![MaybeId::NONE; mesh.tets.len()] };
+        let mut gathering = Gathering { mesh, memory, trees };
+        for tree in order.chunk_by(|s, t| memory.roots[s.index()] == memory.roots[t.index()]) {
             gathering.gather(tree, 0);
         }
         gathering.trees
     }
 
     /// The largest whole node that a tet lies in.
-    pub(super) fn top_of(&self, tet: usize) -> Option<u32> {
-        let is_whole = |node: &u32| *node != NONE && self.nodes[*node as usize].is_whole;
-        let mut top = Some(self.node_of[tet]).filter(is_whole)?;
-        while let Some(parent) = Some(self.nodes[top as usize].parent).filter(is_whole) {
+    pub(super) fn top_of(&self, tet: TetId) -> Option<TreeNodeId> {
+        let is_whole = |node: &TreeNodeId| self.nodes[node.index()].is_whole;
+        let mut top = self.node_of[tet.index()].get().filter(is_whole)?;
+        while let Some(parent) = self.nodes[top.index()].parent.get().filter(is_whole) {
             top = parent;
         }
         Some(top)
     }
 
     /// Marks a node, and all nodes that it lies in, as not whole.
-    pub(super) fn dissolve(&mut self, mut node: u32) {
-        while node != NONE && self.nodes[node as usize].is_whole {
-            self.nodes[node as usize].is_whole = false;
-            node = self.nodes[node as usize].parent;
+    pub(super) fn dissolve(&mut self, node: TreeNodeId) {
+        let mut next = Some(node);
+        while let Some(node) = next.filter(|node| self.nodes[node.index()].is_whole) {
+            self.nodes[node.index()].is_whole = false;
+            next = self.nodes[node.index()].parent.get();
         }
     }
 }
@@ -100,8 +96,8 @@ struct Gathering<'a> {
 
 impl Gathering<'_> {
     /// Builds the node that these tets form; up to `depth` they have the same path.
-    fn gather(&mut self, tets: &[u32], depth: u32) -> Option<u32> {
-        let depth_of = |t: u32| generation(self.memory.paths[t as usize]);
+    fn gather(&mut self, tets: &[TetId], depth: u32) -> Option<TreeNodeId> {
+        let depth_of = |t: TetId| generation(self.memory.paths[t.index()]);
         if tets.iter().all(|&t| depth_of(t) == depth) {
             return self.leaf(tets, depth);
         }
@@ -109,50 +105,62 @@ impl Gathering<'_> {
             return None;
         }
         let memory = self.memory;
-        let step_of = |t: u32| {
-            let path = memory.paths[t as usize];
+        let step_of = |t: TetId| {
+            let path = memory.paths[t.index()];
             step(path, generation(path), depth)
         };
-        let mut children = [NONE; 8];
+        let mut children = [None; 8];
         for part in tets.chunk_by(|&s, &t| step_of(s) == step_of(t)) {
-            if let Some(child) = self.gather(part, depth + 1) {
-                children[step_of(part[0])] = child;
-            }
+            children[step_of(part[0])] = self.gather(part, depth + 1);
         }
-        if children.contains(&NONE) { None } else { self.whole(children, depth) }
+        let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g), Some(h)] = children else {
+            return None;
+        };
+        self.whole([a, b, c, d, e, f, g, h], depth)
     }
 
-    fn leaf(&mut self, tets: &[u32], generation: u32) -> Option<u32> {
+    fn leaf(&mut self, tets: &[TetId], generation: u32) -> Option<TreeNodeId> {
         let (mesh, memory) = (self.mesh, self.memory);
-        let mut vertices = [VertexId::NONE; 10];
+        let mut vertices = [MaybeId::NONE; 10];
         let mut mask = 0;
         for &t in tets {
-            for (place, v) in locals(memory.pieces[t as usize]).into_iter().zip(mesh.tets[t as usize]) {
+            for (place, v) in locals(memory.pieces[t.index()]).into_iter().zip(mesh.tets[t.index()]) {
                 put(&mut vertices, usize::from(place), v)?;
                 mask |= if place < 4 { 0 } else { 1 << (place - 4) };
             }
         }
         let is_turned = is_turned(tets, memory, mask)?;
-        let first = tets[0] as usize;
+        let first = tets[0].index();
         let (region, n_requested) = (mesh.regions[first], memory.n_requested[first]);
         let is_alike =
-            |&t: &u32| mesh.regions[t as usize] == region && memory.n_requested[t as usize] == n_requested;
-        if !tets.iter().all(is_alike) || vertices[..4].contains(&VertexId::NONE) {
+            |t: &TetId| mesh.regions[t.index()] == region && memory.n_requested[t.index()] == n_requested;
+        if !tets.iter().all(is_alike) {
             return None;
         }
-        let id = self.trees.nodes.len() as u32;
-        tets.iter().for_each(|&t| self.trees.node_of[t as usize] = id);
+        let (corners, middles) = split(vertices)?;
+        let id = TreeNodeId::new(self.trees.nodes.len());
+        tets.iter().for_each(|t| self.trees.node_of[t.index()] = id.into());
         let tet = tets.iter().copied().min()?;
-        let node =
-            TreeNode { vertices, tet, generation, n_requested, is_turned, region, ..TreeNode::default() };
-        self.trees.nodes.push(node);
+        self.trees.nodes.push(TreeNode {
+            corners,
+            middles,
+            parent: MaybeId::NONE,
+            place: 0,
+            divided: None,
+            tet,
+            generation,
+            n_requested,
+            is_turned,
+            region,
+            is_whole: true,
+        });
         Some(id)
     }
 
     /// Builds the node that was divided into these eight.
-    fn whole(&mut self, children: [u32; 8], generation: u32) -> Option<u32> {
+    fn whole(&mut self, children: [TreeNodeId; 8], generation: u32) -> Option<TreeNodeId> {
         let nodes = &mut self.trees.nodes;
-        let of = |k: usize| &nodes[children[k] as usize];
+        let of = |k: usize| &nodes[children[k].index()];
         let (region, is_turned) = (of(0).region, of(0).is_turned);
         let n_requested = (0..8).map(|k| of(k).n_requested).max()?;
         let is_alike = |k: usize| {
@@ -165,49 +173,57 @@ impl Gathering<'_> {
             return None;
         }
         let fitted = (0..3).find_map(|way| {
-            let mut vertices = [VertexId::NONE; 10];
+            let mut vertices = [MaybeId::NONE; 10];
             for (k, corners) in eight(way).iter().enumerate() {
                 for (i, &place) in corners.iter().enumerate() {
-                    put(&mut vertices, usize::from(place), of(k).vertices[i])?;
+                    put(&mut vertices, usize::from(place), of(k).corners[i])?;
                 }
             }
-            Some((way, vertices))
+            Some((way, split(vertices)?))
         });
-        let (way, vertices) = fitted?;
+        let (way, (corners, middles)) = fitted?;
         let tet = (0..8).map(|k| of(k).tet).min()?;
-        let id = nodes.len() as u32;
+        let id = TreeNodeId::new(nodes.len());
         for (place, child) in children.into_iter().enumerate() {
-            (nodes[child as usize].parent, nodes[child as usize].place) = (id, place);
+            (nodes[child.index()].parent, nodes[child.index()].place) = (id.into(), place);
         }
-        let divided = Some((way, children));
         nodes.push(TreeNode {
-            vertices,
-            divided,
+            corners,
+            middles,
+            parent: MaybeId::NONE,
+            place: 0,
+            divided: Some((way, children)),
             tet,
             generation,
             n_requested,
             is_turned,
             region,
-            ..TreeNode::default()
+            is_whole: true,
         });
         Some(id)
     }
 }
 
 /// Sets a vertex, unless a different one is already there.
-fn put(vertices: &mut [VertexId; 10], place: usize, v: VertexId) -> Option<()> {
+fn put(vertices: &mut [MaybeId<VertexId>; 10], place: usize, v: VertexId) -> Option<()> {
     let there = vertices.get_mut(place)?;
-    if *there != VertexId::NONE && *there != v {
+    if there.is_some() && *there != v.into() {
         return None;
     }
-    *there = v;
+    *there = v.into();
     Some(())
+}
+
+/// The corners and the middles; `None` if a corner is missing.
+fn split(vertices: [MaybeId<VertexId>; 10]) -> Option<([VertexId; 4], [MaybeId<VertexId>; 6])> {
+    let [a, b, c, d, middles @ ..] = vertices;
+    Some(([a.get()?, b.get()?, c.get()?, d.get()?], middles))
 }
 
 /// Whether the pieces, which must form one of the ways to fill a tet, have their first two vertices
 /// exchanged; `None` if they form no such way.
-fn is_turned(tets: &[u32], memory: &Memory, mask: u8) -> Option<bool> {
-    let pieces: Vec<[u8; 4]> = tets.iter().map(|&t| locals(memory.pieces[t as usize])).collect();
+fn is_turned(tets: &[TetId], memory: &Memory, mask: u8) -> Option<bool> {
+    let pieces: Vec<[u8; 4]> = tets.iter().map(|t| locals(memory.pieces[t.index()])).collect();
     let turned: Vec<[u8; 4]> = pieces.iter().map(|&[a, b, c, d]| [b, a, c, d]).collect();
     if mask == 0 {
         let is_whole = |pieces: &[[u8; 4]]| pieces == [[0, 1, 2, 3]];

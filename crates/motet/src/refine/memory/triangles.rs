@@ -1,11 +1,10 @@
 //! Merges the triangles of a mesh again, as its tets are merged.
 
 use super::super::forest::FACET_EDGES;
-use super::super::forest::NONE;
 use super::super::forest::eight;
 use super::trees::{TreeNode, Trees};
 use super::{Memory, unfit};
-use crate::base::{Result, TetId, VertexId, sorted_ids};
+use crate::base::{Result, TetId, TriangleId, VertexId, sorted_ids};
 use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
@@ -15,7 +14,7 @@ pub(super) struct Gathered {
     pub(super) triangles: Vec<[VertexId; 3]>,
     pub(super) patches: Vec<i32>,
     /// For each triangle of the mesh, which of these it is a part of.
-    pub(super) part_of: Vec<u32>,
+    pub(super) part_of: Vec<TriangleId>,
 }
 
 /// Returns the triangles before division, in order.
@@ -58,7 +57,7 @@ pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<G
         }
     }
     firsts.sort_unstable();
-    let of_first = |t: usize| firsts.partition_point(|(first, _)| *first < t) as u32;
+    let of_first = |t: usize| TriangleId::new(firsts.partition_point(|(first, _)| *first < t));
     let part_of = part_of.into_iter().map(of_first).collect();
     let patches = firsts.iter().map(|(t, _)| mesh.patches[*t]).collect();
     Ok(Gathered { triangles: firsts.into_iter().map(|(_, whole)| whole).collect(), patches, part_of })
@@ -72,17 +71,18 @@ fn whole_of(
     trees: &Trees,
     tet: TetId,
 ) -> Result<([VertexId; 3], usize)> {
-    let Some(top) = trees.top_of(tet.index()) else { return Ok((triangle, 0)) };
-    let mut node = &trees.nodes[trees.node_of[tet.index()] as usize];
-    let place = |v: &VertexId| node.vertices.iter().position(|other| other == v).unwrap_or(0);
+    let Some(top) = trees.top_of(tet) else { return Ok((triangle, 0)) };
+    let Some(leaf) = trees.node_of[tet.index()].get() else { return Ok((triangle, 0)) };
+    let mut node = &trees.nodes[leaf.index()];
+    let place = |v: &VertexId| node.local(*v).unwrap_or(0);
     let inside = || unfit("a triangle lies inside a divided tet");
     let places = [0, 1, 2].map(|i| place(&triangle[i]));
     let mut facet = facet_of(places).ok_or_else(inside)?;
     // A cut tet has only a part of the facet; a tet divided together with its neighbour has a whole facet, a
     // smaller one.
     let mut n_divided = usize::from(places.iter().any(|k| *k > 3));
-    while node.parent != NONE && !std::ptr::eq(node, &trees.nodes[top as usize]) {
-        let parent = &trees.nodes[node.parent as usize];
+    while let Some(parent) = node.parent.get().filter(|_| !std::ptr::eq(node, &trees.nodes[top.index()])) {
+        let parent = &trees.nodes[parent.index()];
         let Some((way, _)) = parent.divided else { break };
         let child = eight(way)[node.place];
         facet = facet_of(facet.map(|k| usize::from(child[k]))).ok_or_else(inside)?;
@@ -94,7 +94,7 @@ fn whole_of(
 
 /// The vertices of a facet, starting from the given corner if the facet has it.
 fn rotated_to(facet: [usize; 3], corner: u8, node: &TreeNode, triangle: [VertexId; 3]) -> [VertexId; 3] {
-    let vertices = facet.map(|k| node.vertices[k]);
+    let vertices = facet.map(|k| node.corners[k]);
     // An undivided triangle keeps its first vertex.
     let begin = match vertices.iter().position(|v| *v == triangle[0]) {
         Some(begin) if triangle.iter().all(|v| vertices.contains(v)) => begin,

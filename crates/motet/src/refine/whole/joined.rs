@@ -2,36 +2,34 @@
 //! unchanged between them.
 
 use super::super::forest::Extracted;
-use super::super::forest::NONE;
 use super::super::refinement::Refinement;
 use super::Slot;
-use crate::base::{CellId, Csr, Id, VertexId};
+use crate::base::{CellId, Csr, ForestVertexId, Id, LineId, MaybeId, TetId, TriangleId, VertexId};
 use crate::mesh::{CellKind, Cells, Mesh};
 
 /// The cells of the new mesh, and for each the old cell it was.
 pub(super) struct Joined {
     pub(super) cells: Cells,
-    /// [`Id::NONE`] for new cells.
-    pub(super) cell_to_old: Vec<CellId>,
-    /// [`NONE`] for new vertices.
-    pub(super) vertex_to_old: Vec<u32>,
+    /// None for new cells.
+    pub(super) cell_to_old: Vec<MaybeId<CellId>>,
+    /// None for new vertices.
+    pub(super) vertex_to_old: Vec<MaybeId<VertexId>>,
     pub(super) tet_to_cell: Vec<CellId>,
     pub(super) triangle_to_cell: Vec<CellId>,
     pub(super) line_to_cell: Vec<CellId>,
-    pub(super) tets: Matched,
-    pub(super) triangles: Matched,
-    pub(super) lines: Matched,
+    pub(super) tets: Matched<TetId>,
+    pub(super) triangles: Matched<TriangleId>,
+    pub(super) lines: Matched<LineId>,
 }
 
 /// Correspondence between the tets, triangles or lines of two meshes.
-#[derive(Debug, Default)]
-pub(super) struct Matched {
-    /// For each item of the new mesh, the same item of the old one, or [`NONE`].
-    to_old: Vec<u32>,
+pub(super) struct Matched<I> {
+    /// For each item of the new mesh, the same item of the old one; none for new ones.
+    to_old: Vec<MaybeId<I>>,
     /// Items of the old mesh that were removed, in ascending order.
-    pub(super) removed: Vec<u32>,
+    pub(super) removed: Vec<I>,
     /// New items, in ascending order.
-    pub(super) inserted: Vec<u32>,
+    pub(super) inserted: Vec<I>,
 }
 
 impl Joined {
@@ -44,7 +42,7 @@ impl Joined {
         [before, after]: [&Refinement; 2],
     ) -> Self {
         let (was, is) = (&before.now, &after.now);
-        let root_of = |of: &Refinement| -> Vec<u32> { of.roots().map(|root| root.0).collect() };
+        let root_of = |of: &Refinement| -> Vec<TetId> { of.roots().collect() };
         let tet_roots = [before, after].map(root_of);
         let tets = matched([was, is].map(|out| names(out, &out.mesh.tets)), [&tet_roots[0], &tet_roots[1]]);
         let triangles =
@@ -71,10 +69,10 @@ impl Joined {
         slots: &[Slot],
         [old_tets, old_triangles, old_lines]: [&[CellId]; 3],
         is: &Extracted,
-        tet_roots: &[u32],
-        old_to_new: &[u32],
+        tet_roots: &[TetId],
+        old_to_new: &[VertexId],
     ) -> Self {
-        let new = |v: VertexId| VertexId(old_to_new[v.index()]);
+        let new = |v: VertexId| old_to_new[v.index()];
         let mut others =
             old.cells.iter().filter(|(_, kind, vertices)| Slot::of(*kind, vertices) == Slot::Other);
         let mut faces = old.cells.polyhedron_faces().iter();
@@ -84,7 +82,7 @@ impl Joined {
         for slot in slots {
             match slot {
                 Slot::Tet => {
-                    for _ in 0..parts_of_tets.next().map_or(0, <[u32]>::len) {
+                    for _ in 0..parts_of_tets.next().map_or(0, <[_]>::len) {
                         let t = self.tet_to_cell.len();
                         let known = self.tets.old(t, old_tets);
                         let cell = self.push(CellKind::TETRA, known, is.mesh.tets[t]);
@@ -92,7 +90,7 @@ impl Joined {
                     }
                 }
                 Slot::Triangle => {
-                    for _ in 0..parts_of_triangles.next().map_or(0, <[u32]>::len) {
+                    for _ in 0..parts_of_triangles.next().map_or(0, <[_]>::len) {
                         let t = self.triangle_to_cell.len();
                         let known = self.triangles.old(t, old_triangles);
                         let cell = self.push(CellKind::TRIANGLE, known, is.mesh.triangles[t]);
@@ -100,7 +98,7 @@ impl Joined {
                     }
                 }
                 Slot::Line => {
-                    for _ in 0..parts_of_lines.next().map_or(0, <[u32]>::len) {
+                    for _ in 0..parts_of_lines.next().map_or(0, <[_]>::len) {
                         let l = self.line_to_cell.len();
                         let known = self.lines.old(l, old_lines);
                         let cell = self.push(CellKind::LINE, known, is.mesh.lines[l]);
@@ -118,14 +116,19 @@ impl Joined {
                     } else {
                         self.cells.push(kind, vertices);
                     }
-                    self.cell_to_old.push(cell);
+                    self.cell_to_old.push(cell.into());
                 }
             }
         }
         self
     }
 
-    fn push<const N: usize>(&mut self, kind: CellKind, old: CellId, vertices: [VertexId; N]) -> CellId {
+    fn push<const N: usize>(
+        &mut self,
+        kind: CellKind,
+        old: MaybeId<CellId>,
+        vertices: [VertexId; N],
+    ) -> CellId {
         let cell = CellId::new(self.cells.len());
         self.cells.push(kind, vertices);
         self.cell_to_old.push(old);
@@ -133,69 +136,67 @@ impl Joined {
     }
 }
 
-impl Matched {
-    fn old(&self, i: usize, cells: &[CellId]) -> CellId {
-        match self.to_old[i] {
-            NONE => Id::NONE,
-            old => cells[old as usize],
-        }
+impl<I: Id> Matched<I> {
+    /// The old cell of an item of the new mesh, given the cells of the old items.
+    fn old(&self, i: usize, cells: &[CellId]) -> MaybeId<CellId> {
+        self.to_old[i].get().map(|old| cells[old.place()]).into()
     }
 }
 
 struct Vertices {
-    new_to_old: Vec<u32>,
-    old_to_new: Vec<u32>,
+    new_to_old: Vec<MaybeId<VertexId>>,
+    old_to_new: Vec<VertexId>,
 }
 
 impl Vertices {
     /// `n_vertices` is the number of vertices of the forest.
     fn of(was: &Extracted, is: &Extracted, n_vertices: usize) -> Self {
         let numbers = was.numbers(n_vertices);
-        let new_to_old: Vec<u32> = is.vertices.iter().map(|&v| numbers[v as usize]).collect();
-        let mut old_to_new = vec![NONE; was.vertices.len()];
-        let known = new_to_old.iter().zip(0..).filter(|(old, _)| **old != NONE);
-        known.for_each(|(&old, new)| old_to_new[old as usize] = new);
+        let new_to_old: Vec<_> = is.vertices.iter().map(|v| numbers[v.index()]).collect();
+        let mut old_to_new = vec![Id::NONE; was.vertices.len()];
+        for (new, old) in new_to_old.iter().enumerate() {
+            if let Some(old) = old.get() {
+                old_to_new[old.index()] = VertexId::new(new);
+            }
+        }
         Self { new_to_old, old_to_new }
     }
 }
 
 /// Names each tet, triangle or line by the forest ids of its vertices.
-fn names<const N: usize>(out: &Extracted, of: &[[VertexId; N]]) -> Vec<[u32; N]> {
+fn names<const N: usize>(out: &Extracted, of: &[[VertexId; N]]) -> Vec<[ForestVertexId; N]> {
     of.iter().map(|vertices| vertices.map(|v| out.vertices[v.index()])).collect()
 }
 
 /// Matches items with equal names that belong to the same root.
-fn matched<const N: usize>(names: [Vec<[u32; N]>; 2], roots: [&[u32]; 2]) -> Matched {
+fn matched<I: Id, const N: usize>(names: [Vec<[ForestVertexId; N]>; 2], roots: [&[I]; 2]) -> Matched<I> {
     let [was, is] = names;
     let order = [by_root(roots[0]), by_root(roots[1])];
-    let mut matched = Matched { to_old: vec![NONE; is.len()], ..Matched::default() };
+    let mut to_old = vec![MaybeId::NONE; is.len()];
     let mut stays = vec![false; was.len()];
-    let mut olds = order[0].chunk_by(|&x, &y| roots[0][x as usize] == roots[0][y as usize]);
-    for news in order[1].chunk_by(|&x, &y| roots[1][x as usize] == roots[1][y as usize]) {
+    let mut olds = order[0].chunk_by(|x, y| roots[0][x.place()] == roots[0][y.place()]);
+    for news in order[1].chunk_by(|x, y| roots[1][x.place()] == roots[1][y.place()]) {
         // Both meshes have the same roots, and each root has at least one part in each mesh.
         let Some(olds) = olds.next() else { break };
-        let mut sorted: Vec<([u32; N], u32)> = olds.iter().map(|&t| (was[t as usize], t)).collect();
+        let mut sorted: Vec<([ForestVertexId; N], I)> = olds.iter().map(|&t| (was[t.place()], t)).collect();
         sorted.sort_unstable();
         for &t in news {
-            if let Ok(i) = sorted.binary_search_by_key(&is[t as usize], |(name, _)| *name) {
-                matched.to_old[t as usize] = sorted[i].1;
-                stays[sorted[i].1 as usize] = true;
+            if let Ok(i) = sorted.binary_search_by_key(&is[t.place()], |(name, _)| *name) {
+                to_old[t.place()] = sorted[i].1.into();
+                stays[sorted[i].1.place()] = true;
             }
         }
     }
-    let flagged = |flags: &mut dyn Iterator<Item = bool>| -> Vec<u32> {
-        (0..).zip(flags).filter(|(_, flag)| *flag).map(|(i, _)| i).collect()
-    };
-    matched.removed = flagged(&mut stays.iter().map(|stays| !stays));
-    matched.inserted = flagged(&mut matched.to_old.iter().map(|old| *old == NONE));
-    matched
+    let removed = (0..was.len()).filter(|&t| !stays[t]).map(I::of).collect();
+    let inserted = (0..is.len()).filter(|&t| to_old[t].is_none()).map(I::of).collect();
+    Matched { to_old, removed, inserted }
 }
 
-/// Returns all item numbers sorted by root; items of one root keep their order.
-fn by_root(roots: &[u32]) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..roots.len() as u32).collect();
+/// Returns all items sorted by root; items of one root keep their order.
+fn by_root<I: Id>(roots: &[I]) -> Vec<I> {
+    let mut order: Vec<I> = (0..roots.len()).map(I::of).collect();
     if !roots.is_sorted() {
-        order.sort_by_key(|&t| roots[t as usize]);
+        order.sort_by_key(|t| roots[t.place()]);
     }
     order
 }

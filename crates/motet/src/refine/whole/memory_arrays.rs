@@ -1,7 +1,7 @@
 //! Stores the memory of a refined mesh as arrays of its file.
 
-use super::super::memory::{Memory, UNKNOWN};
-use crate::base::{CellId, Error, Point, Result};
+use super::super::memory::Memory;
+use crate::base::{CellId, Error, Point, Result, TetId};
 use crate::mesh::history::REFINE_ROOT;
 use crate::mesh::{Field, Mesh, TetPart, Values};
 
@@ -30,7 +30,7 @@ pub(super) fn memory(mesh: &Mesh, part: &TetPart) -> Result<Option<Memory>> {
         reference.to_vectors().map_err(|_| unfit(REFERENCE, "does not have three components per point"))?;
     let tets = || part.tet_to_cell.iter().map(|cell| cell.index());
     Ok(Some(Memory {
-        roots: tets().map(|c| u32::try_from(roots[c]).unwrap_or(UNKNOWN)).collect(),
+        roots: tets().map(|c| u32::try_from(roots[c]).ok().map(TetId).into()).collect(),
         paths: tets().map(|c| u64::try_from(paths[c]).unwrap_or(0)).collect(),
         pieces: tets().map(|c| u16::try_from(pieces[c]).unwrap_or(u16::MAX)).collect(),
         n_requested: tets().map(|c| u8::try_from(n_requested[c]).unwrap_or(0)).collect(),
@@ -50,7 +50,7 @@ pub(super) fn store(mesh: &mut Mesh, memory: &Memory, tets: &[CellId], triangles
     let mut whole = [vec![-1; n], vec![-1; n], vec![-1; n]];
     let mut paths = vec![-1; n];
     for (t, cell) in tets.iter().map(|cell| cell.index()).enumerate() {
-        whole[0][cell] = memory.roots[t] as i32;
+        whole[0][cell] = memory.roots[t].get().map_or(-1, |root| root.0 as i32);
         whole[1][cell] = i32::from(memory.pieces[t]);
         whole[2][cell] = i32::from(memory.n_requested[t]);
         paths[cell] = memory.paths[t] as i64;

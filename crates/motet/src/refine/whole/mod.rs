@@ -7,7 +7,7 @@ mod origins;
 
 use super::refinement::{Options, Refinement, Summary};
 use super::true_surface::OnSurface;
-use crate::base::{CellId, Result, TetId, Threads, VertexId};
+use crate::base::{CellId, Result, TetId, Threads, VertexId, absent, or_none};
 use crate::mesh::history::{History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Mesh, TetPart};
 use crate::spatial::NearestTriangle;
@@ -151,16 +151,16 @@ impl MeshRefinement {
         let cells = [&self.tet_to_cell[..], &self.triangle_to_cell, &self.line_to_cell];
         let joined = Joined::of(&self.mesh, &self.slots, cells, [&self.refinement, &refinement]);
         let found = origins([&self.refinement, &refinement], &joined, cells, threads)?;
-        let vertex_to_old = joined.vertex_to_old.iter().map(|&v| VertexId(v)).collect();
         let history = History {
-            vertices: Origins::new(self.mesh.points.len(), vertex_to_old, found.vertices)?,
-            cells: Origins::new(self.mesh.cells.len(), joined.cell_to_old.clone(), found.cells)?,
+            vertices: Origins::new(self.mesh.points.len(), or_none(&joined.vertex_to_old), found.vertices)?,
+            cells: Origins::new(self.mesh.cells.len(), or_none(&joined.cell_to_old), found.cells)?,
             ledger: found.ledger,
         };
         let mut mesh = Mesh::new(refinement.mesh().points.clone(), joined.cells);
         history.transfer(&self.mesh, &mut mesh, rules)?;
-        number_anew(&mut mesh, &joined.vertex_to_old, &joined.cell_to_old);
-        mesh.unmark_new_points(&joined.vertex_to_old);
+        let new_points = absent(&joined.vertex_to_old);
+        number_anew(&mut mesh, &new_points, &absent(&joined.cell_to_old));
+        mesh.unmark(&new_points);
         (self.mesh, self.refinement) = (mesh, refinement);
         (self.tet_to_cell, self.triangle_to_cell) = (joined.tet_to_cell, joined.triangle_to_cell);
         self.line_to_cell = joined.line_to_cell;
@@ -171,8 +171,8 @@ impl MeshRefinement {
 /// One slot for each cell of the first mesh: all parts of a root share the slot of its first part.
 fn slots(mesh: &Mesh, refinement: &Refinement) -> Vec<Slot> {
     let mut roots = refinement.roots().map(|root| root.0);
-    let mut triangles = refinement.now.triangles.iter();
-    let mut lines = refinement.now.lines.iter();
+    let mut triangles = refinement.now.triangles.iter().map(|triangle| triangle.0);
+    let mut lines = refinement.now.lines.iter().map(|line| line.0);
     let (mut next_root, mut next_triangle, mut next_line) = (0, 0, 0);
     let mut slots = Vec::new();
     for (_, kind, vertices) in mesh.cells.iter() {
@@ -180,8 +180,8 @@ fn slots(mesh: &Mesh, refinement: &Refinement) -> Vec<Slot> {
         // Roots, triangles and lines are numbered in the order of their first appearance in the mesh.
         let is_first = match slot {
             Slot::Tet => is_next(roots.next(), &mut next_root),
-            Slot::Triangle => is_next(triangles.next().copied(), &mut next_triangle),
-            Slot::Line => is_next(lines.next().copied(), &mut next_line),
+            Slot::Triangle => is_next(triangles.next(), &mut next_triangle),
+            Slot::Line => is_next(lines.next(), &mut next_line),
             Slot::Other => true,
         };
         if is_first {

@@ -7,11 +7,12 @@
 use std::collections::BTreeMap;
 
 use super::super::choose::estimate;
-use super::super::forest::Extracted;
-use super::super::forest::{Forest, NONE};
+use super::super::forest::{Extracted, Forest};
 use super::super::refinement::Refinement;
 use super::joined::Joined;
-use crate::base::{CellId, Point, Result, Threads, VertexId};
+use crate::base::{
+    CellId, ForestVertexId, LineId, MaybeId, NodeId, Point, Result, TetId, Threads, TriangleId, VertexId,
+};
 use crate::geometry::overlap::Solid;
 use crate::geometry::segment;
 use crate::geometry::tet::{self, centroid};
@@ -38,13 +39,13 @@ pub(super) fn origins(
     threads: &Threads,
 ) -> Result<Found> {
     let ancestry = Ancestry::new(&after.forest, &before.now, &after.now);
-    let parts = threads.map(joined.tets.inserted.len(), |i| ancestry.parts(joined.tets.inserted[i] as usize));
+    let parts = threads.map(joined.tets.inserted.len(), |i| ancestry.parts(joined.tets.inserted[i]));
     let ledger = ledger(&ancestry, joined, &parts);
     let mut rows: Vec<CellRow> = Vec::with_capacity(parts.len());
-    for (&t, parts) in joined.tets.inserted.iter().zip(&parts) {
-        let of_old = parts.iter().map(|&(old, volume)| (cells[0][old as usize], volume));
-        let main = parts.iter().fold((NONE, -1.0), |best, &part| if part.1 > best.1 { part } else { best }).0;
-        rows.push((joined.tet_to_cell[t as usize], of_old.collect(), cells[0][main as usize]));
+    for (t, parts) in joined.tets.inserted.iter().zip(&parts) {
+        let of_old = parts.iter().map(|&(old, volume)| (cells[0][old.index()], volume));
+        let main = parts.iter().fold(parts[0], |best, &part| if part.1 > best.1 { part } else { best }).0;
+        rows.push((joined.tet_to_cell[t.index()], of_old.collect(), cells[0][main.index()]));
     }
     triangles(before, after, joined, cells[1], threads, &mut rows)?;
     lines(&before.now, &after.now, joined, cells[2], &mut rows);
@@ -53,7 +54,7 @@ pub(super) fn origins(
     rows.iter().for_each(|(cell, parts, main)| of_cells.push(*cell, parts, *main));
     let mut of_vertices = Rows::new();
     let means = Means::new(&after.forest, &before.now);
-    let inserted = joined.vertex_to_old.iter().enumerate().filter(|(_, old)| **old == NONE);
+    let inserted = joined.vertex_to_old.iter().enumerate().filter(|(_, old)| old.is_none());
     for (v, _) in inserted {
         let parts = means.of(after.now.vertices[v]);
         of_vertices.push(VertexId::new(v), &parts, parts[0].0);
@@ -70,26 +71,26 @@ struct Ancestry<'a> {
     /// last.
     old: Vec<[u32; 2]>,
     /// For each tet of the forest that is coarser than before, the old tets that lie in it.
-    within: BTreeMap<u32, Vec<u32>>,
+    within: BTreeMap<NodeId, Vec<TetId>>,
 }
 
 impl<'a> Ancestry<'a> {
     fn new(forest: &'a Forest, was: &'a Extracted, is: &'a Extracted) -> Self {
         let pieces = |out: &Extracted| {
             let mut pieces = vec![[0, 0]; forest.nodes.len()];
-            for (&node, t) in out.nodes.iter().zip(0..) {
-                let [first, end] = &mut pieces[node as usize];
+            for (node, t) in out.nodes.iter().zip(0..) {
+                let [first, end] = &mut pieces[node.index()];
                 *first = if *end == 0 { t } else { *first };
                 *end = t + 1;
             }
             pieces
         };
         let (old, new) = (pieces(was), pieces(is));
-        let mut within: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        let mut within: BTreeMap<NodeId, Vec<TetId>> = BTreeMap::new();
         for (&node, t) in was.nodes.iter().zip(0..) {
-            let coarser = ancestors(forest, node).skip(1).find(|&node| new[node as usize][1] > 0);
+            let coarser = forest.ancestors(node).skip(1).find(|node| new[node.index()][1] > 0);
             if let Some(coarser) = coarser {
-                within.entry(coarser).or_default().push(t);
+                within.entry(coarser).or_default().push(TetId(t));
             }
         }
         Self { forest, was, is, old, within }
@@ -97,18 +98,18 @@ impl<'a> Ancestry<'a> {
 
     /// Returns the old tets that make up a new tet, with their volumes, which need not sum to that of the
     /// tet.
-    fn parts(&self, t: usize) -> Vec<(u32, f64)> {
-        let node = self.is.nodes[t];
-        let holder = ancestors(self.forest, node).map(|node| self.old[node as usize]).find(|old| old[1] > 0);
-        let candidates: Vec<u32> = match (holder, self.within.get(&node)) {
-            (Some([first, end]), _) if end == first + 1 => return vec![(first, 1.0)],
-            (Some([first, end]), _) => (first..end).collect(),
+    fn parts(&self, t: TetId) -> Vec<(TetId, f64)> {
+        let node = self.is.nodes[t.index()];
+        let holder = self.forest.ancestors(node).map(|node| self.old[node.index()]).find(|old| old[1] > 0);
+        let candidates: Vec<TetId> = match (holder, self.within.get(&node)) {
+            (Some([first, end]), _) if end == first + 1 => return vec![(TetId(first), 1.0)],
+            (Some([first, end]), _) => (first..end).map(TetId).collect(),
             (None, Some(within)) => within.clone(),
             (None, None) => Vec::new(),
         };
         let solid = Solid::new(corners(self.is, t));
         let overlaps = candidates.iter().filter_map(|&old| {
-            let other = Solid::new(corners(self.was, old as usize));
+            let other = Solid::new(corners(self.was, old));
             solid.real_overlap(&other).map(|volume| (old, volume))
         });
         let overlaps: Vec<_> = overlaps.collect();
@@ -117,34 +118,28 @@ impl<'a> Ancestry<'a> {
         }
         // Points that moved may leave no overlap: then take the nearest candidate.
         let centre = centroid(corners(self.is, t));
-        let far = |old: &u32| distance(centroid(corners(self.was, *old as usize)), centre);
+        let far = |old: &TetId| distance(centroid(corners(self.was, *old)), centre);
         let nearest = candidates.iter().copied().min_by(|x, y| far(x).total_cmp(&far(y)));
-        vec![(nearest.unwrap_or(0), 1.0)]
+        vec![(nearest.unwrap_or_default(), 1.0)]
     }
 }
 
-/// Iterates over a tet of the forest and its ancestors.
-fn ancestors(forest: &Forest, node: u32) -> impl Iterator<Item = u32> {
-    let parent = |node: &u32| Some(forest.nodes[*node as usize].parent).filter(|parent| *parent != NONE);
-    std::iter::successors(Some(node), parent)
+fn corners(out: &Extracted, t: TetId) -> [Point; 4] {
+    estimate::corners(&out.mesh, out.mesh.tets[t.index()])
 }
 
-fn corners(out: &Extracted, t: usize) -> [Point; 4] {
-    estimate::corners(&out.mesh, out.mesh.tets[t])
-}
-
-fn ledger(ancestry: &Ancestry, joined: &Joined, parts: &[Vec<(u32, f64)>]) -> Ledger {
-    let volume = |out: &Extracted, t: u32| tet::volume(corners(out, t as usize)).abs();
+fn ledger(ancestry: &Ancestry, joined: &Joined, parts: &[Vec<(TetId, f64)>]) -> Ledger {
+    let volume = |out: &Extracted, t: TetId| tet::volume(corners(out, t)).abs();
     let mut regions: BTreeMap<i32, RegionLedger> = BTreeMap::new();
-    let mut taken: BTreeMap<u32, f64> = BTreeMap::new();
+    let mut taken: BTreeMap<TetId, f64> = BTreeMap::new();
     for (&t, parts) in joined.tets.inserted.iter().zip(parts) {
         let (all, sum) = (volume(ancestry.is, t), parts.iter().map(|part| part.1).sum::<f64>());
-        regions.entry(ancestry.is.mesh.regions[t as usize]).or_default().volume_after += all;
+        regions.entry(ancestry.is.mesh.regions[t.index()]).or_default().volume_after += all;
         parts.iter().for_each(|&(old, part)| *taken.entry(old).or_default() += all * (part / sum));
     }
     for &t in &joined.tets.removed {
         let all = volume(ancestry.was, t);
-        let entry = regions.entry(ancestry.was.mesh.regions[t as usize]).or_default();
+        let entry = regions.entry(ancestry.was.mesh.regions[t.index()]).or_default();
         entry.volume_before += all;
         entry.deviation += (taken.get(&t).copied().unwrap_or(0.0) - all).abs();
     }
@@ -161,11 +156,11 @@ fn triangles(
     threads: &Threads,
     rows: &mut Vec<CellRow>,
 ) -> Result<()> {
-    let labelled = |out: &Extracted, which: &[u32], cells: &[CellId]| -> Vec<Labelled<3>> {
-        let of = |&t: &u32| Labelled {
-            cell: cells[t as usize],
-            vertices: out.mesh.triangles[t as usize],
-            label: out.triangles[t as usize] as i32,
+    let labelled = |out: &Extracted, which: &[TriangleId], cells: &[CellId]| -> Vec<Labelled<3>> {
+        let of = |t: &TriangleId| Labelled {
+            cell: cells[t.index()],
+            vertices: out.mesh.triangles[t.index()],
+            label: out.triangles[t.index()].0 as i32,
         };
         which.iter().map(of).collect()
     };
@@ -186,28 +181,28 @@ fn triangles(
 
 /// Lines inherit from the nearest part of the same line of the first mesh.
 fn lines(was: &Extracted, is: &Extracted, joined: &Joined, old_cells: &[CellId], rows: &mut Vec<CellRow>) {
-    let mut removed: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    joined.lines.removed.iter().for_each(|&l| removed.entry(was.lines[l as usize]).or_default().push(l));
-    let ends = |out: &Extracted, l: u32| out.mesh.lines[l as usize].map(|v| out.mesh.points[v.index()]);
+    let mut removed: BTreeMap<LineId, Vec<LineId>> = BTreeMap::new();
+    joined.lines.removed.iter().for_each(|&l| removed.entry(was.lines[l.index()]).or_default().push(l));
+    let ends = |out: &Extracted, l: LineId| out.mesh.lines[l.index()].map(|v| out.mesh.points[v.index()]);
     for &l in &joined.lines.inserted {
         let [a, b] = ends(is, l);
         let middle = scale(add(a, b), 0.5);
-        let far = |old: &u32| {
+        let far = |old: &LineId| {
             let [p, q] = ends(was, *old);
             distance(add(p, scale(sub(q, p), segment::closest([p, q], middle))), middle)
         };
-        let parts = removed.get(&is.lines[l as usize]).into_iter().flatten().copied();
+        let parts = removed.get(&is.lines[l.index()]).into_iter().flatten().copied();
         let nearest = parts.min_by(|x, y| far(x).total_cmp(&far(y)));
-        let old = old_cells[nearest.unwrap_or(0) as usize];
-        rows.push((joined.line_to_cell[l as usize], vec![(old, 1.0)], old));
+        let old = old_cells[nearest.unwrap_or_default().index()];
+        rows.push((joined.line_to_cell[l.index()], vec![(old, 1.0)], old));
     }
 }
 
 /// Expresses new vertices as means of old ones.
 struct Means<'a> {
     forest: &'a Forest,
-    /// For each vertex of the forest, its number in the mesh before, or [`NONE`].
-    numbers: Vec<u32>,
+    /// For each vertex of the forest, its id in the mesh before; none if it was not in it.
+    numbers: Vec<MaybeId<VertexId>>,
 }
 
 impl<'a> Means<'a> {
@@ -216,16 +211,16 @@ impl<'a> Means<'a> {
     }
 
     /// Returns the old vertices that a vertex is a mean of, in ascending order, with their shares.
-    fn of(&self, vertex: u32) -> Vec<(VertexId, f64)> {
+    fn of(&self, vertex: ForestVertexId) -> Vec<(VertexId, f64)> {
         let mut parts: BTreeMap<VertexId, f64> = BTreeMap::new();
         let mut open = vec![(vertex, 1.0)];
         while let Some((v, share)) = open.pop() {
-            match self.numbers[v as usize] {
-                NONE => {
-                    let origin = self.forest.origin[v as usize - self.forest.n_first_vertices];
-                    open.extend(self.forest.edges[origin as usize].ends.map(|end| (end, 0.5 * share)));
+            match self.numbers[v.index()].get() {
+                Some(known) => *parts.entry(known).or_default() += share,
+                None => {
+                    let origin = self.forest.origin[v.index() - self.forest.n_first_vertices];
+                    open.extend(self.forest.edges[origin.index()].ends.map(|end| (end, 0.5 * share)));
                 }
-                known => *parts.entry(VertexId(known)).or_default() += share,
             }
         }
         parts.into_iter().collect()

@@ -56,7 +56,7 @@ struct CostModel<'a> {
 }
 
 impl<'a> CostModel<'a> {
-    fn new((aim, mean): (Aim, f64), pose: Option<&'a Pose>) -> Self {
+    fn new(aim: Aim, mean: f64, pose: Option<&'a Pose>) -> Self {
         Self { aim, mean, pose, bars: [f64::NEG_INFINITY; 2] }
     }
 
@@ -154,8 +154,9 @@ struct Found {
 /// The working state of one call of [`Repair::improve`].
 #[derive(Debug)]
 struct Progress {
-    /// The aim, and the mean cost over the mesh.
-    scale: (Aim, f64),
+    aim: Aim,
+    /// The mean cost over the mesh.
+    mean: f64,
     found: Found,
     settled: Settled,
     inserted: Vec<TetId>,
@@ -168,9 +169,9 @@ impl Repair {
         if let Some(pose) = &mut self.pose {
             pose.update(&self.complex);
         }
-        let scale = (aim, self.mean_cost(aim));
+        let mean = self.mean_cost(aim);
         let found = Found { best: Best::default(), sizing: self.sizing.take() };
-        let mut progress = Progress { scale, found, settled: Settled::default(), inserted: Vec::new() };
+        let mut progress = Progress { aim, mean, found, settled: Settled::default(), inserted: Vec::new() };
         for _ in 0..ROUNDS {
             self.swap_low(&mut zone, &mut progress)?;
             self.move_low(&mut zone, &mut progress)?;
@@ -194,7 +195,7 @@ impl Repair {
     }
 
     fn mean_cost(&self, aim: Aim) -> f64 {
-        let model = CostModel::new((aim, 0.0), self.pose.as_ref());
+        let model = CostModel::new(aim, 0.0, self.pose.as_ref());
         let sum: f64 = self.complex.tets().map(|t| model.of_tet(&self.complex, t)).sum();
         sum / self.complex.n_tets().max(1) as f64
     }
@@ -205,7 +206,7 @@ impl Repair {
 
     /// Makes the best swap at each low-quality tet of a zone, worst first.
     fn swap_low(&mut self, zone: &mut Vec<TetId>, progress: &mut Progress) -> Result<()> {
-        let below = progress.scale.0.below;
+        let below = progress.aim.below;
         zone.retain(|&t| self.is_low(t, below));
         self.sort(zone);
         for (i, &tet) in zone.iter().enumerate() {
@@ -222,7 +223,7 @@ impl Repair {
     /// starting with the worst tet.
     fn move_low(&mut self, zone: &mut Vec<TetId>, progress: &mut Progress) -> Result<()> {
         zone.extend_from_slice(&progress.inserted);
-        zone.retain(|&t| self.is_low(t, progress.scale.0.below));
+        zone.retain(|&t| self.is_low(t, progress.aim.below));
         self.sort(zone);
         let mut is_listed = vec![false; self.complex.n_vertex_slots()];
         let mut vertices: Vec<VertexId> = zone.iter().flat_map(|&t| self.complex.vertices(t)).collect();
@@ -243,7 +244,7 @@ impl Repair {
 
     /// Commits the best change found, if there is one and the kernel allows it, and forgets it.
     fn make_best(&mut self, progress: &mut Progress) {
-        let Progress { scale: (aim, _), found: Found { best, .. }, inserted, .. } = progress;
+        let Progress { aim, found: Found { best, .. }, inserted, .. } = progress;
         let n_before = inserted.len();
         let is_made = best.gain.take().is_some() && self.commit_above(&best.change, aim.floor, inserted);
         if is_made {
@@ -256,8 +257,8 @@ impl Repair {
         }
     }
 
-    fn weigh_swaps(&mut self, tet: TetId, Progress { scale, found, settled, .. }: &mut Progress) {
-        let mut model = CostModel::new(*scale, self.pose.as_ref());
+    fn weigh_swaps(&mut self, tet: TetId, Progress { aim, mean, found, settled, .. }: &mut Progress) {
+        let mut model = CostModel::new(*aim, *mean, self.pose.as_ref());
         let vertices = self.complex.vertices(tet);
         let mut change = std::mem::take(&mut self.candidate.proposal);
         let mut shell = self.shells.pop().unwrap_or_default();
@@ -288,7 +289,7 @@ impl Repair {
                 }
             };
             let worst = self.complex.quality(tet).min(self.complex.quality(behind.tet()));
-            let bar = worst.min(scale.0.floor).next_down();
+            let bar = worst.min(aim.floor).next_down();
             let is_better = self.face_removal.propose(&self.complex, tet, facet, bar, &mut change)
                 && self.weigh(&mut change, (Operation::FaceRemoval, None), model, found);
             if !is_better {
@@ -299,8 +300,8 @@ impl Repair {
         self.candidate.proposal = change;
     }
 
-    fn weigh_move(&mut self, vertex: VertexId, Progress { scale, found, .. }: &mut Progress) -> bool {
-        let mut model = CostModel::new(*scale, self.pose.as_ref());
+    fn weigh_move(&mut self, vertex: VertexId, Progress { aim, mean, found, .. }: &mut Progress) -> bool {
+        let mut model = CostModel::new(*aim, *mean, self.pose.as_ref());
         let pose = self.pose.as_ref().map(|pose| |v: VertexId| pose.point(v));
         let mut change = std::mem::take(&mut self.candidate.proposal);
         self.star.gather(&self.complex, vertex);

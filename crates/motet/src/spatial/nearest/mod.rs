@@ -12,7 +12,7 @@ mod search;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::base::{Point, Threads, VertexId};
+use crate::base::{MaybeId, Point, Threads, TriangleId, VertexId};
 use nearby::Nearby;
 use packed::Packed;
 use pairs::{PairSearch, Reach};
@@ -43,9 +43,6 @@ pub struct Closest {
 pub struct NearestTriangle {
     tree: Packed,
 }
-
-/// Stands for no guess.
-const NO_GUESS: u32 = u32::MAX;
 
 /// Queries done one after the other, each with the previous answer as its guess.
 const RUN: usize = 256;
@@ -106,15 +103,15 @@ impl NearestTriangle {
     /// The points of the surface closest to each of many points, as by [`closest`](Self::closest).
     ///
     /// `guesses` are triangles near the points, one for each, ideally from the previous answers. No answer
-    /// depends on them, nor on the number of threads. Guesses of triangles that do not exist are ignored:
-    /// then the last answer is the guess for the next point. Points are processed in an order in which
+    /// depends on them, nor on the number of threads. Where there is none, or no such triangle, the last
+    /// answer is the guess for the next point. Points are processed in an order in which
     /// neighbours follow each other, so that what a search reads is still cached.
     ///
     /// Panics when there are guesses, but not one for each point.
     pub fn closest_all(
         &self,
         points: &[Point],
-        guesses: Option<&[u32]>,
+        guesses: Option<&[MaybeId<TriangleId>]>,
         threads: &Threads,
     ) -> Vec<Option<Closest>> {
         let order = match guesses {
@@ -197,7 +194,7 @@ impl<A: Admit> WithSimd for SingleSearch<'_, A> {
 struct SearchRun<'a> {
     tree: &'a Packed,
     points: &'a [Point],
-    guesses: Option<&'a [u32]>,
+    guesses: Option<&'a [MaybeId<TriangleId>]>,
     /// Indices of the points to search from.
     order: &'a [u32],
 }
@@ -207,21 +204,21 @@ impl WithSimd for SearchRun<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let (mut last, mut nearby) = (NO_GUESS, Nearby::new());
+        let (mut last, mut nearby) = (None, Nearby::new());
         let mut found = Vec::with_capacity(self.order.len());
         for &i in self.order {
-            let guess = match self.guesses {
-                Some(guesses) if self.tree.has_triangle(guesses[i as usize]) => guesses[i as usize],
-                _ => last,
-            };
+            let given = self.guesses.and_then(|guesses| guesses[i as usize].get());
+            let guess = given.filter(|guess| self.tree.has_triangle(*guess)).or(last);
             let p = self.points[i as usize];
             let mut closest = None;
             if let Some(mut search) = Search::new(self.tree, simd, p, f64::INFINITY, All) {
-                search.try_first(guess);
+                if let Some(guess) = guess {
+                    search.try_first(guess);
+                }
                 search.descend_nearby(&mut nearby);
                 closest = search.finish();
             }
-            last = closest.map_or(last, |closest| closest.triangle as u32);
+            last = closest.map(|closest| TriangleId(closest.triangle as u32)).or(last);
             found.push(closest);
         }
         found

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::eights::{Boxes, Triangles, larger, smaller};
 use super::oriented::OrientedBoxes;
-use crate::base::{Point, Threads, VertexId};
+use crate::base::{MaybeId, Point, Threads, TriangleId, VertexId};
 use crate::geometry::vector::{add, is_finite, scale, sub};
 use crate::spatial::bounding_box;
 use crate::spatial::hilbert::{Curve, KEY_BITS, bounding_cube};
@@ -200,15 +200,15 @@ impl Packed {
         self.leaves[leaf].boxes(simd).around_some(self.is_sound[leaf].into())
     }
 
-    pub(super) fn has_triangle(&self, id: u32) -> bool {
-        (id as usize) < self.ids.len()
+    pub(super) fn has_triangle(&self, id: TriangleId) -> bool {
+        id.index() < self.ids.len()
     }
 
-    /// Indices into `triangles` in the order of the triangles' places; those of ids that do not exist come
-    /// last.
-    pub(super) fn order_by_place(&self, triangles: &[u32]) -> Vec<u32> {
-        let place =
-            |&id: &u32| self.id_to_place.get(id as usize).map_or(u64::from(u32::MAX), |&place| place.into());
+    /// Indices into `triangles` in the order of the triangles' places; those without a triangle, or of one
+    /// that does not exist, come last.
+    pub(super) fn order_by_place(&self, triangles: &[MaybeId<TriangleId>]) -> Vec<u32> {
+        let known = |id: &MaybeId<TriangleId>| self.id_to_place.get(id.get()?.index()).copied();
+        let place = |id: &MaybeId<TriangleId>| known(id).unwrap_or(u32::MAX).into();
         sorted_by_key(triangles.iter().map(place))
     }
 

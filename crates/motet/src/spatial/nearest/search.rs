@@ -8,7 +8,7 @@ use super::lanes::at_most;
 use super::nearby::{N_EIGHTS, Nearby};
 use super::node::{Node, STACK_SIZE, put_nearest_on_top};
 use super::packed::Packed;
-use crate::base::Point;
+use crate::base::{Point, TriangleId};
 use crate::geometry::triangle;
 use crate::geometry::vector::{dot, is_finite, sub};
 
@@ -142,8 +142,8 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
     /// Examines the leaf of triangle `id` first: the nearer it is, the more this saves. Ids that do not exist
     /// are ignored.
     #[inline(always)]
-    pub(super) fn try_first(&mut self, id: u32) {
-        if let Some(&place) = self.tree.id_to_place.get(id as usize) {
+    pub(super) fn try_first(&mut self, id: TriangleId) {
+        if let Some(&place) = self.tree.id_to_place.get(id.index()) {
             self.visit_leaf(place as usize / 8);
             self.seen = place as usize / 8;
         }

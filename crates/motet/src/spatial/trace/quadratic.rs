@@ -18,7 +18,7 @@
 use std::collections::BTreeMap;
 
 use super::map;
-use crate::base::{Csr, Point, Threads, VertexId};
+use crate::base::{Csr, MaybeId, Point, TetId, Threads, VertexId};
 use crate::geometry::vector::{dot, sub};
 use crate::mesh::history::{Rows, merge_parts};
 use crate::mesh::tet_facets::for_each_tet_facet;
@@ -31,9 +31,6 @@ const MAX_NEGATIVE: f64 = 0.5;
 /// A fit is rejected if less than this fraction of one of its nine terms is independent of the terms before
 /// it.
 const MIN_INDEPENDENT: f64 = 1e-6;
-
-/// No tet.
-const NONE: u32 = u32::MAX;
 
 /// Rows for quadratic fields, for those new vertices that can have one. `rows` are the rows for linear
 /// fields, each over vertices of `old` that share a tet. The result does not depend on the number of threads.
@@ -106,10 +103,10 @@ fn with_gradient_term(
 struct Neighborhood<'a> {
     points: &'a [Point],
     tets: Vec<[VertexId; 4]>,
-    /// For each tet, the tets across the facets opposite its corners; `NONE` where the facet is a wall.
-    beside: Vec<[u32; 4]>,
-    /// The place of each vertex in `at`; `NONE` for a vertex in none of the tets.
-    place: Vec<u32>,
+    /// For each tet, the tets across the facets opposite its corners; none where the facet is a wall.
+    beside: Vec<[MaybeId<TetId>; 4]>,
+    /// For each vertex of the mesh, its id among the vertices of the tets.
+    place: Vec<MaybeId<VertexId>>,
     /// The tets at each vertex.
     at: Csr<u32>,
 }
@@ -132,36 +129,34 @@ impl<'a> Neighborhood<'a> {
             .filter(|(_, kind, v)| *kind == CellKind::TRIANGLE && v.iter().any(|v| is_near[v.index()]))
             .map(|(_, _, v)| [v[0], v[1], v[2]])
             .collect();
-        let mut beside = vec![[NONE; 4]; tets.len()];
+        let mut beside = vec![[MaybeId::NONE; 4]; tets.len()];
         for_each_tet_facet(&tets, &triangles, |facet| {
             if let [(a, i), (b, j)] = *facet.tets
                 && !facet.is_wall(&regions)
             {
-                beside[a.index()][i] = b.0;
-                beside[b.index()][j] = a.0;
+                beside[a.index()][i] = b.into();
+                beside[b.index()][j] = a.into();
             }
         });
-        let mut place = vec![NONE; mesh.points.len()];
+        let mut place = vec![MaybeId::NONE; mesh.points.len()];
         let mut n_places = 0;
-        for v in tets.iter().flatten() {
-            if place[v.index()] == NONE {
-                place[v.index()] = n_places;
-                n_places += 1;
-            }
+        let mut of_corners: Vec<[VertexId; 4]> = Vec::with_capacity(tets.len());
+        for tet in &tets {
+            of_corners.push(tet.map(|v| {
+                place[v.index()].get_or_insert_with(|| {
+                    n_places += 1;
+                    VertexId(n_places - 1)
+                })
+            }));
         }
         let at = Csr::from_pairs(n_places as usize, || {
-            let corners =
-                |(t, tet): (usize, &[VertexId; 4])| tet.map(|v| (place[v.index()] as usize, t as u32));
-            tets.iter().enumerate().flat_map(corners)
+            (0..).zip(&of_corners).flat_map(|(t, tet)| tet.map(|v| (v.index(), t)))
         });
         Self { points: &mesh.points, tets, beside, place, at }
     }
 
     fn at(&self, vertex: VertexId) -> &[u32] {
-        match self.place[vertex.index()] {
-            NONE => &[],
-            place => self.at.list(place as usize),
-        }
+        self.place[vertex.index()].get().map_or(&[][..], |place| self.at.list(place.index()))
     }
 
     /// A tet with all these corners, at least one of which is on no wall; `None` if there is none.
@@ -169,7 +164,7 @@ impl<'a> Neighborhood<'a> {
         let is_free = |v: &VertexId| {
             let is_open = |&t: &u32| {
                 let facets = self.tets[t as usize].iter().zip(&self.beside[t as usize]);
-                facets.into_iter().all(|(opposite, beside)| opposite == v || *beside != NONE)
+                facets.into_iter().all(|(opposite, beside)| opposite == v || beside.is_some())
             };
             self.at(*v).iter().all(is_open)
         };
@@ -197,7 +192,8 @@ impl<'a> Neighborhood<'a> {
         };
         start.iter().for_each(|&tet| find(tet, &mut open));
         while let Some(tet) = open.pop() {
-            self.beside[tet as usize].iter().for_each(|&other| find(other, &mut open));
+            let beside = self.beside[tet as usize].iter().filter_map(|other| other.get());
+            beside.for_each(|other| find(other.0, &mut open));
         }
         let mut found = is_found.into_iter();
         all.retain(|_| found.next() == Some(true));
