@@ -841,7 +841,7 @@ def test_the_face_files_of_a_pipe_beside_its_volume(motet, data, tmp_path):
     mesh = meshio.read(out)
     assert {"inlet", "outlet", "wall"} <= set(mesh.field_data)
     done = motet("convert", data / "tetmeshes" / "sv_ale_pipe", Path(out), code=3)
-    assert "holds 2 volumes: lumen, wall" in done.stderr
+    assert "contains 2 volumes: lumen, wall" in done.stderr
 
 
 def test_a_written_simvascular_folder_has_the_ids_of_the_program_that_made_the_mesh(motet, data, tmp_path):

@@ -185,7 +185,7 @@ fn odd_meshes() -> Vec<Case> {
             &not_a_number,
             REMESH,
             3,
-            &["nan_remeshed.vtu: cell ", "not finite numbers"],
+            &["nan_remeshed.vtu: cell ", "are not finite"],
         ),
         file("inverted_remeshed.vtu", &inverted, REMESH, 0, &["inverted"]),
         file("flat_remeshed.vtu", &flat, REMESH, 0, &["inverted"]),

@@ -150,7 +150,7 @@ class Mesh:
         return _motet.quality(self, measure)
 
     def save(self, path: str | os.PathLike[str]) -> list[str]:
-        """Writes the mesh; the format goes by the ending. What it cannot hold is warned of, and returned, a sentence each."""
+        """Writes the mesh; the format is given by the extension. What it cannot hold is reported as warnings and returned, one sentence each."""
         import warnings
 
         lost = _motet.write(path, self)
@@ -205,7 +205,7 @@ MeshLike = Any
 
 @checked
 def read(path: str | os.PathLike[str]) -> Mesh:
-    """Reads a mesh; the format goes by the ending. What of the file could not be used is warned of."""
+    """Reads a mesh; the format is given by the extension. Skipped content of the file is reported as warnings."""
     import warnings
 
     parts, notes = _motet.read(path)
