@@ -2,8 +2,9 @@
 //! `ply-rs-bw`.
 //!
 //! Properties of points and faces other than coordinates become arrays, each in its type. `nx ny nz` become
-//! one array, `normal`; properties whose names end in `_0`, `_1` and so on also form one array. Labels are the
-//! property `patch` of faces; their names are comments, `comment patch 3 wall`, which other programs ignore.
+//! one array, `normal`; properties whose names end in `_0`, `_1` and so on also form one array. Labels are
+//! the property `patch` of faces; their names are comments, `comment patch 3 wall`, which other programs
+//! ignore.
 
 use std::io::Cursor;
 
