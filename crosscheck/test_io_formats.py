@@ -852,7 +852,7 @@ def test_face_files_beside_a_volume_are_read_as_patches(motet, data, tmp_path):
     mesh = meshio.read(out)
     assert {"inlet", "outlet", "wall"} <= set(mesh.field_data)
     done = motet("convert", data / "tetmeshes" / "sv_ale_pipe", Path(out), code=3)
-    assert "holds 2 volumes: lumen, wall" in done.stderr
+    assert "contains 2 volumes: lumen, wall" in done.stderr
 
 
 def test_a_written_simvascular_folder_has_the_ids_of_simvascular(motet, data, tmp_path):

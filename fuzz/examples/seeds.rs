@@ -14,8 +14,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
     let mut n_files = BTreeMap::new();
     for format in io::formats() {
-        let (Some(write), Some(ending)) = (format.write, format.endings.first()) else { continue };
-        let target = ending.trim_start_matches('.').replace('.', "_");
+        let (Some(write), Some(extension)) = (format.write, format.extensions.first()) else { continue };
+        let target = extension.trim_start_matches('.').replace('.', "_");
         let folder = corpus.join(&target);
         fs::create_dir_all(&folder)?;
         for (name, mesh) in meshes() {

@@ -6,32 +6,32 @@ use std::path::Path;
 use motet::Mesh;
 use motet::io::{Format, Input, Notes, WriteOptions, formats, read_as};
 
-fn format(ending: &str) -> &'static Format {
-    formats().iter().find(|f| f.endings.contains(&ending)).expect("the format is registered")
+fn format(extension: &str) -> &'static Format {
+    formats().iter().find(|f| f.extensions.contains(&extension)).expect("the format is registered")
 }
 
 /// Reads `bytes` as a file with this extension. A mesh that results is valid.
-pub fn read(ending: &str, bytes: &[u8]) -> Option<Mesh> {
-    let path = format!("in{ending}");
+pub fn read(extension: &str, bytes: &[u8]) -> Option<Mesh> {
+    let path = format!("in{extension}");
     let input = Input { path: Path::new(&path), bytes, notes: &Notes::default() };
-    let mesh = read_as(format(ending), &input).ok()?;
+    let mesh = read_as(format(extension), &input).ok()?;
     mesh.validate().expect("a reader returns a mesh that holds together");
     Some(mesh)
 }
 
 /// Writes a mesh; returns the first file written, and whether nothing was lost.
-pub fn write(ending: &str, mesh: &Mesh) -> (Vec<u8>, bool) {
-    let write = format(ending).write.expect("the format is written");
+pub fn write(extension: &str, mesh: &Mesh) -> (Vec<u8>, bool) {
+    let write = format(extension).write.expect("the format is written");
     let mut written = write(mesh, &WriteOptions::default()).expect("what is read can be written");
     (written.files.swap_remove(0).1, written.lost.is_empty())
 }
 
 /// Checks that what can be read can be written and read again, with the same number of points, and with the
 /// same cells where nothing was lost.
-pub fn there_and_back(ending: &str, bytes: &[u8]) {
-    let Some(mesh) = read(ending, bytes) else { return };
-    let (again, complete) = write(ending, &mesh);
-    let again = read(ending, &again).expect("what is written is read");
+pub fn there_and_back(extension: &str, bytes: &[u8]) {
+    let Some(mesh) = read(extension, bytes) else { return };
+    let (again, complete) = write(extension, &mesh);
+    let again = read(extension, &again).expect("what is written is read");
     assert_eq!(again.points.len(), mesh.points.len());
     if complete {
         assert_eq!(again.cells, mesh.cells);

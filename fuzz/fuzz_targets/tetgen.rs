@@ -14,8 +14,8 @@ fuzz_target!(|bytes: &[u8]| {
     FOLDER.with(|folder| {
         let path = folder.path().join("in.node");
         let mut parts = bytes.split(|&b| b == 0);
-        for ending in ["node", "ele", "face"] {
-            fs::write(path.with_extension(ending), parts.next().unwrap_or(b"0 0 0 0"))
+        for extension in ["node", "ele", "face"] {
+            fs::write(path.with_extension(extension), parts.next().unwrap_or(b"0 0 0 0"))
                 .expect("it is written");
         }
         if let Ok(mesh) = motet::io::read(&path) {

@@ -67,7 +67,9 @@ pub(crate) fn cell_kinds() -> BTreeMap<&'static str, u8> {
 #[pyfunction]
 pub(crate) fn formats() -> BTreeMap<String, bool> {
     let formats = io::formats().iter();
-    formats.flat_map(|f| f.endings.iter().map(|ending| ((*ending).to_owned(), f.write.is_some()))).collect()
+    formats
+        .flat_map(|f| f.extensions.iter().map(|extension| ((*extension).to_owned(), f.write.is_some())))
+        .collect()
 }
 
 /// The content, quality and defects of a mesh.

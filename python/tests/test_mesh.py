@@ -73,7 +73,7 @@ def test_non_contiguous_arrays_are_accepted():
         (lambda: motet.Mesh(np.eye(3), [[0, 1, 2, -1]]), "0 or more"),
         (lambda: motet.Mesh(np.eye(3), [[0.5, 1, 2, 3]]), "integers"),
         (lambda: motet.Mesh(np.eye(3), {"cube": [[0]]}), "'cube'"),
-        (lambda: motet.Mesh(np.eye(3), [[0, 1, 2, 3]]).summary(), "names point 3"),
+        (lambda: motet.Mesh(np.eye(3), [[0, 1, 2, 3]]).summary(), "refers to point 3"),
         (lambda: motet.Mesh(np.eye(3), {"tetra": [[0, 1, 2]]}).summary(), "4 vertices"),
         (lambda: motet.Mesh(np.eye(3), [[0, 1, 2]], point_data={"p": [1.0]}).summary(), "point array p"),
         (lambda: shapes.box().quality("beauty"), "mean_ratio"),

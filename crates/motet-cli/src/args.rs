@@ -12,7 +12,7 @@ use crate::verbs::{
 #[command(name = "motet", version, subcommand_required = true, arg_required_else_help = true)]
 #[command(max_term_width = 100)]
 #[command(after_help = "\
-The ending of a file's name says its format: .vtu .vtp .pvd .vtk .msh .mesh .inp .cgns .stl .obj \
+The extension of a file gives its format: .vtu .vtp .pvd .vtk .msh .mesh .inp .cgns .stl .obj \
 .node .xml ...
 
 Exit status: 0 done; 2 usage error; 3 an input cannot be read or does not suit the verb; 4 the \

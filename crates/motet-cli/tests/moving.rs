@@ -282,7 +282,7 @@ fn words_that_mean_nothing_are_refused_before_work() {
     folder.mesh("box.vtu", &sphere_in_box(3, 2));
     let cases: &[(&[&str], &str)] = &[
         (&["move", "box.vtu", "-o", "out.vtu"], "required"),
-        (&["move", "box.vtu", "-o", "out.docx", "--translate", "sphere=1,0,0"], "ending"),
+        (&["move", "box.vtu", "-o", "out.docx", "--translate", "sphere=1,0,0"], "extension"),
         (&["move", "box.vtu", "-o", "out.vtu", "--translate", "ball=1,0,0"], "sphere, box"),
         (&["move", "box.vtu", "-o", "out.vtu", "--translate", "sphere=1,0"], "3 numbers"),
         (&["move", "box.vtu", "-o", "out.vtu", "--rotate", "sphere=0,0,0,90"], "nowhere"),

@@ -13,7 +13,7 @@ use crate::skin::NONE;
 
 /// Name of the array that is computed here.
 pub(crate) const EAS: &str = "EAS quality";
-/// Above this number, labels cannot be told apart by colour.
+/// Above this number, labels cannot be distinguished by colour.
 const MAX_LABELS: usize = 64;
 /// The code of a missing value among packed ones.
 const MISSING: u32 = 65_535;
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn labels_vectors_and_texts_are_told_apart() {
+    fn labels_vectors_and_texts_are_distinguished() {
         let mut mesh = box_grid([1; 3], [[0.0; 3], [1.0; 3]]);
         let n = mesh.points.len();
         mesh.set_point_field(Field::vectors("u", &vec![[3.0, 4.0, 0.0]; n]));

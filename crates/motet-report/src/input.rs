@@ -25,8 +25,8 @@ pub(crate) struct Meshes {
 impl Input {
     /// Finds out what an input is; meshes are read later, one at a time.
     pub(crate) fn open(path: &Path) -> Result<Self> {
-        let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
             Some("json") => return log::read_object(path).map(Self::Log),
             Some("jsonl" | "ndjson") => return log::read_lines(path).map(Self::Log),
             _ => {}

@@ -143,8 +143,8 @@ fn check(inputs: &[PathBuf], options: &Options) -> Result<()> {
         return Err(Error::options("no input: at least one is expected")
             .remedy("give a mesh, a series, or a JSON file"));
     }
-    let ending = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    if !matches!(ending.as_deref(), Some("html" | "htm")) {
+    let extension = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    if !matches!(extension.as_deref(), Some("html" | "htm")) {
         return Err(Error::options(format!("the name of a page must end in .html; got {}", name_of(output)))
             .in_file(output)
             .remedy("give --output a name that ends in .html"));

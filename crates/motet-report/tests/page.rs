@@ -187,7 +187,7 @@ fn what_cannot_be_read_is_reported_with_file_place_and_remedy() {
     let folder = Folder::new();
     let empty = "<VTKFile type=\"Collection\"><Collection></Collection></VTKFile>";
     let error = folder.refused(folder.text("empty.pvd", empty));
-    assert!(error.kind() == ErrorKind::Input && error.to_string().contains("names no file"), "{error}");
+    assert!(error.kind() == ErrorKind::Input && error.to_string().contains("lists no files"), "{error}");
     let error = folder.refused(folder.text("number.json", "3"));
     assert!(error.to_string().contains("found a number") && error.remedy_text().is_some(), "{error}");
     let error = folder.refused(folder.text("broken.jsonl", "{\"a\": 1}\n{\"a\": NaN}\n"));

@@ -182,7 +182,7 @@ fn a_polyhedron_may_name_vertices_in_its_faces_alone() {
 }
 
 #[test]
-fn quads_that_agree_in_three_sorted_corners_are_still_told_apart() {
+fn quads_that_agree_in_three_sorted_corners_are_distinguished() {
     let mut cells = Cells::new();
     cells.push(CellKind::PYRAMID, ids([0, 1, 2, 9, 10]));
     cells.push(CellKind::PYRAMID, ids([0, 1, 3, 9, 11]));

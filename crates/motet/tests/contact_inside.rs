@@ -231,7 +231,7 @@ fn crossing_surfaces_say_the_same_with_and_without_their_parts() {
 /// A tet attached to a vertex of a box, half inside: its other vertices are on both sides of the shared
 /// vertex.
 #[test]
-fn surfaces_that_share_vertices_are_told_apart_at_them() {
+fn surfaces_that_share_vertices_are_distinguished_there() {
     let mut points = Vec::new();
     let b = append(&box_grid([1; 3], [[0.0; 3], [1.0; 3]]), &mut points, |p| p);
     let corner = VertexId::new(points.iter().position(|&p| p == [1.0; 3]).unwrap());

@@ -503,7 +503,7 @@ fn origins_that_do_not_fit_are_refused() {
     assert_eq!((found.from, found.shares), ([VertexId(0), VertexId(1)].as_slice(), [0.25, 0.75].as_slice()));
     assert_eq!(origins.of(VertexId(0)), Origin::Kept(VertexId(0)));
     let beyond = Origins::new(1, kept.clone(), fine.clone()).unwrap_err().to_string();
-    assert_eq!(beyond, "row of 1: names the old id 1, but there were only 1");
+    assert_eq!(beyond, "row of 1: refers to the old id 1, but there were only 1");
     assert!(Origins::new(2, vec![VertexId(2), Id::NONE], fine.clone()).is_err());
     assert!(Origins::new(2, vec![VertexId(0), VertexId(1)], fine).is_err());
     assert!(Origins::new(2, vec![Id::NONE, VertexId(1)], row(&[])).is_err());

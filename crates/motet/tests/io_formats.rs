@@ -9,25 +9,25 @@ use motet::io::{Encoding, Format, Input, Notes, WriteOptions, formats, read, rea
 use motet::mesh::{CellKind, Cells, Field, Values};
 use proptest::prelude::*;
 
-fn format(ending: &str) -> &'static Format {
-    formats().iter().find(|f| f.endings.contains(&ending)).expect("the format is registered")
+fn format(extension: &str) -> &'static Format {
+    formats().iter().find(|f| f.extensions.contains(&extension)).expect("the format is registered")
 }
 
 /// Parses bytes as a file with this extension, in memory.
-fn parse(ending: &str, bytes: &[u8]) -> motet::Result<Mesh> {
-    let path = format!("in{ending}");
-    read_as(format(ending), &Input { path: Path::new(&path), bytes, notes: &Notes::default() })
+fn parse(extension: &str, bytes: &[u8]) -> motet::Result<Mesh> {
+    let path = format!("in{extension}");
+    read_as(format(extension), &Input { path: Path::new(&path), bytes, notes: &Notes::default() })
 }
 
-fn notes_of(ending: &str, bytes: &[u8]) -> Vec<String> {
-    let (path, notes) = (format!("in{ending}"), Notes::default());
-    read_as(format(ending), &Input { path: Path::new(&path), bytes, notes: &notes }).expect("it is read");
+fn notes_of(extension: &str, bytes: &[u8]) -> Vec<String> {
+    let (path, notes) = (format!("in{extension}"), Notes::default());
+    read_as(format(extension), &Input { path: Path::new(&path), bytes, notes: &notes }).expect("it is read");
     notes.into_vec()
 }
 
 /// Writes into memory; returns the first file, and what was lost.
-fn print(ending: &str, mesh: &Mesh, options: &WriteOptions) -> (Vec<u8>, Vec<String>) {
-    let writer = format(ending).write.expect("the format is written");
+fn print(extension: &str, mesh: &Mesh, options: &WriteOptions) -> (Vec<u8>, Vec<String>) {
+    let writer = format(extension).write.expect("the format is written");
     let mut written = writer(mesh, options).expect("the mesh is written");
     (written.files.swap_remove(0).1, written.lost)
 }
@@ -163,10 +163,10 @@ proptest! {
         let refs: Vec<i32> = (0..mesh.points.len() as i32).map(|i| i - 3).collect();
         mesh.set_point_field(Field::scalars("medit:ref", refs));
         mesh.set_cell_field(Field::scalars("medit:ref", labels));
-        for ending in [".mesh", ".meshb"] {
-            let (bytes, lost) = print(ending, &mesh, &WriteOptions::default());
+        for extension in [".mesh", ".meshb"] {
+            let (bytes, lost) = print(extension, &mesh, &WriteOptions::default());
             prop_assert!(lost.is_empty(), "{lost:?}");
-            let back = parse(ending, &bytes).unwrap();
+            let back = parse(extension, &bytes).unwrap();
             prop_assert_eq!(bits(&back.points), bits(&mesh.points));
             prop_assert_eq!(&back.cells, &mesh.cells);
             prop_assert_eq!(back.point_field("medit:ref"), mesh.point_field("medit:ref"));
@@ -276,15 +276,15 @@ proptest! {
             (".stl", WriteOptions::default()),
             (".stl", WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() }),
         ];
-        for (ending, options) in files {
-            let (mut bytes, _) = print(ending, &mesh, &options);
+        for (extension, options) in files {
+            let (mut bytes, _) = print(extension, &mesh, &options);
             let n = bytes.len();
             // A surface without cells has no bytes.
             for (place, value) in flips.iter().filter(|_| n > 0) {
                 bytes[(place * n as f64) as usize] ^= value;
             }
-            let _ = parse(ending, &bytes);
-            let _ = parse(ending, &bytes[..(cut * n as f64) as usize]);
+            let _ = parse(extension, &bytes);
+            let _ = parse(extension, &bytes[..(cut * n as f64) as usize]);
         }
     }
 }
@@ -310,29 +310,25 @@ fn damaged_files_are_reported() {
         )
     };
     let cases: Vec<(&str, String, &str)> = vec![
-        (".msh", String::new(), "is empty (0 bytes); get the file again"),
-        (".msh", "hello\n".into(), "line 1: expected the beginning of a section ($...), found `hello`"),
-        (
-            ".msh",
-            "$NOD\n1\n".into(),
-            "this is MSH version 1; versions 2.2 and 4.1 are read; turn it into another version",
-        ),
-        (".msh", "$Nodes\n0\n".into(), "line 2: expected $MeshFormat at the head of the file, found $Nodes"),
-        (".msh", "$MeshFormat\n4 0 8\n".into(), "line 2: this is MSH version `4`"),
-        (".msh", "$MeshFormat\n2.2 0 16\n".into(), "line 2: numbers of 16 bytes"),
+        (".msh", String::new(), "is empty (0 bytes); get a new copy of the file"),
+        (".msh", "hello\n".into(), "line 1: expected the start of a section ($...), found `hello`"),
+        (".msh", "$NOD\n1\n".into(), "expected MSH version 2.2 or 4.1, found version 1; convert it"),
+        (".msh", "$Nodes\n0\n".into(), "line 2: expected $MeshFormat at the start of the file, found $Nodes"),
+        (".msh", "$MeshFormat\n4 0 8\n".into(), "line 2: expected MSH version 2.2 or 4.1, found version `4`"),
+        (".msh", "$MeshFormat\n2.2 0 16\n".into(), "line 2: expected numbers of 4 or 8 bytes, found 16"),
         (
             ".msh",
             "$MeshFormat\n4.1 1 8\n\x01\x02\x03\x04".into(),
-            "byte 24: expected the number 1 in either order of bytes",
+            "byte 24: expected the number 1 in either byte order",
         ),
-        (".msh", "$MeshFormat\n2.2 0 8\n".into(), "the file ends where $EndMeshFormat should follow"),
+        (".msh", "$MeshFormat\n2.2 0 8\n".into(), "expected $EndMeshFormat, found the end of the file"),
         (".msh", msh2(""), "there is no section $Nodes"),
         (
             ".msh",
             msh2("$Nodes\n1152921504606846976\n"),
-            "line 5: 1152921504606846976 nodes are announced, but what is left of the file holds at most 0",
+            "line 5: 1152921504606846976 nodes declared, but the rest of the file can hold at most 0",
         ),
-        (".msh", msh2("$Nodes\n-1\n"), "line 5: -1 is no number of nodes"),
+        (".msh", msh2("$Nodes\n-1\n"), "line 5: the number of nodes is negative: -1"),
         (
             ".msh",
             msh2("$Nodes\n1\n1 0 0\n$EndNodes\n"),
@@ -347,133 +343,137 @@ fn damaged_files_are_reported() {
         (
             ".msh",
             msh2("$Nodes\n1\n1 0 0 0\n2 0 0 0\n$EndNodes\n"),
-            "line 7: expected $EndNodes, found `2`; the number at the head of the section is wrong",
+            "line 7: expected $EndNodes, found `2`; the count of the section is wrong",
         ),
         (
             ".msh",
             msh2("$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 15 2 0 0 7\n$EndElements\n"),
-            "line 10: element 1 names node 7, which is not among the nodes",
+            "line 10: element 1 refers to node 7, which does not exist",
         ),
         (
             ".msh",
             msh2("$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 99 2 0 0 7\n$EndElements\n"),
-            "line 10: elements of type 99 are not read",
+            "line 10: element type 99 is not supported",
         ),
         (
             ".msh",
             msh2("$Nodes\n1\n1 0 0 0\n$EndNodes\n$NodeData\n1\n\"p\"\n0\n3\n0\n1\n1\n5 2.0\n$EndNodeData\n"),
-            "array p: gives a value to node 5, which is not in the mesh",
+            "array p: has a value for node 5, which does not exist",
         ),
-        (".msh", msh2("$Foo\n1 2 3\n"), "the file ends where $EndFoo should follow"),
+        (".msh", msh2("$Foo\n1 2 3\n"), "expected $EndFoo, found the end of the file"),
         (
             ".msh",
             msh4("$Nodes\n1 2 1 2\n3 1 0 1\n1\n0 0 0\n$EndNodes\n"),
-            "2 nodes are announced, but the blocks hold 1",
+            "2 nodes declared, but the blocks contain 1",
         ),
         (
             ".msh",
             msh4("$Elements\n1 1 1 1\n0 1 15 1\n1 1\n$EndElements\n"),
-            "line 7: elements come before the nodes",
+            "line 7: elements precede the nodes",
         ),
         (
             ".stl",
             "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n".into(),
-            "line 5: the file ends where coordinate z should follow; the file is cut off",
+            "line 5: expected coordinate z, found the end of the file; the file is truncated",
         ),
         (
             ".stl",
             "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n".into(),
             "line 4: coordinate z: expected a number in double precision, found `x`",
         ),
-        (".stl", "solid a\nendsolid a\n".into(), "a surface without a triangle"),
+        (".stl", "solid a\nendsolid a\n".into(), "the surface has no triangles"),
         (
             ".stl",
             format!("{}\x02\0\0\0", " ".repeat(80)),
-            "byte 80: a binary STL with 2 triangles has 184 bytes, this file 84",
+            "byte 80: a binary STL file with 2 triangles has 184 bytes, but this file has 84",
         ),
         (
             ".stl",
             "\x7fELF".into(),
-            "byte 0: neither a text that begins with `solid` nor the 84 bytes of a binary head",
+            "byte 0: expected text that starts with `solid`, or a binary header of 84 bytes, found",
         ),
         (
             ".stl",
             "version https://git-lfs.github.com/spec/v1\noid sha256:0\n".into(),
-            "is a pointer of Git LFS, not the file itself; fetch the file: git lfs pull",
+            "is a Git LFS pointer, not the file itself; fetch the file: git lfs pull",
         ),
-        (".obj", "# nothing\n".into(), "a file without a vertex"),
-        (".obj", "v 0 0\n".into(), "line 1: a vertex has three coordinates"),
+        (".obj", "# nothing\n".into(), "the file contains no vertices"),
+        (".obj", "v 0 0\n".into(), "line 1: expected three coordinates of a vertex"),
         (".obj", "v 0 0 zero\n".into(), "line 1: coordinate: expected a number, found `zero`"),
-        (".obj", "v 0 0 0\nf 1 1\n".into(), "line 2: 2 vertices are too few for this element"),
-        (".obj", "v 0 0 0\nf 1 1 0\n".into(), "line 2: vertex 0 is named, but 1 vertices come before"),
-        (".obj", "v 0 0 0\nf 1 1 -2\n".into(), "line 2: vertex -2 is named, but 1 vertices come before"),
+        (".obj", "v 0 0 0\nf 1 1\n".into(), "line 2: too few vertices for this element: 2"),
+        (
+            ".obj",
+            "v 0 0 0\nf 1 1 0\n".into(),
+            "line 2: an element refers to vertex 0, but 1 vertices precede it",
+        ),
+        (
+            ".obj",
+            "v 0 0 0\nf 1 1 -2\n".into(),
+            "line 2: an element refers to vertex -2, but 1 vertices precede it",
+        ),
         (
             ".obj",
             "v 0 0 0\n\nf 1/1 1//1 9/1/1\nv 0 0 0\n".into(),
-            "line 3: vertex 9 is named, but the file has 2",
+            "line 3: an element refers to vertex 9, but the file has 2 vertices",
         ),
-        (".obj", "version 2\n".into(), "line 1: a statement: expected one of Wavefront OBJ's"),
+        (".obj", "version 2\n".into(), "line 1: statement: expected one of Wavefront OBJ"),
         (".mesh", "MeshVersion 2\n".into(), "line 1: the first word: expected `MeshVersionFormatted`"),
-        (".mesh", "MeshVersionFormatted 7\n".into(), "line 1: version 7 of the format"),
+        (".mesh", "MeshVersionFormatted 7\n".into(), "line 1: expected format version 1 to 4, found 7"),
         (
             ".mesh",
             "MeshVersionFormatted 2\nVertices 1\n0 0 0 0\n".into(),
-            "line 2: vertices come before the dimension",
+            "line 2: vertices precede the dimension",
         ),
         (".mesh", medit("End\n"), "there is no section Vertices"),
-        (".mesh", medit("Vertices 4294967296\n0 0 0 0\n"), "line 3: 4294967296 vertices are announced"),
+        (".mesh", medit("Vertices 4294967296\n0 0 0 0\n"), "line 3: 4294967296 vertices declared"),
         (
             ".mesh",
             medit("Vertices 1\n0 0 0 0\nTetrahedra 1\n1 1 1 2 0\nEnd\n"),
-            "line 6: a cell names vertex 2, but there are 1 (1 to 1)",
+            "line 6: a cell refers to vertex 2, but there are 1 vertices, numbered from 1",
         ),
         (
             ".mesh",
             medit("Vertices 1\n0 0 0 0\nTetrahedra 1\n1 1 1 0 0\nEnd\n"),
-            "line 6: a cell names vertex 0",
+            "line 6: a cell refers to vertex 0",
         ),
         (
             ".mesh",
             medit("Vertices 1\n0 0 0 0\nRidges 1\n4\nEnd\n"),
-            "4 of 0 Edges is marked, which does not exist",
+            "a mark refers to entry 4 of section Edges, which has 0",
         ),
-        (".mesh", medit("Vertices 1\n0 0 0 0\n1 2 3 4\n"), "line 5: a section: expected its name, found `1`"),
-        (".xml", "<VTKFile/>".into(), "line 1: the root element is `VTKFile`, expected `dolfin`"),
-        (".xml", "<dolfin>".into(), "line 1: the file ends before its last element is closed"),
+        (".mesh", medit("Vertices 1\n0 0 0 0\n1 2 3 4\n"), "line 5: section: expected a name, found `1`"),
+        (".xml", "<VTKFile/>".into(), "line 1: expected root element `dolfin`, found `VTKFile`"),
+        (".xml", "<dolfin>".into(), "line 1: the file ends before all elements are closed"),
         (
             ".xml",
             "<dolfin><mesh_function dim=\"2\" size=\"0\"/></dolfin>".into(),
-            "there is no mesh in this file; it holds marks of a mesh",
+            "the file contains no mesh; it contains marks on a mesh",
         ),
-        (".xml", xml("<cells size=\"99999999\">"), "line 2: 99999999 cells are announced"),
+        (".xml", xml("<cells size=\"99999999\">"), "line 2: 99999999 cells declared"),
         (
             ".xml",
             xml(
                 "<cells size=\"1\"><tetrahedron index=\"0\" v0=\"0\" v1=\"0\" v2=\"0\" v3=\"5\"/></cells></mesh></dolfin>",
             ),
-            "line 2: cell 0 names vertex 5, but there are 1 (from 0)",
+            "line 2: cell 0 refers to vertex 5, but there are 1 vertices, numbered from 0",
         ),
-        (
-            ".xml",
-            xml("<cells size=\"1\"></cells></mesh></dolfin>"),
-            "line 2: 1 elements are announced, 0 are there",
-        ),
+        (".xml", xml("<cells size=\"1\"></cells></mesh></dolfin>"), "line 2: 1 elements declared, 0 found"),
         (".xml", "<dolfin>\n<mesh celltype=".into(), "line 2: not well-formed XML"),
     ];
-    for (ending, text, expected) in cases {
-        let error = match parse(ending, text.as_bytes()) {
+    for (extension, text, expected) in cases {
+        let error = match parse(extension, text.as_bytes()) {
             Err(error) => error.to_string(),
-            Ok(_) => panic!("{ending} file was read: {text}"),
+            Ok(_) => panic!("{extension} file was read: {text}"),
         };
-        assert!(error.contains(expected), "{ending}: {text}\n  said: {error}\n  expected: {expected}");
-        assert!(error.starts_with(&format!("in{ending}: ")), "{error}");
+        assert!(error.contains(expected), "{extension}: {text}\n  found: {error}\n  expected: {expected}");
+        assert!(error.starts_with(&format!("in{extension}: ")), "{error}");
     }
 }
 
 #[test]
-fn a_packed_file_cut_off_is_reported() {
+fn a_truncated_gzip_file_is_reported() {
     let error = parse(".xml.gz", b"\x1f\x8b\x08\0\0\0\0\0\0\0").unwrap_err().to_string();
-    assert!(error.contains("cannot be unpacked"), "{error}");
+    assert!(error.contains("cannot be decompressed"), "{error}");
 }
 
 #[test]
@@ -482,27 +482,36 @@ fn tetgen_files_that_do_not_fit_are_reported() {
     let file = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     let message = |name: &str| read(folder.path().join(name)).unwrap_err().to_string();
     file("a.ele", "1 4 0\n1 1 2 3 4\n");
-    assert!(message("a.ele").contains("a.node: there is no such file"), "{}", message("a.ele"));
+    assert!(
+        message("a.ele").contains("a.node: the file with the points of the .ele file does not exist"),
+        "{}",
+        message("a.ele")
+    );
     file("a.node", "2 3 0 0\n1 0 0 0\n3 0 0 0\n");
-    assert!(message("a.ele").contains("line 3: node 3 stands where number 2 should"), "{}", message("a.ele"));
+    assert!(message("a.ele").contains("line 3: expected node 2, found node 3"), "{}", message("a.ele"));
     file("a.node", "2 3 0 0\n1 0 0 0\n2 0 0\n");
-    assert!(message("a.ele").contains("line 3: coordinate of a node is missing"), "{}", message("a.ele"));
+    assert!(message("a.ele").contains("line 3: node coordinate is missing"), "{}", message("a.ele"));
     file("a.node", "2 3 0 0\n1 0 0 0\n2 0 0 0\n");
     assert!(
-        message("a.node").contains("a.ele: line 2: an element names node 3, but there are 1 to 2"),
+        message("a.node")
+            .contains("a.ele: line 2: an element refers to node 3, but nodes are numbered from 1 to 2"),
         "{}",
         message("a.node")
     );
     file("a.ele", "1 5 0\n");
-    assert!(message("a.node").contains("line 1: elements of 5 nodes"), "{}", message("a.node"));
+    assert!(
+        message("a.node").contains("line 1: expected tetrahedra with 4 or 10 nodes, found elements with 5"),
+        "{}",
+        message("a.node")
+    );
     file("a.ele", "9999999999 4 0\n");
-    assert!(message("a.node").contains("9999999999 elements are announced"), "{}", message("a.node"));
+    assert!(message("a.node").contains("9999999999 elements declared"), "{}", message("a.node"));
     file("a.node", "5000 3 99999 0\n");
-    assert!(message("a.node").contains("5000 nodes are announced"), "{}", message("a.node"));
+    assert!(message("a.node").contains("5000 nodes declared"), "{}", message("a.node"));
 }
 
 #[test]
-fn tetgen_counts_from_what_the_file_begins_with() {
+fn tetgen_numbering_starts_at_the_first_number() {
     let folder = tempfile::tempdir().unwrap();
     for base in [0, 1, 17] {
         let row = |i: i32, rest: &str| format!("{} {rest} # remark\n", base + i);
@@ -560,13 +569,13 @@ fn all_statements_of_an_obj_are_kept_or_noted() {
     assert_eq!(mesh.cells.vertices(motet::base::CellId(1)), [0, 1, 2, 3].map(VertexId));
     assert_eq!(mesh.cell_field("patch").unwrap().values, Values::I32(vec![1, 2, 2, 2, 2]));
     let notes = notes_of(".obj", text);
-    for word in ["`mtllib`", "`vt`", "`usemtl`", "weights or colours"] {
+    for word in ["`mtllib`", "`vt`", "`usemtl`", "weights and colours"] {
         assert!(notes.iter().any(|note| note.contains(word)), "{word}: {notes:?}");
     }
 }
 
 #[test]
-fn marks_of_medit_come_back() {
+fn medit_marks_round_trip() {
     let text = b"MeshVersionFormatted\n2\nDimension\n3\n# a remark\nVertices\n3\n0 0 0 1\n1 0 0 2\n0 1 0 3\n\
         Triangles 1\n1 2 3 9\nEdges 2\n1 2 4\n2 3 5\nCorners 1\n2\nRidges\n1 2\nRequiredTriangles 1\n1\n\
         Normals 1\n0 0 1\nNormalAtVertices 1\n1 1\nEnd\n";
@@ -586,7 +595,7 @@ fn marks_of_medit_come_back() {
 }
 
 #[test]
-fn what_a_format_cannot_hold_is_reported() {
+fn losses_are_reported() {
     let mut mesh =
         Mesh::new(vec![[0.1, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], Cells::new());
     mesh.cells.push(CellKind::TETRA, [0, 1, 2, 3].map(VertexId));
@@ -596,28 +605,37 @@ fn what_a_format_cannot_hold_is_reported() {
     mesh.set_cell_field(Field::scalars("title", Values::Text(vec![String::new(); 3])));
     mesh.set_cell_field(Field::scalars("patch", vec![0, 1, 1]));
     mesh.label_names.patches.insert(1, "wall".into());
-    for (ending, sentences) in [
-        (".msh", vec!["1 cells of kind polygon", "text arrays are left out, MSH has none: title"]),
+    for (extension, sentences) in [
+        (".msh", vec!["1 cells of kind polygon", "text arrays are not written (MSH has none): title"]),
         (
             ".stl",
             vec![
                 "1 cells of kind tetra",
-                "cut into triangles",
+                "split into triangles",
                 "pressure",
                 "title",
                 "single precision",
-                "names of patches",
+                "patch names",
             ],
         ),
         (".obj", vec!["1 cells of kind tetra", "pressure", "title"]),
-        (".mesh", vec!["1 cells of kind polygon", "pressure", "title", "no names of labels: wall", "order"]),
+        (
+            ".mesh",
+            vec![
+                "1 cells of kind polygon",
+                "pressure",
+                "title",
+                "label names are not written (Medit has none): wall",
+                "order",
+            ],
+        ),
         (".node", vec!["1 cells of kind polygon", "1 cells of kind quad", "attributes", "title", "wall"]),
     ] {
-        let (_, lost) = print(ending, &mesh, &WriteOptions::default());
+        let (_, lost) = print(extension, &mesh, &WriteOptions::default());
         for sentence in sentences {
             assert!(
                 lost.iter().any(|l| l.contains(sentence)),
-                "{ending} does not say `{sentence}`: {lost:?}"
+                "{extension} does not report `{sentence}`: {lost:?}"
             );
         }
     }
@@ -628,10 +646,10 @@ fn a_volume_becomes_its_boundary_in_formats_of_surfaces() {
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
     let tets = [0, 1, 2, 3, 1, 3, 2, 4].map(VertexId).to_vec();
     let mesh = Mesh::new(corners.to_vec(), Cells::uniform(CellKind::TETRA, tets).unwrap());
-    for ending in [".stl", ".obj", ".ply", ".off"] {
-        let (bytes, lost) = print(ending, &mesh, &WriteOptions::default());
+    for extension in [".stl", ".obj", ".ply", ".off"] {
+        let (bytes, lost) = print(extension, &mesh, &WriteOptions::default());
         assert!(lost.iter().any(|l| l.contains("boundary")), "{lost:?}");
-        let surface = parse(ending, &bytes).unwrap();
+        let surface = parse(extension, &bytes).unwrap();
         assert_eq!(surface.cells.counts(), [(CellKind::TRIANGLE, 6)]);
         // Facing outward, a closed surface encloses its volume: 1/6 and 1/3 of the unit cube.
         let volume: f64 = self::corners(&surface)
@@ -642,12 +660,12 @@ fn a_volume_becomes_its_boundary_in_formats_of_surfaces() {
                     + a[2] * (b[0] * c[1] - b[1] * c[0])
             })
             .sum();
-        assert!((volume / 6.0 - 0.5).abs() < 1e-15, "{ending}: {}", volume / 6.0);
+        assert!((volume / 6.0 - 0.5).abs() < 1e-15, "{extension}: {}", volume / 6.0);
     }
 }
 
 #[test]
-fn dolfin_tets_are_turned_and_marks_become_patches() {
+fn dolfin_tets_are_reoriented_and_marks_become_patches() {
     let text = br#"<?xml version="1.0"?><dolfin><mesh celltype="tetrahedron" dim="3"><vertices size="5">
         <vertex index="0" x="0" y="0" z="0"/><vertex index="1" x="1" y="0" z="0"/><vertex index="2" x="0" y="1" z="0"/>
         <vertex index="3" x="0" y="0" z="1"/><vertex index="4" x="0" y="0" z="-1"/></vertices>
@@ -762,7 +780,7 @@ fn a_face_of_another_volume_is_reported() {
     let error = read(folder.path()).unwrap_err().to_string();
     assert!(
         error.contains(
-            "wall.vtp: point 1: 1 of 3 points have a GlobalNodeID that the volume does not have, the first 11"
+            "wall.vtp: point 1: 1 of 3 points have a GlobalNodeID that is not in the volume; the first is 11"
         ),
         "{error}"
     );
@@ -772,7 +790,7 @@ fn a_face_of_another_volume_is_reported() {
     assert!(error.contains("3 of 3 points are not in the volume"), "{error}");
     fs::remove_dir_all(folder.path().join("mesh-surfaces")).unwrap();
     let error = read(folder.path()).unwrap_err().to_string();
-    assert!(error.contains("there is no face (*.vtp)"), "{error}");
+    assert!(error.contains("there are no faces (*.vtp)"), "{error}");
 }
 
 #[test]
@@ -795,7 +813,7 @@ fn polyhedra_go_into_a_simvascular_folder_and_are_no_faces() {
     let face = fs::read_dir(folder.join("mesh-surfaces")).unwrap().next().unwrap().unwrap().path();
     fs::copy(folder.join("mesh-complete.mesh.vtu"), &face).unwrap();
     let error = read(&folder).unwrap_err().to_string();
-    assert!(error.contains("has volume cells, which no face has"), "{error}");
+    assert!(error.contains("contains volume cells, but a face must be a surface"), "{error}");
 }
 
 #[test]
@@ -818,7 +836,7 @@ fn an_entity_gets_a_number_also_where_the_largest_is_taken() {
 }
 
 #[test]
-fn a_mesh_goes_into_a_simvascular_folder_and_comes_back() {
+fn a_mesh_round_trips_through_a_simvascular_folder() {
     let mut mesh = motet::mesh::shapes::box_grid([2, 1, 1], [[0.0; 3], [1.0; 3]]);
     mesh.label_names.patches.insert(1, "wall/left".into());
     mesh.set_point_field(Field::scalars("p", (0..mesh.points.len() as i32).collect::<Vec<_>>()));

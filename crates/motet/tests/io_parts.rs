@@ -86,7 +86,7 @@ fn is_whole(mesh: &Mesh, whole: &Mesh) {
 }
 
 #[test]
-fn the_parts_of_a_parallel_run_are_one_mesh() {
+fn the_parts_of_a_parallel_run_form_one_mesh() {
     let (folder, whole) = (Folder::new(), cube());
     for ghosts in [0.0, 0.2] {
         for (i, third) in THIRDS.iter().enumerate() {
@@ -98,13 +98,13 @@ fn the_parts_of_a_parallel_run_are_one_mesh() {
         );
         let (mesh, notes) = read(folder.write("all.pvtu", text));
         is_whole(&mesh, &whole);
-        assert_eq!(notes.contains("are ghosts"), ghosts > 0.0, "{notes}");
-        assert!(notes.contains("pieces were joined"), "{notes}");
+        assert_eq!(notes.contains("ghost cells"), ghosts > 0.0, "{notes}");
+        assert!(notes.contains("pieces are joined"), "{notes}");
     }
 }
 
 #[test]
-fn blocks_are_one_mesh_and_name_its_regions() {
+fn blocks_form_one_mesh_and_name_its_regions() {
     let (folder, whole) = (Folder::new(), cube());
     for (i, third) in THIRDS.iter().enumerate() {
         let mut mesh = part(&whole, *third, 0.0);
@@ -124,7 +124,7 @@ fn blocks_are_one_mesh_and_name_its_regions() {
 }
 
 #[test]
-fn files_that_name_each_other_or_nothing_are_refused() {
+fn files_that_refer_to_each_other_or_to_missing_files_are_refused() {
     let folder = Folder::new();
     let file = |to: &str| {
         format!(
@@ -163,7 +163,7 @@ fn an_element_of_two_groups_is_one_cell() {
 }
 
 #[test]
-fn bytes_behind_triangles_are_passed_over() {
+fn data_after_triangles_are_skipped() {
     let (folder, surface) = (
         Folder::new(),
         shapes::Coil { centre: [0.0; 3], radius: 1.0, pitch: 1.0, turns: 1.0, wire_radius: 0.1 }
@@ -184,7 +184,7 @@ fn bytes_behind_triangles_are_passed_over() {
         (&mesh.points, &mesh.cells),
         (&read(folder.at("plain.stl")).0.points, &read(folder.at("plain.stl")).0.cells)
     );
-    assert!(mesh.cell_data.is_empty() && notes.contains("passed over"), "{notes}");
+    assert!(mesh.cell_data.is_empty() && notes.contains("are skipped"), "{notes}");
     bytes.truncate(bytes.len() - 3);
     assert!(refused(folder.write("cut.stl", &bytes)).contains("bytes"));
 }
@@ -208,7 +208,7 @@ fn zeros(n_blocks: usize) -> Vec<u8> {
 }
 
 #[test]
-fn what_unpacks_to_far_more_than_it_is_is_refused_before_it_is_unpacked() {
+fn decompression_bombs_are_refused_before_decompression() {
     let folder = Folder::new();
     assert_eq!(read(folder.write("some.vtu", zeros(4))).0.points.len(), 4 << 16);
     let message = refused(folder.write("bomb.vtu", zeros(800)));
@@ -242,12 +242,12 @@ fn writers_say_that_the_order_of_cells_changes() {
 }
 
 #[test]
-fn all_compressions_still_come_back() {
+fn all_compressions_round_trip() {
     let (folder, whole) = (Folder::new(), cube());
     for compression in [Compression::None, Compression::Zlib, Compression::Lz4, Compression::Lzma] {
         let options = WriteOptions { compression, ..WriteOptions::default() };
         write(folder.at("a.vtu"), &whole, &options).unwrap();
         assert_eq!(read(folder.at("a.vtu")).0.points, whole.points);
     }
-    assert!(formats().iter().any(|f| f.endings.contains(&".pvtu")));
+    assert!(formats().iter().any(|f| f.extensions.contains(&".pvtu")));
 }

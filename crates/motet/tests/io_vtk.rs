@@ -9,29 +9,29 @@ use motet::mesh::{CellKind, Cells, Field, Values, shapes};
 use motet::{ErrorKind, Mesh};
 use proptest::prelude::*;
 
-fn format(ending: &str) -> &'static Format {
-    io::formats().iter().find(|f| f.endings.contains(&ending)).unwrap()
+fn format(extension: &str) -> &'static Format {
+    io::formats().iter().find(|f| f.extensions.contains(&extension)).unwrap()
 }
 
-fn read(ending: &str, bytes: &[u8]) -> motet::Result<Mesh> {
-    let name = format!("test{ending}");
-    io::read_as(format(ending), &Input { path: Path::new(&name), bytes, notes: &Notes::default() })
+fn read(extension: &str, bytes: &[u8]) -> motet::Result<Mesh> {
+    let name = format!("test{extension}");
+    io::read_as(format(extension), &Input { path: Path::new(&name), bytes, notes: &Notes::default() })
 }
 
-fn write(ending: &str, mesh: &Mesh, options: &WriteOptions) -> (Vec<u8>, Vec<String>) {
-    let mut written = format(ending).write.unwrap()(mesh, options).unwrap();
+fn write(extension: &str, mesh: &Mesh, options: &WriteOptions) -> (Vec<u8>, Vec<String>) {
+    let mut written = format(extension).write.unwrap()(mesh, options).unwrap();
     assert_eq!(written.files.len(), 1);
     (written.files.remove(0).1, written.lost)
 }
 
 /// Every combination of options for a VTK file with this extension.
-fn ways(ending: &str) -> Vec<WriteOptions> {
+fn ways(extension: &str) -> Vec<WriteOptions> {
     let way = |encoding, compression, version: Option<&str>| WriteOptions {
         encoding,
         compression,
         version: version.map(str::to_owned),
     };
-    if ending == ".vtk" {
+    if extension == ".vtk" {
         let of_version =
             |v| [way(Encoding::Ascii, Compression::None, v), way(Encoding::Binary, Compression::None, v)];
         return [of_version(None), of_version(Some("4.2"))].concat();
@@ -167,13 +167,13 @@ proptest! {
 
     #[test]
     fn any_mesh_comes_back_from_every_way_of_writing(mesh in any_mesh()) {
-        for ending in [".vtu", ".vtk"] {
-            for way in ways(ending) {
-                let (bytes, lost) = write(ending, &mesh, &way);
+        for extension in [".vtu", ".vtk"] {
+            for way in ways(extension) {
+                let (bytes, lost) = write(extension, &mesh, &way);
                 assert_eq!(lost, [""; 0]);
-                assert_same(&read(ending, &bytes).unwrap(), &mesh);
+                assert_same(&read(extension, &bytes).unwrap(), &mesh);
                 // Same mesh, same bytes.
-                assert_eq!(write(ending, &mesh, &way).0, bytes);
+                assert_eq!(write(extension, &mesh, &way).0, bytes);
             }
         }
     }
@@ -183,27 +183,27 @@ proptest! {
         mesh in any_mesh(),
         cut in 0.0..1.0f64,
         changes in prop::collection::vec((0.0..1.0f64, any::<u8>()), 1..8),
-        ending in prop::sample::select(vec![".vtu", ".vtk"]),
+        extension in prop::sample::select(vec![".vtu", ".vtk"]),
         way in 0usize..4,
     ) {
-        let (bytes, _) = write(ending, &mesh, &ways(ending)[way]);
+        let (bytes, _) = write(extension, &mesh, &ways(extension)[way]);
         let at = |share: f64| ((bytes.len() - 1) as f64 * share) as usize;
         // Neither may panic; what is read has been validated.
-        if let Err(error) = read(ending, &bytes[..at(cut)]) {
+        if let Err(error) = read(extension, &bytes[..at(cut)]) {
             // An empty file has no place.
             assert!(error.place().is_some() || at(cut) == 0, "{error}");
             assert!(error.remedy_text().is_some(), "{error}");
         }
         let mut changed = bytes.clone();
         changes.iter().for_each(|&(share, byte)| changed[at(share)] = byte);
-        if let Ok(mesh) = read(ending, &changed) {
+        if let Ok(mesh) = read(extension, &changed) {
             mesh.validate().unwrap();
         }
     }
 }
 
 #[test]
-fn polygonal_data_comes_back_in_vtks_order_of_cells() {
+fn polygonal_data_round_trip_in_vtks_order_of_cells() {
     let mut mesh = shapes::box_grid([1, 1, 1], [[0.0; 3], [1.0; 3]]);
     let ids = |list: &[u32]| list.iter().map(|&v| VertexId(v)).collect::<Vec<_>>();
     let mut cells = Cells::new();
@@ -237,7 +237,7 @@ fn a_mesh_without_surface_cells_is_no_polygonal_data() {
     mesh.cells = Cells::uniform(CellKind::TETRA, [0, 1, 2, 4].map(VertexId).to_vec()).unwrap();
     mesh.cell_data.clear();
     let error = format(".vtp").write.unwrap()(&mesh, &WriteOptions::default()).unwrap_err();
-    assert!(error.to_string().contains("hold no tetra cells"), "{error}");
+    assert!(error.to_string().contains("cannot hold cells of kind tetra"), "{error}");
 }
 
 #[test]
@@ -250,8 +250,8 @@ fn labels_of_other_programs_are_written_under_our_names() {
     mesh.set_cell_field(Field::scalars("gmsh:physical", vec![7i32, 9]));
     mesh.label_names.regions.insert(7, "lumen".into());
     mesh.label_names.patches.insert(9, "wall: <inner>".into());
-    for ending in [".vtu", ".vtk"] {
-        let back = read(ending, &write(ending, &mesh, &WriteOptions::default()).0).unwrap();
+    for extension in [".vtu", ".vtk"] {
+        let back = read(extension, &write(extension, &mesh, &WriteOptions::default()).0).unwrap();
         assert_eq!(back.cell_field("region").unwrap().values, Values::I32(vec![7, 0]));
         assert_eq!(back.cell_field("patch").unwrap().values, Values::I32(vec![0, 9]));
         assert_eq!(back.label_names, mesh.label_names);
@@ -295,63 +295,63 @@ fn assert_refused(from: &str, to: &str, place: &str, what: &str) {
 }
 
 #[test]
-fn the_file_that_the_tests_damage_is_sound() {
+fn the_undamaged_test_file_is_valid() {
     assert_eq!(read(".vtu", TET.as_bytes()).unwrap().cells.kinds(), [CellKind::TETRA]);
 }
 
 #[test]
-fn counts_that_lie_are_refused() {
+fn wrong_counts_are_refused() {
     let huge = "NumberOfPoints=\"1152921504606846976\"";
     assert_refused("NumberOfPoints=\"4\"", huge, "line 4, Piece", "more than a mesh can hold");
     assert_refused(
         "NumberOfPoints=\"4\"",
         "NumberOfPoints=\"5\"",
         "line 9, array Points",
-        "holds 12 values, 15",
+        "expected 15 values, found 12",
     );
-    assert_refused("NumberOfPoints=\"4\"", "NumberOfPoints=\"-4\"", "line 4, Piece", "is no count");
+    assert_refused("NumberOfPoints=\"4\"", "NumberOfPoints=\"-4\"", "line 4, Piece", "is not a valid count");
     assert_refused("NumberOfPoints=\"4\"", "", "line 4, Piece", "NumberOfPoints is missing");
     assert_refused(
         "NumberOfCells=\"1\"",
         "NumberOfCells=\"1152921504606846976\"",
         "line 14",
-        "holds 1 values",
+        "values, found 1",
     );
     let components = "Name=\"p\" NumberOfComponents=\"9223372036854775807\"";
-    assert_refused("Name=\"p\"", components, "line 6, array p", "more than memory holds");
-    assert_refused(">1 2 3 4<", ">1 2 3<", "line 6, array p", "holds 3 values, 4");
-    assert_refused(">1 2 3 4<", ">1 2 x 4<", "line 6, array p", "`x` is no number");
+    assert_refused("Name=\"p\"", components, "line 6, array p", "exceed the available memory");
+    assert_refused(">1 2 3 4<", ">1 2 3<", "line 6, array p", "expected 4 values, found 3");
+    assert_refused(">1 2 3 4<", ">1 2 x 4<", "line 6, array p", "`x` is not a number");
 }
 
 #[test]
 fn cells_that_do_not_fit_are_refused() {
-    assert_refused(">0 1 2 3<", ">0 1 2 4<", "cell 0", "names point 4");
-    assert_refused(">0 1 2 3<", ">0 1 2 -3<", "line 12, array connectivity", "-3 is no id");
-    assert_refused(">0 1 2 3<", ">0 1 2<", "line 11, Cells", "must rise");
-    assert_refused(">4<", ">-4<", "line 13, array offsets", "-4 is no id");
-    assert_refused(">4<", ">99999999999<", "line 13, array offsets", "no whole number");
-    assert_refused(">10<", ">12<", "cell 0", "a hexahedron has 8 vertices, this one 4");
-    assert_refused(">10<", ">256<", "line 14, array types", "no whole number");
+    assert_refused(">0 1 2 3<", ">0 1 2 4<", "cell 0", "refers to point 4");
+    assert_refused(">0 1 2 3<", ">0 1 2 -3<", "line 12, array connectivity", "-3 is not a valid id");
+    assert_refused(">0 1 2 3<", ">0 1 2<", "line 11, Cells", "do not ascend");
+    assert_refused(">4<", ">-4<", "line 13, array offsets", "-4 is not a valid id");
+    assert_refused(">4<", ">99999999999<", "line 13, array offsets", "not a whole number");
+    assert_refused(">10<", ">12<", "cell 0", "a hexahedron has 8 vertices, but this one has 4");
+    assert_refused(">10<", ">256<", "line 14, array types", "not a whole number");
     assert_refused(">10<", ">42<", "line 11, Cells", "faces is missing");
 }
 
 #[test]
-fn offsets_that_go_backwards_are_refused() {
+fn descending_offsets_are_refused() {
     let two = TET
         .replace("NumberOfCells=\"1\"", "NumberOfCells=\"3\"")
         .replace(">4<", ">4 2 4<")
         .replace(">10<", ">10 3 3<");
     let error = read(".vtu", two.as_bytes()).unwrap_err().to_string();
-    assert!(error.contains("must rise"), "{error}");
+    assert!(error.contains("do not ascend"), "{error}");
 }
 
 #[test]
-fn what_is_missing_or_unknown_is_named() {
+fn missing_and_unknown_items_are_reported() {
     assert_refused("<VTKFile", "<Mesh><!--", "line", "XML");
     assert_refused("\"Int64\"", "\"Int128\"", "line 12, array connectivity", "Int128");
     assert_refused("LittleEndian", "MiddleEndian", "line 2, VTKFile", "MiddleEndian");
     assert_refused("UInt64", "UInt16", "line 2, VTKFile", "UInt16");
-    assert_refused("version=", "compressor=\"zip\" version=", "VTKFile", "the compressor zip is not known");
+    assert_refused("version=", "compressor=\"zip\" version=", "VTKFile", "unknown compressor zip");
     assert_refused("Name=\"connectivity\"", "Name=\"c\"", "line 11, Cells", "connectivity is missing");
     assert_refused("Name=\"p\" format=\"ascii\"", "Name=\"p\" format=\"hex\"", "line 6, array p", "hex");
     assert_refused(
@@ -364,13 +364,13 @@ fn what_is_missing_or_unknown_is_named() {
         "Name=\"p\" format=\"ascii\"",
         "Name=\"p\" format=\"binary\"",
         "line 6, array p",
-        "end within their header",
+        "end inside their header",
     );
     assert_refused(
         "NumberOfComponents=\"3\"",
         "NumberOfComponents=\"2\"",
         "line 9, array Points",
-        "2 components",
+        "components per point, found 2",
     );
     assert_refused("</Cells>", "</Cell>", "line 15", "XML");
     assert_refused("  <UnstructuredGrid>", "  <Grid/><UnstructuredGrid><!--", "line", "XML");
@@ -383,8 +383,8 @@ fn other_kinds_of_vtk_files_are_refused_with_advice() {
         assert!(error.to_string().contains(kind) && error.remedy_text().is_some(), "{error}");
     }
     let folder = tempfile::tempdir().unwrap();
-    for ending in ["vti", "pvtu", "vtm"] {
-        let path = folder.path().join(format!("a.{ending}"));
+    for extension in ["vti", "pvtu", "vtm"] {
+        let path = folder.path().join(format!("a.{extension}"));
         std::fs::write(&path, "<VTKFile type=\"ImageData\"></VTKFile>").unwrap();
         assert!(io::read(&path).unwrap_err().to_string().contains("ImageData"));
     }
@@ -408,21 +408,21 @@ fn words(words: &[u64]) -> Vec<u8> {
 }
 
 #[test]
-fn appended_data_that_lie_are_refused() {
+fn inconsistent_appended_data_are_refused() {
     let zlib = " compressor=\"vtkZLibDataCompressor\"";
     assert!(read(".vtu", &appended("", &words(&[24, 0, 0, 0]))).is_ok());
     for (compressor, data, what) in [
-        ("", vec![], "end within their header"),
-        ("", words(&[24, 0, 0]), "promises 24 bytes, 16 are there"),
-        ("", words(&[1 << 60]), "promises 1152921504606846976 bytes"),
-        ("", words(&[16, 0, 0]), "holds 2 values, 3 are needed"),
-        (zlib, words(&[1 << 60]), "promises 1152921504606846976 blocks"),
+        ("", vec![], "end inside their header"),
+        ("", words(&[24, 0, 0]), "declares 24 bytes, but 16 are available"),
+        ("", words(&[1 << 60]), "declares 1152921504606846976 bytes"),
+        ("", words(&[16, 0, 0]), "expected 3 values, found 2"),
+        (zlib, words(&[1 << 60]), "declares 1152921504606846976 blocks"),
         (zlib, words(&[u64::MAX]), "blocks"),
         (zlib, words(&[1, 24, 0, 1000]), "block 0 of 1 has 1000 bytes"),
-        (zlib, words(&[1, 1 << 40, 0, 8, 0]), "8 bytes cannot hold 1099511627776"),
-        (zlib, words(&[2, 24, 48, 8, 8, 0, 0]), "its last block has 48 bytes"),
+        (zlib, words(&[1, 1 << 40, 0, 8, 0]), "8 bytes cannot decompress to 1099511627776"),
+        (zlib, words(&[2, 24, 48, 8, 8, 0, 0]), "the last block has 48 bytes"),
         (zlib, words(&[1, 24, 0, 8, 0]), "block 0 of 1"),
-        (zlib, words(&[0, 0, 0]), "holds 0 values, 3 are needed"),
+        (zlib, words(&[0, 0, 0]), "expected 3 values, found 0"),
     ] {
         let error = read(".vtu", &appended(compressor, &data)).unwrap_err();
         assert!(error.to_string().contains(what), "{what}: {error}");
@@ -470,7 +470,7 @@ fn pieces_are_joined_and_must_have_the_same_arrays() {
     assert_eq!(read(".vtu", twice(empty).as_bytes()).unwrap().points.len(), 4);
     for (from, to) in [("Name=\"p\"", "Name=\"q\""), ("\"Float32\"", "\"Float64\"")] {
         let error = read(".vtu", twice(&piece.replace(from, to)).as_bytes()).unwrap_err();
-        assert!(error.to_string().contains("not those of the pieces before it"), "{error}");
+        assert!(error.to_string().contains("differ from those of the previous pieces"), "{error}");
         assert!(error.remedy_text().is_some());
     }
     // An id beyond the points of its own piece must not be found among those of another.
@@ -499,7 +499,7 @@ fn both_layouts_of_polyhedra_mean_the_same() {
         (new, "\"polyhedron_offsets\">4<", "\"polyhedron_offsets\">5<"),
     ] {
         let error = read(".vtu", with(&arrays.replace(from, to)).as_bytes()).unwrap_err();
-        assert!(error.to_string().contains("faces do not fit together"), "{to}: {error}");
+        assert!(error.to_string().contains("face arrays are inconsistent"), "{to}: {error}");
     }
 }
 
@@ -525,24 +525,24 @@ fn damaged_legacy_files_are_refused() {
     for (from, to, place, what) in [
         ("# vtk", "# stl", "line 1", "vtk DataFile"),
         ("ASCII", "EBCDIC", "line 3", "EBCDIC"),
-        ("DATASET", "DATA", "line 4", "DATASET should stand here"),
+        ("DATASET", "DATA", "line 4", "expected DATASET, found"),
         ("UNSTRUCTURED_GRID", "STRUCTURED_POINTS", "line 4", "STRUCTURED_POINTS"),
         ("POINTS 4", "POINTS 1152921504606846976", "line 5", "more than a mesh can hold"),
-        ("POINTS 4", "POINTS 400000000", "line 5", "numbers should follow"),
-        ("POINTS 4", "POINTS x", "line 5", "should be a count"),
+        ("POINTS 4", "POINTS 400000000", "line 5", "numbers, but only"),
+        ("POINTS 4", "POINTS x", "line 5", "expected a count, found"),
         ("POINTS 4 float", "POINTS 4 quaternion", "line 5", "quaternion"),
-        ("0 1 0 0 0 1", "0 1 0 0 0 z", "line 7", "`z` is no number"),
+        ("0 1 0 0 0 1", "0 1 0 0 0 z", "line 7", "`z` is not a number"),
         ("CELLS 1 5", "CELLS 1 4", "line", ""),
-        ("CELLS 1 5", "CELLS 2 5", "line 9", "5 numbers do not make the lists of 2 cells"),
-        ("4 0 1 2 3", "5 0 1 2 3", "line 9", "do not make the lists"),
-        ("4 0 1 2 3", "4 0 1 2 4", "cell 0", "names point 4"),
-        ("4 0 1 2 3", "4 0 1 2 -3", "line 9", "-3 is no id"),
+        ("CELLS 1 5", "CELLS 2 5", "line 9", "5 numbers do not form the lists of 2 cells"),
+        ("4 0 1 2 3", "5 0 1 2 3", "line 9", "do not form the lists"),
+        ("4 0 1 2 3", "4 0 1 2 4", "cell 0", "refers to point 4"),
+        ("4 0 1 2 3", "4 0 1 2 -3", "line 9", "-3 is not a valid id"),
         ("CELL_TYPES 1\n10", "CELL_TYPES 2\n10 10", "CELLS", "2 cell types for 1 cells"),
         ("\n10\n", "\n12\n", "cell 0", "hexahedron"),
-        ("POINT_DATA 4", "POINT_DATA 5", "line 12", "for 5, but there are 4"),
-        ("SCALARS", "SCALAR", "line 13", "`SCALAR` is not known"),
+        ("POINT_DATA 4", "POINT_DATA 5", "line 12", "expected 4 rows, found 5"),
+        ("SCALARS", "SCALAR", "line 13", "unknown section `SCALAR`"),
         ("VECTORS v double", "VECTORS v", "line", ""),
-        ("3 3 3\n", "3\n", "line 16", "12 numbers should follow"),
+        ("3 3 3\n", "3\n", "line 16", "expected 12 numbers"),
     ] {
         assert!(LEGACY.contains(from), "{from}");
         let error = read(".vtk", LEGACY.replace(from, to).as_bytes()).expect_err(to);
@@ -553,7 +553,7 @@ fn damaged_legacy_files_are_refused() {
 }
 
 #[test]
-fn an_xml_file_with_the_ending_of_a_legacy_one_is_reported() {
+fn an_xml_file_with_the_extension_of_a_legacy_one_is_reported() {
     let error = read(".vtk", TET.as_bytes()).unwrap_err().to_string();
     assert!(error.contains(".vtu or .vtp"), "{error}");
 }

@@ -58,7 +58,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
     #[test]
-    fn every_point_is_found_or_told_apart(points in points(4..60), queries in points(1..20)) {
+    fn every_point_is_located_or_reported_outside(points in points(4..60), queries in points(1..20)) {
         let Ok(t) = Triangulation::new(&points, &Threads::single()) else { return Ok(()) };
         let last = TetId::new(t.tets().len() - 1);
         for &q in queries.iter().chain(&points) {

@@ -13,7 +13,7 @@ use crate::table::{count, seconds};
 use crate::words::shown;
 use crate::writing::WritingArgs;
 
-/// Convert a mesh file to another format, given by the ending of its name
+/// Convert a mesh file to another format, given by its extension
 ///
 /// Points, cells of every kind and all arrays are kept, bit for bit, where the
 /// format can hold them; what it cannot hold is listed.

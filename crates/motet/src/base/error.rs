@@ -28,14 +28,14 @@ pub enum ErrorKind {
 ///
 /// ```
 /// use motet::{Error, ErrorKind};
-/// let error = Error::input("vertex 17 is named, but the mesh has 12 points")
+/// let error = Error::input("refers to vertex 17, but the mesh has 12 points")
 ///     .at("cell 4")
 ///     .remedy("write the file again with zero-based ids")
 ///     .in_file("vessel.vtu");
 /// assert_eq!(error.kind(), ErrorKind::Input);
 /// assert_eq!(
 ///     error.to_string(),
-///     "vessel.vtu: cell 4: vertex 17 is named, but the mesh has 12 points; \
+///     "vessel.vtu: cell 4: refers to vertex 17, but the mesh has 12 points; \
 ///      write the file again with zero-based ids"
 /// );
 /// ```

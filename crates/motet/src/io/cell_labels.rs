@@ -37,11 +37,11 @@ pub(super) fn labels_cover(labels: &[i32], mesh: &Mesh, field: &Field) -> bool {
         name if LOW_DIM_LABEL_ARRAYS.contains(&name) => None,
         _ => return false,
     };
-    let said = |(&label, kind): (&i32, &CellKind)| {
+    let expressed = |(&label, kind): (&i32, &CellKind)| {
         if dim.is_none() || kind.dim() == dim { label } else { 0 }
     };
     int_column(mesh, &field.name)
-        .is_some_and(|values| labels.iter().zip(mesh.cells.kinds()).map(said).eq(values))
+        .is_some_and(|values| labels.iter().zip(mesh.cells.kinds()).map(expressed).eq(values))
 }
 
 /// A message that lists the cell arrays with more information than `labels`.
@@ -53,5 +53,6 @@ pub(super) fn lost_cell_arrays(format: &str, mesh: &Mesh, labels: &[i32]) -> Opt
 pub(super) fn lost_names(format: &str, mesh: &Mesh) -> Option<String> {
     let names = mesh.label_names.regions.values().chain(mesh.label_names.patches.values());
     let names: Vec<&str> = names.map(String::as_str).collect();
-    (!names.is_empty()).then(|| format!("{format} has no names of labels: {}", names.join(", ")))
+    (!names.is_empty())
+        .then(|| format!("label names are not written ({format} has none): {}", names.join(", ")))
 }

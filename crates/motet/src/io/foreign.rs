@@ -7,7 +7,7 @@ use crate::base::{Error, Result};
 /// A foreign file type and how to convert it; `FILE` in the remedy stands for the name of the file.
 struct ForeignFormat {
     name: &'static str,
-    endings: &'static [&'static str],
+    extensions: &'static [&'static str],
     remedy: &'static str,
 }
 
@@ -16,92 +16,103 @@ const MESHIO_HDF: &str = "convert it with meshio (pip install meshio[all]): mesh
 const FLUENT: &str =
     "convert it with meshio (pip install meshio): meshio convert --input-format ansys FILE mesh.vtu";
 const PARAVIEW: &str = "open it in ParaView and save the data as .vtu";
-const CAD: &str = "it has to be meshed first: gmsh -2 -format stl FILE -o surface.stl (a surface), or gmsh -3 -format msh41 FILE -o mesh.msh";
-const GEOMETRY: &str = "a geometry has to be meshed first: gmsh -3 -format msh41 FILE -o mesh.msh";
+const CAD: &str = "mesh it first: gmsh -2 -format stl FILE -o surface.stl (a surface), or gmsh -3 -format msh41 FILE -o mesh.msh";
+const GEOMETRY: &str = "mesh the geometry first: gmsh -3 -format msh41 FILE -o mesh.msh";
 const TRIMESH: &str = "convert it with trimesh (pip install trimesh) or Blender, to .stl, .obj or .ply";
 
 const FOREIGN: &[ForeignFormat] = &[
-    ForeignFormat { name: "a mesh of Ansys Fluent", endings: &[".cas", ".cas.gz"], remedy: FLUENT },
+    ForeignFormat { name: "an Ansys Fluent mesh", extensions: &[".cas", ".cas.gz"], remedy: FLUENT },
     ForeignFormat {
-        name: "a case of Ansys Fluent (HDF5)",
-        endings: &[".cas.h5", ".msh.h5", ".dat.h5"],
+        name: "an Ansys Fluent case (HDF5)",
+        extensions: &[".cas.h5", ".msh.h5", ".dat.h5"],
         remedy: PARAVIEW,
     },
     ForeignFormat {
         name: "an Exodus II file",
-        endings: &[".e", ".ex2", ".exo", ".exii", ".g", ".gen"],
+        extensions: &[".e", ".ex2", ".exo", ".exii", ".g", ".gen"],
         remedy: MESHIO_HDF,
     },
     ForeignFormat {
         name: "an XDMF file",
-        endings: &[".xdmf", ".xmf", ".xdmf2", ".xdmf3"],
+        extensions: &[".xdmf", ".xmf", ".xdmf2", ".xdmf3"],
         remedy: MESHIO_HDF,
     },
-    ForeignFormat { name: "a Nastran file", endings: &[".bdf", ".nas", ".fem", ".nastran"], remedy: MESHIO },
-    ForeignFormat { name: "a MED file (Salome, Code_Aster)", endings: &[".med"], remedy: MESHIO_HDF },
-    ForeignFormat { name: "a MOAB file", endings: &[".h5m"], remedy: MESHIO_HDF },
-    ForeignFormat { name: "an SU2 mesh", endings: &[".su2"], remedy: MESHIO },
-    ForeignFormat { name: "a Netgen mesh", endings: &[".vol", ".vol.gz"], remedy: MESHIO },
-    ForeignFormat { name: "a UGRID file", endings: &[".ugrid"], remedy: MESHIO },
-    ForeignFormat { name: "a FLAC3D grid", endings: &[".f3grid"], remedy: MESHIO },
-    ForeignFormat { name: "a Kratos model part", endings: &[".mdpa"], remedy: MESHIO },
-    ForeignFormat { name: "an AVS-UCD file", endings: &[".avs"], remedy: MESHIO },
     ForeignFormat {
-        name: "a Permas file",
-        endings: &[".post", ".post.gz", ".dato", ".dato.gz"],
+        name: "a Nastran file",
+        extensions: &[".bdf", ".nas", ".fem", ".nastran"],
         remedy: MESHIO,
     },
-    ForeignFormat { name: "a Tecplot file", endings: &[".plt", ".szplt", ".tec"], remedy: PARAVIEW },
+    ForeignFormat { name: "a MED file (Salome, Code_Aster)", extensions: &[".med"], remedy: MESHIO_HDF },
+    ForeignFormat { name: "a MOAB file", extensions: &[".h5m"], remedy: MESHIO_HDF },
+    ForeignFormat { name: "an SU2 mesh", extensions: &[".su2"], remedy: MESHIO },
+    ForeignFormat { name: "a Netgen mesh", extensions: &[".vol", ".vol.gz"], remedy: MESHIO },
+    ForeignFormat { name: "a UGRID file", extensions: &[".ugrid"], remedy: MESHIO },
+    ForeignFormat { name: "a FLAC3D grid", extensions: &[".f3grid"], remedy: MESHIO },
+    ForeignFormat { name: "a Kratos model part", extensions: &[".mdpa"], remedy: MESHIO },
+    ForeignFormat { name: "an AVS-UCD file", extensions: &[".avs"], remedy: MESHIO },
     ForeignFormat {
-        name: "a file of EnSight",
-        endings: &[".case", ".encas", ".geo.ensight"],
+        name: "a Permas file",
+        extensions: &[".post", ".post.gz", ".dato", ".dato.gz"],
+        remedy: MESHIO,
+    },
+    ForeignFormat { name: "a Tecplot file", extensions: &[".plt", ".szplt", ".tec"], remedy: PARAVIEW },
+    ForeignFormat {
+        name: "an EnSight file",
+        extensions: &[".case", ".encas", ".geo.ensight"],
         remedy: PARAVIEW,
     },
     ForeignFormat {
-        name: "a file of LS-DYNA",
-        endings: &[".k", ".key", ".dyn", ".d3plot"],
+        name: "an LS-DYNA file",
+        extensions: &[".k", ".key", ".dyn", ".d3plot"],
         remedy: PARAVIEW,
     },
     ForeignFormat {
         name: "an I-DEAS universal file",
-        endings: &[".unv"],
+        extensions: &[".unv"],
         remedy: "open it in Gmsh or Salome: gmsh -3 -format msh41 FILE -o mesh.msh",
     },
     ForeignFormat {
-        name: "an archive of Ansys Mechanical",
-        endings: &[".cdb", ".rst"],
+        name: "an Ansys Mechanical archive",
+        extensions: &[".cdb", ".rst"],
         remedy: "convert it with ansys-mapdl-reader (pip install ansys-mapdl-reader), which saves .vtk",
     },
     ForeignFormat {
-        name: "a file of COMSOL",
-        endings: &[".mphtxt", ".mphbin"],
+        name: "a COMSOL file",
+        extensions: &[".mphtxt", ".mphbin"],
         remedy: "export it from COMSOL as .nas, and convert that with meshio",
     },
-    ForeignFormat { name: "a geometry of Gmsh", endings: &[".geo", ".geo_unrolled"], remedy: GEOMETRY },
-    ForeignFormat { name: "a CAD model", endings: &[".step", ".stp", ".iges", ".igs", ".brep"], remedy: CAD },
+    ForeignFormat { name: "a Gmsh geometry", extensions: &[".geo", ".geo_unrolled"], remedy: GEOMETRY },
+    ForeignFormat {
+        name: "a CAD model",
+        extensions: &[".step", ".stp", ".iges", ".igs", ".brep"],
+        remedy: CAD,
+    },
     ForeignFormat {
         name: "a surface of a 3D scene",
-        endings: &[".3mf", ".glb", ".gltf", ".dae", ".fbx", ".usd", ".usdz", ".x3d", ".wrl", ".3ds", ".amf"],
+        extensions: &[
+            ".3mf", ".glb", ".gltf", ".dae", ".fbx", ".usd", ".usdz", ".x3d", ".wrl", ".3ds", ".amf",
+        ],
         remedy: TRIMESH,
     },
     ForeignFormat {
         name: "an image",
-        endings: &[".nii", ".nii.gz", ".nrrd", ".mha", ".mhd", ".dcm", ".tif", ".tiff"],
-        remedy: "segment it first, such as with 3D Slicer, and save the surface as .stl or .vtp",
+        extensions: &[".nii", ".nii.gz", ".nrrd", ".mha", ".mhd", ".dcm", ".tif", ".tiff"],
+        remedy: "segment it first, for example with 3D Slicer, and save the surface as .stl or .vtp",
     },
     ForeignFormat {
-        name: "a packed file",
-        endings: &[".gz", ".zip", ".bz2", ".xz", ".zst", ".tar", ".7z"],
-        remedy: "unpack it first",
+        name: "a compressed file",
+        extensions: &[".gz", ".zip", ".bz2", ".xz", ".zst", ".tar", ".7z"],
+        remedy: "decompress it first",
     },
 ];
 
-/// The error for a file of another program, recognized by its extension; `None` for other extensions.
+/// The error for a file in a format of another program, recognized by its extension; `None` for other
+/// extensions.
 pub(super) fn by_extension(path: &Path) -> Option<Error> {
     let name = path.file_name()?.to_string_lossy().to_lowercase();
     FOREIGN
         .iter()
-        .find(|f| f.endings.iter().any(|e| name.ends_with(e)))
+        .find(|f| f.extensions.iter().any(|e| name.ends_with(e)))
         .map(|f| not_supported(f.name, f.remedy, path))
 }
 
@@ -112,22 +123,22 @@ fn not_supported(what: &str, remedy: &str, path: &Path) -> Error {
         .remedy(remedy.replace("FILE", &file))
 }
 
-/// Rejects content of another program, whatever the extension; `endings` are those of the expected format.
-pub(super) fn refuse(path: &Path, bytes: &[u8], endings: &[&str]) -> Result<()> {
-    let is = |ending: &str| endings.contains(&ending);
+/// Rejects content of another program, whatever the extension; `extensions` are those of the expected format.
+pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<()> {
+    let is = |extension: &str| extensions.contains(&extension);
     let start = bytes.trim_ascii_start();
     let named = |what: &str, remedy: &str| Err(not_supported(what, remedy, path));
     if bytes.starts_with(b"CDF\x01") || bytes.starts_with(b"CDF\x02") || bytes.starts_with(b"CDF\x05") {
         return named("a netCDF file, perhaps Exodus II", MESHIO_HDF);
     }
     if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xfd7zXZ\x00") || bytes.starts_with(b"BZh") {
-        return named("a packed file", "unpack it first");
+        return named("a compressed file", "decompress it first");
     }
     if bytes.starts_with(b"\x1f\x8b") && !is(".xml.gz") {
-        return named("packed by gzip", "unpack it first: gunzip -c FILE");
+        return named("a gzip file", "decompress it first: gunzip -c FILE");
     }
     if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && !is(".cgns") && !is(".vtkhdf") {
-        return named("an HDF5 file", "give it the ending of what it holds: .vtkhdf or .cgns");
+        return named("an HDF5 file", "give it the extension of its format: .vtkhdf or .cgns");
     }
     if start.starts_with(b"ISO-10303-21") {
         return named("a CAD model (STEP)", CAD);
@@ -136,7 +147,7 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], endings: &[&str]) -> Result<()> 
         text.first() == Some(&b'(') && text[1..].trim_ascii_start().first().is_some_and(u8::is_ascii_digit)
     };
     if is(".msh") && is_section(start) {
-        return named("a mesh of Ansys Fluent", FLUENT);
+        return named("an Ansys Fluent mesh", FLUENT);
     }
     let head = &start[..start.len().min(400)];
     let has = |word: &[u8]| head.windows(word.len()).any(|w| w.eq_ignore_ascii_case(word));
@@ -144,7 +155,9 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], endings: &[&str]) -> Result<()> 
         return named("an XDMF file", MESHIO_HDF);
     }
     if is(".mesh") && (start.starts_with(b"<") || start.starts_with(b"$MeshFormat")) {
-        return named("no mesh of Medit", "give it the ending of its own format, such as .msh for Gmsh");
+        return Err(Error::input("is not a Medit mesh")
+            .in_file(path)
+            .remedy("give it the extension of its format, such as .msh for Gmsh"));
     }
     Ok(())
 }
@@ -154,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_of_others_are_named_with_what_converts_them() {
+    fn foreign_files_are_reported_with_a_converter() {
         let of = |name: &str| by_extension(Path::new(name)).map(|e| e.to_string()).unwrap_or_default();
         assert!(
             of("a/Wing.EXO").contains("Exodus II")
@@ -169,9 +182,9 @@ mod tests {
     }
 
     #[test]
-    fn content_tells_what_an_ending_hides() {
-        let refused = |bytes: &[u8], ending: &str| {
-            refuse(Path::new("f.msh"), bytes, &[ending]).err().map(|e| e.to_string()).unwrap_or_default()
+    fn foreign_content_is_recognized_under_any_extension() {
+        let refused = |bytes: &[u8], extension: &str| {
+            refuse(Path::new("f.msh"), bytes, &[extension]).err().map(|e| e.to_string()).unwrap_or_default()
         };
         for head in ["(0 \"by another\")\n(2 3)\n", "\n (1 \"x\")", "( 2 3)"] {
             assert!(refused(head.as_bytes(), ".msh").contains("Ansys Fluent"), "{head}");

@@ -103,7 +103,7 @@ pub struct Format {
     /// Name of the format, for messages.
     pub name: &'static str,
     /// File extensions, with the dot, in lower case; `/` for a format that is a folder.
-    pub endings: &'static [&'static str],
+    pub extensions: &'static [&'static str],
     /// The reader; `None` if the format cannot be read.
     pub read: Option<Read>,
     /// The writer; `None` if the format cannot be written.
@@ -113,6 +113,6 @@ pub struct Format {
 impl Format {
     /// Whether a mesh in this format is a folder of files.
     pub fn is_folder(&self) -> bool {
-        self.endings.iter().any(|ending| ending.ends_with('/'))
+        self.extensions.iter().any(|extension| extension.ends_with('/'))
     }
 }

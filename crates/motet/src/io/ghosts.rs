@@ -35,7 +35,7 @@ pub(super) fn remove_ghosts(mesh: &mut Mesh, notes: &Notes) {
         fields.retain(|f| f.name != TYPE && f.name != LEVELS);
     }
     notes.add(format!(
-        "{n} of {n_cells} cells are ghosts of a neighbouring part, or hidden: they are left out"
+        "{n} of {n_cells} cells are skipped: ghost cells of a neighbouring part, or hidden cells"
     ));
 }
 
@@ -54,7 +54,7 @@ mod tests {
     use crate::mesh::{Field, shapes};
 
     #[test]
-    fn ghosts_and_what_they_alone_use_go() {
+    fn ghost_cells_and_points_only_they_use_are_removed() {
         let whole = shapes::box_grid([2; 3], [[0.0; 3], [1.0; 3]]);
         let volume = |mesh: &Mesh| crate::mesh::Summary::of(mesh).volume;
         for (name, ghost) in [(TYPE, 1u8), (TYPE, 33), (LEVELS, 2)] {
@@ -74,10 +74,14 @@ mod tests {
             remove_ghosts(&mut mesh, &notes);
             mesh.validate().unwrap();
             assert!((volume(&mesh) - 0.5).abs() < 1e-12, "{}", volume(&mesh));
-            assert_eq!(mesh.points.last(), Some(&[9.0; 3]), "an unused point is no ghost's");
+            assert_eq!(
+                mesh.points.last(),
+                Some(&[9.0; 3]),
+                "an unused point does not belong to a ghost cell"
+            );
             assert_eq!(mesh.points.iter().filter(|p| p[0] > 0.5).count(), 1);
             assert!(mesh.cell_field("id").is_some() && mesh.cell_field(name).is_none());
-            assert!(notes.into_vec()[0].contains("ghosts"));
+            assert!(notes.into_vec()[0].contains("ghost cells"));
         }
     }
 

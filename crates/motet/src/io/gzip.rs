@@ -20,9 +20,9 @@ pub(super) fn decompress(bytes: &[u8]) -> Result<Vec<u8>> {
     let limit = budget.remaining();
     let mut content = Vec::new();
     MultiGzDecoder::new(bytes).take(limit.saturating_add(1)).read_to_end(&mut content).map_err(|e| {
-        Error::input(format!("cannot be unpacked: {e}"))
-            .at(format!("after {} unpacked bytes", content.len()))
-            .remedy("the file is cut off or damaged: get it again")
+        Error::input(format!("cannot be decompressed: {e}"))
+            .at(format!("after {} decompressed bytes", content.len()))
+            .remedy("the file is truncated or damaged: get a new copy")
     })?;
     if content.len() as u64 > limit { Err(budget.exceeded()) } else { Ok(content) }
 }

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use crate::base::{Error, Result};
 use crate::io::replace::{DRAFT, folder_of};
 
-/// Attempts to take a lock: its holder removes the lock file on release, so a file just opened may be gone.
+/// Attempts to take a lock: its holder removes the lock file on release, so a file just opened may no longer
+/// exist.
 const MAX_ATTEMPTS: usize = 16;
 
 /// A lock on an output, held until it is dropped.
@@ -48,7 +49,7 @@ impl OutputLock {
         }
         Err(Error::new(
             crate::base::ErrorKind::Output,
-            "other processes take and leave its lock all the time",
+            "the lock could not be taken: other processes keep taking it",
         )
         .in_file(path))
     }
@@ -75,7 +76,7 @@ fn busy(output: &Path, file: &mut File) -> Error {
         Some(Ok(id)) => format!(" (process {id})"),
         _ => String::new(),
     };
-    Error::new(crate::base::ErrorKind::Output, format!("another run{holder} writes to this output"))
+    Error::new(crate::base::ErrorKind::Output, format!("another run{holder} is writing to this output"))
         .in_file(output)
         .remedy("wait until it ends, or give this run another output")
 }
@@ -97,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_has_the_lock_and_leaves_nothing_behind() {
+    fn only_one_holder_has_the_lock_and_its_file_is_removed() {
         let folder = tempfile::tempdir().unwrap();
         let output = folder.path().join("run.pvd");
         let held = OutputLock::take(&output).unwrap();

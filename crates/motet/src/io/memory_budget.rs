@@ -84,11 +84,11 @@ impl MemoryBudget {
 
 fn refused(needed: u64, state: &State, limit: u64) -> Error {
     Error::input(format!(
-        "unpacks to {needed} bytes or more; a file of {} bytes may to {limit}",
+        "decompresses to {needed} bytes or more; the limit for a file of {} bytes is {limit}",
         state.file_bytes
     ))
     .remedy(format!(
-        "where the file is as it should be, set the environment variable {VARIABLE}, such as {VARIABLE}=16G"
+        "if the file is valid, raise the limit with the environment variable {VARIABLE}, such as {VARIABLE}=16G"
     ))
 }
 
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_that_is_taken_counts_and_names_once() {
+    fn every_reservation_counts_and_each_name_once() {
         let budget = MemoryBudget { state: Mutex::default(), requested: Some(100) };
         budget.take(60).unwrap();
         budget.take_once("a", 40).unwrap();
@@ -114,7 +114,7 @@ mod tests {
         assert_eq!(budget.remaining(), 0);
         let message = budget.take(1).unwrap_err().to_string();
         assert!(
-            message.contains("unpacks to 101 bytes") && message.contains("MOTET_READ_LIMIT=16G"),
+            message.contains("decompresses to 101 bytes") && message.contains("MOTET_READ_LIMIT=16G"),
             "{message}"
         );
     }

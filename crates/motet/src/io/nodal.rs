@@ -46,7 +46,7 @@ impl NodalSeries {
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
-        let remedy = "the file is damaged, or holds no values over time of nodes: write it again";
+        let remedy = "the file is damaged or contains no nodal values over time: write it again";
         Self::parse(&bytes).map_err(|e| e.in_file(path).remedy(remedy))
     }
 
@@ -59,18 +59,20 @@ impl NodalSeries {
         let components = text.count("components", 1)?;
         let n_times = text.count("times", 1)?;
         if components == 0 || n_times == 0 {
-            return Err(text.error("at least one component and one time are expected"));
+            return Err(text.error("expected at least one component and one time"));
         }
         // The file has at most this many rows, so the product below does not overflow.
         let row = components.saturating_mul(n_times).saturating_add(1);
         let n_nodes = text.count("nodes", row)?;
         let mut times: Vec<f64> = Vec::with_capacity(n_times);
         for _ in 0..n_times {
-            let time = finite(&mut text, "a time")?;
+            let time = finite(&mut text, "time")?;
             if let Some(&before) = times.last()
                 && time <= before
             {
-                return Err(text.error(format!("the time {time} does not come after {before}")));
+                return Err(
+                    text.error(format!("time {time} is not greater than the previous time, {before}"))
+                );
             }
             times.push(time);
         }
@@ -78,18 +80,18 @@ impl NodalSeries {
         let mut known = HashSet::with_capacity(n_nodes);
         let mut values = Vec::with_capacity(n_nodes * n_times * components);
         for _ in 0..n_nodes {
-            let id = text.int("the id of a node")?;
+            let id = text.int("node id")?;
             if !known.insert(id) {
-                return Err(text.error(format!("the node {id} comes twice")));
+                return Err(text.error(format!("node {id} occurs twice")));
             }
             ids.push(id);
             for _ in 0..n_times * components {
-                values.push(finite(&mut text, "a value")?);
+                values.push(finite(&mut text, "value")?);
             }
         }
         match text.word() {
             None => Ok(Self { times, ids, components, values }),
-            Some(word) => Err(text.unexpected("behind the last node", "the end of the file", word)),
+            Some(word) => Err(text.unexpected("after the last node", "the end of the file", word)),
         }
     }
 
@@ -125,10 +127,7 @@ impl NodalSeries {
     /// If there is no such time.
     pub fn vectors(&self, time: usize) -> Result<Vec<Point>> {
         if self.components != 3 {
-            return Err(Error::input(format!(
-                "has {} components a node, where displacements have 3",
-                self.components
-            )));
+            return Err(Error::input(format!("expected 3 components per node, found {}", self.components)));
         }
         assert!(time < self.times.len(), "there is no time {time}");
         let of_node = self.values.chunks_exact(3 * self.times.len());
@@ -140,7 +139,7 @@ fn finite(text: &mut Text<'_>, what: &str) -> Result<f64> {
     let x = text.float(what)?;
     match x.is_finite() {
         true => Ok(x),
-        false => Err(text.error(format!("{what} that is no finite number"))),
+        false => Err(text.error(format!("{what} is not finite"))),
     }
 }
 
@@ -172,11 +171,11 @@ mod tests {
             (2, &[0.0, 100.0][..], &[1, 2, 3][..])
         );
         assert_eq!(series.values[4..8], [15.478_246_393_261_193, 0.0, 15.478_246_393_261_193, 0.0]);
-        assert!(series.vectors(0).unwrap_err().to_string().contains("2 components"));
+        assert!(series.vectors(0).unwrap_err().to_string().contains("found 2"));
     }
 
     #[test]
-    fn a_written_file_comes_back_to_the_bit() {
+    fn files_round_trip_bit_for_bit() {
         let frames = [vec![[0.0; 3], [-0.0, 5e-324, 0.1]], vec![[1.0 / 3.0, 1e300, -7.0], [0.1; 3]]];
         let series = NodalSeries::of_vectors(vec![0.0, 0.1], vec![7, 3], &frames);
         let folder = tempfile::tempdir().unwrap();
@@ -189,21 +188,21 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_refused_with_its_line() {
+    fn damage_is_reported_with_its_line() {
         // A last number with missing digits is still a number.
         let whole = GUIDE.trim_end().as_bytes();
         for len in 0..whole.len() - 24 {
-            assert!(NodalSeries::parse(&whole[..len]).is_err(), "cut off at {len}");
+            assert!(NodalSeries::parse(&whole[..len]).is_err(), "truncated at {len}");
         }
         for (from, to, expected) in [
-            ("2   2   3", "2   2   900", "line 1: 900 nodes are announced"),
-            ("2   2   3", "2   2   2", "behind the last node"),
-            ("2   2   3", "9000000000000000000 2 3", "components are announced"),
+            ("2   2   3", "2   2   900", "line 1: 900 nodes declared"),
+            ("2   2   3", "2   2   2", "after the last node"),
+            ("2   2   3", "9000000000000000000 2 3", "components declared"),
             ("2   2   3", "0 2 3", "at least one component"),
-            ("100.000000000", "0", "line 3: the time 0 does not come after 0"),
-            ("100.000000000", "nan", "line 3: a time that is no finite number"),
-            ("\n3\n", "\n2\n", "the node 2 comes twice"),
-            ("3.080742881248511011e+01", "inf", "line 11: a value that is no finite number"),
+            ("100.000000000", "0", "line 3: time 0 is not greater than the previous time, 0"),
+            ("100.000000000", "nan", "line 3: time is not finite"),
+            ("\n3\n", "\n2\n", "node 2 occurs twice"),
+            ("3.080742881248511011e+01", "inf", "line 11: value is not finite"),
         ] {
             assert!(GUIDE.contains(from));
             let error = NodalSeries::parse(GUIDE.replacen(from, to, 1).as_bytes()).unwrap_err().to_string();

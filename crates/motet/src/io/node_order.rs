@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_order_turned_into_itself_stays() {
+    fn converting_to_the_same_order_is_the_identity() {
         for &(kind, nodes) in VTK {
             let n = kind.n_vertices().unwrap_or(14);
             assert_eq!(vtk_to_other(kind, n, nodes), (0..n).collect::<Vec<_>>(), "{}", kind.label());
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn gmsh_has_two_edges_of_a_tet_the_other_way_round() {
+    fn gmsh_swaps_two_edge_nodes_of_a_tet() {
         let gmsh: Nodes = &[&[0, 1], &[1, 2], &[2, 0], &[3, 0], &[2, 3], &[1, 3]];
         assert_eq!(vtk_to_other(CellKind::QUADRATIC_TETRA, 10, gmsh), [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]);
     }

@@ -1,6 +1,6 @@
 //! Wavefront OBJ: vertices, points, lines, polygons, and groups as patches.
 //!
-//! A reader and writer of our own, because `tobj` (4.0) triangulates everything, duplicates or drops vertices
+//! Implemented here because `tobj` (4.0) triangulates everything, duplicates or drops vertices
 //! because of texture coordinates, does not report the line of an error, and drops `l` and `p`.
 //!
 //! A patch is named by the last `o` or `g`; patches exist only if at least two differ. Texture coordinates,
@@ -16,7 +16,7 @@ use crate::io::text::{Text, parse_float, parse_int, push_floats, quoted};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 pub(super) const FORMAT: Format =
-    Format { name: "Wavefront OBJ", endings: &[".obj"], read: Some(read), write: Some(write) };
+    Format { name: "Wavefront OBJ", extensions: &[".obj"], read: Some(read), write: Some(write) };
 
 #[derive(Default)]
 struct Reader {
@@ -40,13 +40,13 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
             b"p" => reader.element(&mut text, point_kind)?,
             b"g" | b"o" => reader.group(&mut text),
             _ if is_known(statement) => {
-                input.notes.add(format!("statements {} are passed over", quoted(statement)));
+                input.notes.add(format!("statements {} are skipped", quoted(statement)));
                 while next_word(&mut text).is_some() {}
             }
             _ => {
                 return Err(text
-                    .unexpected("a statement", "one of Wavefront OBJ's (v, f, l, p, g, o, ...)", statement)
-                    .remedy("the file is damaged or no OBJ: get it again"));
+                    .unexpected("statement", "one of Wavefront OBJ (v, f, l, p, g, o, ...)", statement)
+                    .remedy("the file is damaged or not an OBJ file: get a new copy"));
             }
         }
     }
@@ -133,7 +133,8 @@ impl Reader {
         let mut point = [0.0; 3];
         for x in &mut point {
             let word = next_word(text).ok_or_else(|| {
-                text.error("a vertex has three coordinates").remedy("the file is damaged: get it again")
+                text.error("expected three coordinates of a vertex")
+                    .remedy("the file is damaged: get a new copy")
             })?;
             *x = parse_float(word).ok_or_else(|| text.unexpected("coordinate", "a number", word))?;
         }
@@ -142,7 +143,7 @@ impl Reader {
             n_further += 1;
         }
         if n_further > 0 {
-            input.notes.add("weights or colours behind the coordinates of vertices are passed over");
+            input.notes.add("weights and colours after the coordinates of vertices are skipped");
         }
         self.points.push(point);
         Ok(())
@@ -157,8 +158,8 @@ impl Reader {
         }
         let Some(kind) = kind(vertices.len()) else {
             return Err(text
-                .error(format!("{} vertices are too few for this element", vertices.len()))
-                .remedy("the file is damaged: get it again"));
+                .error(format!("too few vertices for this element: {}", vertices.len()))
+                .remedy("the file is damaged: get a new copy"));
         };
         self.cells.push(kind, vertices);
         self.labels.push(self.label);
@@ -172,8 +173,8 @@ impl Reader {
         let place = place.and_then(|place| usize::try_from(place).ok()).filter(|&p| p < VertexId::MAX_COUNT);
         let Some(place) = place else {
             return Err(text
-                .error(format!("vertex {id} is named, but {n} vertices come before"))
-                .remedy("ids of vertices begin at 1; the file is damaged: get it again"));
+                .error(format!("an element refers to vertex {id}, but {n} vertices precede it"))
+                .remedy("vertex ids start at 1; the file is damaged: get a new copy"));
         };
         if place >= n && self.forward_reference.is_none_or(|(largest, _)| place > largest) {
             self.forward_reference = Some((place, text.line_number()));
@@ -197,15 +198,15 @@ impl Reader {
     fn into_mesh(self) -> Result<Mesh> {
         if let Some((place, line)) = self.forward_reference.filter(|(place, _)| *place >= self.points.len()) {
             return Err(Error::input(format!(
-                "vertex {} is named, but the file has {}",
+                "an element refers to vertex {}, but the file has {} vertices",
                 place + 1,
                 self.points.len()
             ))
             .at(format!("line {line}"))
-            .remedy("the file is cut off or damaged: get it again"));
+            .remedy("the file is truncated or damaged: get a new copy"));
         }
         if self.points.is_empty() {
-            return Err(Error::input("a file without a vertex").remedy("export the surface again"));
+            return Err(Error::input("the file contains no vertices").remedy("export the surface again"));
         }
         let mut mesh = Mesh::new(self.points, self.cells);
         if self.labels.iter().any(|&label| label != self.labels[0]) {
@@ -241,7 +242,7 @@ fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
             writeln!(out, "g {name}").expect("writing into memory does not fail");
             group = label;
         }
-        out.extend(statement(kind).expect("other kinds are left out").as_bytes());
+        out.extend(statement(kind).expect("other kinds were removed").as_bytes());
         for v in vertices {
             write!(out, " {}", v.0 + 1).expect("writing into memory does not fail");
         }

@@ -1,6 +1,6 @@
 //! OFF surfaces: points and polygons, as text.
 //!
-//! A reader and writer of our own, because `off-rs` (2.0) only has single-precision coordinates. Numbers
+//! Implemented here because `off-rs` (2.0) only has single-precision coordinates. Numbers
 //! after the coordinates in `COFF`, `NOFF` and similar files, and colours of faces, are skipped with a note;
 //! binary and four-dimensional files are rejected.
 
@@ -15,7 +15,7 @@ use crate::io::text::{Text, parse_int, push_floats};
 use crate::mesh::{CellKind, Cells, Mesh};
 
 pub(super) const FORMAT: Format =
-    Format { name: "OFF", endings: &[".off"], read: Some(read), write: Some(write) };
+    Format { name: "OFF", extensions: &[".off"], read: Some(read), write: Some(write) };
 
 fn read(input: &Input<'_>) -> Result<Mesh> {
     let mut text = Text::with_comments(input.bytes, b'#');
@@ -24,7 +24,7 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
     let n_faces = text.count("faces", 1)?;
     text.int("the number of edges")?;
     if n_points == 0 {
-        return Err(Error::input("a surface without a point").remedy("export the surface again"));
+        return Err(Error::input("the surface has no points").remedy("export the surface again"));
     }
     let mut points = Vec::with_capacity(n_points);
     let mut n_further = 0;
@@ -35,11 +35,11 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
     if n_further > 0 {
         input
             .notes
-            .add("normals, colours or texture coordinates behind the coordinates of points are passed over");
+            .add("normals, colours and texture coordinates after the coordinates of points are skipped");
     }
     let (cells, n_colours) = faces(&mut text, n_faces, n_points)?;
     if n_colours > 0 {
-        input.notes.add("colours of faces are passed over");
+        input.notes.add("colours of faces are skipped");
     }
     Ok(Mesh::new(points, cells))
 }
@@ -47,7 +47,7 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
 /// Reads the first word, which is optional.
 fn head(text: &mut Text<'_>) -> Result<()> {
     let Some(word) = text.peek() else {
-        return Err(Error::input("an empty file").remedy("export the surface again"));
+        return Err(Error::input("the file is empty").remedy("export the surface again"));
     };
     if parse_int(word).is_some() {
         return Ok(());
@@ -57,10 +57,12 @@ fn head(text: &mut Text<'_>) -> Result<()> {
     let is_binary = text.clone().word_in_line() == Some(b"BINARY");
     match prefix {
         Some(_) if !is_binary => Ok(()),
-        Some(_) => Err(text.error("a binary OFF file").remedy("write it as text, or as PLY")),
+        Some(_) => {
+            Err(text.error("binary OFF files are not supported").remedy("write it as text, or as PLY"))
+        }
         None => Err(text
-            .unexpected("the beginning", "`OFF`", word)
-            .remedy("the file is damaged, or no OFF of three dimensions: get it again")),
+            .unexpected("header", "`OFF`", word)
+            .remedy("the file is damaged or not a three-dimensional OFF file: get a new copy")),
     }
 }
 
@@ -82,8 +84,10 @@ fn faces(text: &mut Text<'_>, n: usize, n_points: usize) -> Result<(Cells, usize
         for _ in 0..k {
             let id = text.int("corner of a face")?;
             let v = usize::try_from(id).ok().filter(|&v| v < n_points).ok_or_else(|| {
-                text.error(format!("point {id} is named, but there are {n_points}, from 0"))
-                    .remedy("the file is damaged: get it again")
+                text.error(format!(
+                    "a face refers to point {id}, but there are {n_points} points, numbered from 0"
+                ))
+                .remedy("the file is damaged: get a new copy")
             })?;
             vertices.push(VertexId::new(v));
         }
@@ -135,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_colours_and_a_missing_head_are_no_trouble() {
+    fn comments_colours_and_a_missing_header_are_accepted() {
         let (mesh, notes) = parse(
             "# a comment\nCOFF\n4 2 0\n0 0 0 1 1 1 1\n1 0 0\n0 1 0 # so\n0 0 1\n3 0 1 2 255 0 0\n4 0 1 2 3\n",
         );
@@ -146,16 +150,16 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_reported() {
+    fn errors_are_reported() {
         for (text, expected) in [
             ("", "empty"),
             ("OFF BINARY\n", "binary"),
             ("4OFF\n1 0 0\n", "expected `OFF`"),
-            ("OFF\n99999999 1 0\n", "announced"),
+            ("OFF\n99999999 1 0\n", "declared"),
             ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "point 3"),
             ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 x\n", "found `x`"),
-            ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1", "cut off"),
-            ("OFF\n0 0 0\n", "without a point"),
+            ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1", "truncated"),
+            ("OFF\n0 0 0\n", "no points"),
         ] {
             let error = parse(text).0.unwrap_err().to_string();
             assert!(error.contains(expected), "{text}: {error}");

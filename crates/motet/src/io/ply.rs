@@ -2,8 +2,9 @@
 //! `ply-rs-bw`.
 //!
 //! Properties of points and faces other than coordinates become arrays, each in its type. `nx ny nz` become
-//! one array, `normal`, and properties whose names end in `_0`, `_1` and so on one array too. Labels are the
-//! property `patch` of faces; their names are comments, `comment patch 3 wall`, which other programs ignore.
+//! one array, `normal`; properties whose names end in `_0`, `_1` and so on also form one array. Labels are
+//! the property `patch` of faces; their names are comments, `comment patch 3 wall`, which other programs
+//! ignore.
 
 use std::io::Cursor;
 
@@ -23,7 +24,7 @@ use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
 pub(super) const FORMAT: Format =
-    Format { name: "PLY", endings: &[".ply"], read: Some(read), write: Some(write) };
+    Format { name: "PLY", extensions: &[".ply"], read: Some(read), write: Some(write) };
 
 /// Common names of the components of a normal.
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
@@ -61,11 +62,11 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
         match element.name.as_str() {
             "vertex" => points(&mut mesh, element, &rows)?,
             "face" => faces = Some((element, rows)),
-            name => input.notes.add(format!("{} elements `{name}` are passed over", element.count)),
+            name => input.notes.add(format!("elements `{name}` are skipped ({})", element.count)),
         }
     }
     if mesh.points.is_empty() {
-        return Err(Error::input("a surface without a point").remedy("export the surface again"));
+        return Err(Error::input("the surface has no points").remedy("export the surface again"));
     }
     if let Some((element, rows)) = faces {
         cells(&mut mesh, element, &rows, input)?;
@@ -85,7 +86,7 @@ fn parse_error(error: ParseError) -> Error {
         .and_then(|rest| rest.split_once(": "))
         .map_or(reported, |(_, what)| what);
     let what: String = reported.chars().take(MAX_MESSAGE_LENGTH).collect();
-    let found = Error::input(what).remedy("the file is cut off, damaged or no PLY: get it again");
+    let found = Error::input(what).remedy("the file is truncated, damaged or not a PLY file: get a new copy");
     match error.line() {
         Some(line) => found.at(format!("line {line}")),
         None => found,
@@ -109,10 +110,10 @@ fn check_count(element: &ElementDef, n_bytes: usize, is_text: bool) -> Result<()
         return Ok(());
     }
     Err(Error::input(format!(
-        "{} elements `{}` are announced, more than a file of {n_bytes} bytes can hold",
+        "{} elements `{}` declared, more than a file of {n_bytes} bytes can hold",
         element.count, element.name
     ))
-    .remedy("the file is cut off or damaged: get it again"))
+    .remedy("the file is truncated or damaged: get a new copy"))
 }
 
 /// The index of a property in each row.
@@ -125,7 +126,8 @@ fn points(mesh: &mut Mesh, element: &ElementDef, rows: &[Row]) -> Result<()> {
         let column =
             property_index(element, name).and_then(|i| column(element, rows, i)).and_then(|v| v.to_f64());
         column.ok_or_else(|| {
-            Error::input(format!("its points have no number `{name}`")).remedy("export the surface again")
+            Error::input(format!("the points have no numeric property `{name}`"))
+                .remedy("export the surface again")
         })
     };
     let [x, y, z] = [axis("x")?, axis("y")?, axis("z")?];
@@ -137,23 +139,25 @@ fn points(mesh: &mut Mesh, element: &ElementDef, rows: &[Row]) -> Result<()> {
 fn cells(mesh: &mut Mesh, element: &ElementDef, rows: &[Row], input: &Input<'_>) -> Result<()> {
     let corners = CORNERS.iter().find_map(|name| property_index(element, name));
     let corners = corners.ok_or_else(|| {
-        Error::input("its faces have no list `vertex_indices`").remedy("export the surface again")
+        Error::input("the faces have no list property `vertex_indices`").remedy("export the surface again")
     })?;
     let n = mesh.points.len();
     for (i, row) in rows.iter().enumerate() {
         let wrong = |what: String| Error::input(what).at(format!("face {i}"));
         let ids = row.0.get(corners).and_then(Property::to_u32_list);
-        let ids = ids.ok_or_else(|| wrong("its points are no whole numbers from 0".into()))?;
+        let ids = ids.ok_or_else(|| wrong("expected non-negative whole numbers as point ids".into()))?;
         if let Some(id) = ids.iter().find(|&&id| id as usize >= n) {
-            return Err(wrong(format!("point {id} is named, but there are {n}, from 0"))
-                .remedy("the file is damaged: get it again"));
+            return Err(wrong(format!(
+                "the face refers to point {id}, but there are {n} points, numbered from 0"
+            ))
+            .remedy("the file is damaged: get a new copy"));
         }
         mesh.cells.push(kind_of_face(ids.len()), ids.into_iter().map(VertexId));
     }
     let is_list = |property: &&PropertyDef| matches!(property.data_type, PropertyType::List(..));
     let names = element.properties.values().filter(is_list).map(|property| property.name.as_str());
     for name in names.filter(|name| !CORNERS.contains(name)) {
-        input.notes.add(format!("the lists `{name}` of faces are passed over"));
+        input.notes.add(format!("face lists `{name}` are skipped"));
     }
     mesh.cell_data = fields(element, rows, &CORNERS);
     Ok(())
@@ -238,27 +242,27 @@ fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     lost.extend(boundary_only);
     let is_text = options.encoding == Encoding::Ascii;
     if is_text && !mesh.points.iter().all(|&p| is_finite(p)) {
-        return Err(Error::options("coordinates that are no finite numbers, which PLY has no text for")
+        return Err(Error::options("a coordinate is not finite, which text PLY files cannot hold")
             .remedy("write it with --encoding binary"));
     }
     let is_written =
         |field: &&Field| type_of(&field.values).is_some() && !(is_text && has_non_finite(&field.values));
     for (what, fields) in [("point", &mesh.point_data), ("cell", &mesh.cell_data)] {
         let reported = lost_arrays("PLY", what, fields.iter().filter(|field| !is_written(field)));
-        lost.extend(
-            reported.map(|reported| {
-                format!("{reported} (texts, 64-bit whole numbers, in text what is not finite)")
-            }),
-        );
+        lost.extend(reported.map(|reported| {
+            format!(
+                "{reported}; text, 64-bit integers, and in text files non-finite values are not supported"
+            )
+        }));
         let renamed = fields.iter().filter(is_written).filter(|field| name_of(field) != field.name);
         lost.extend(
-            renamed.map(|field| format!("{what} array {} is called {} in PLY", field.name, name_of(field))),
+            renamed.map(|field| format!("{what} array {} is written as {}", field.name, name_of(field))),
         );
     }
     lost.extend(lost_arrays("PLY", "field", &mesh.field_data));
     let regions: Vec<&str> = mesh.label_names.regions.values().map(String::as_str).collect();
     if !regions.is_empty() {
-        lost.push(format!("PLY has no names of regions: {}", regions.join(", ")));
+        lost.push(format!("region names are not written (PLY has none): {}", regions.join(", ")));
     }
     let held = |fields: &'_ [Field]| fields.iter().filter(is_written).cloned().collect::<Vec<_>>();
     let (of_points, of_cells) = (held(&mesh.point_data), held(&mesh.cell_data));
@@ -286,7 +290,7 @@ fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     ply.payload.insert("face".into(), faces.collect());
     let mut out = Vec::new();
     let written = Writer::new().write_ply(&mut out, &mut ply);
-    written.map_err(|e| Error::input(format!("cannot be a PLY file: {e}")))?;
+    written.map_err(|e| Error::input(format!("cannot be written as PLY: {e}")))?;
     Ok(Written { files: vec![(String::new(), out)], lost })
 }
 
@@ -395,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn all_comes_back_from_text_and_bytes() {
+    fn text_and_binary_files_round_trip() {
         let mesh = full();
         for encoding in [Encoding::Ascii, Encoding::Binary] {
             let options = WriteOptions { encoding, ..WriteOptions::default() };
@@ -406,7 +410,7 @@ mod tests {
     }
 
     #[test]
-    fn what_text_cannot_hold_is_reported_and_bytes_hold_it() {
+    fn losses_in_text_files_are_reported_and_kept_in_binary_files() {
         let mut mesh = full();
         let n = mesh.cells.len();
         mesh.set_cell_field(Field::scalars("odd name", vec![f64::INFINITY; n]));
@@ -416,7 +420,7 @@ mod tests {
         });
         assert!(text.1.len() == 1 && text.1[0].contains("odd name"), "{:?}", text.1);
         assert_eq!(text.0, full());
-        assert!(bytes.1 == ["cell array odd name is called odd_name in PLY"]);
+        assert!(bytes.1 == ["cell array odd name is written as odd_name"]);
         assert_eq!(bytes.0.cell_field("odd_name").unwrap().values, vec![f64::INFINITY; n].into());
         mesh.points[0][1] = f64::NAN;
         assert!(
@@ -425,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn what_others_write_is_read_and_what_is_passed_over_is_reported() {
+    fn files_of_other_programs_are_read_and_skipped_content_is_reported() {
         let head = "ply\r\nformat ascii 1.0\r\nobj_info scanned\r\nelement vertex 3\r\nproperty float x\r\nproperty float y\r\n\
                     property float z\r\nproperty uchar red\r\nelement face 1\r\nproperty list uchar int vertex_index\r\n\
                     property list uchar float texcoord\r\nelement edge 1\r\nproperty int vertex1\r\nproperty int vertex2\r\nend_header\r\n";
@@ -438,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn the_big_end_may_come_first() {
+    fn big_endian_files_are_read() {
         let mut bytes = b"ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty float x\nproperty double y\nproperty short z\nend_header\n".to_vec();
         bytes.extend(1.5f32.to_be_bytes());
         bytes.extend((-2.5f64).to_be_bytes());
@@ -447,7 +451,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_reported() {
+    fn errors_are_reported() {
         let head = |rest: &str| format!("ply\nformat ascii 1.0\n{rest}");
         let xyz = "property float x\nproperty float y\nproperty float z\n";
         let face = "property list uchar int vertex_indices\n";
@@ -455,17 +459,20 @@ mod tests {
             ("plx\n".to_owned(), "line 1: Expected magic number 'ply'"),
             ("ply\nelement vertex 1\nend_header\n".into(), "No format line"),
             ("ply\nformat utf8 1.0\n".into(), "line 2: Couldn't parse line. String: 'format utf8 1.0"),
-            (head("element vertex 99999999\nproperty float x\nend_header\n0 0 0\n"), "announced"),
-            (head("element vertex 99999999\nend_header\n"), "announced"),
+            (head("element vertex 99999999\nproperty float x\nend_header\n0 0 0\n"), "declared"),
+            (head("element vertex 99999999\nend_header\n"), "declared"),
             (head("element vertex -1\n"), "line 3: Couldn't parse line. String: 'element vertex -1"),
             (head("property float x\n"), "without preceding element"),
             (head("element vertex 1\nproperty quad x\n"), "'property quad x"),
-            (head("element vertex 1\nproperty list float int x\nend_header\n1 0\n"), "no number `x`"),
+            (
+                head("element vertex 1\nproperty list float int x\nend_header\n1 0\n"),
+                "no numeric property `x`",
+            ),
             (head(&format!("element vertex 1\n{xyz}end_header\n0 0\n")), "line 8: Couldn't read"),
-            (head(&format!("element vertex 0\n{xyz}end_header\n")), "without a point"),
+            (head(&format!("element vertex 0\n{xyz}end_header\n")), "no points"),
             (
                 head("element vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n"),
-                "no number `z`",
+                "no numeric property `z`",
             ),
             (
                 head(&format!("element vertex 1\n{xyz}element face 1\n{face}end_header\n0 0 0\n3 0 0 1\n")),

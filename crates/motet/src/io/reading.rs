@@ -30,15 +30,14 @@ pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
     };
     if !format.is_folder() {
         refuse_non_meshes(input.bytes).map_err(|e| e.in_file(input.path))?;
-        foreign::refuse(input.path, input.bytes, format.endings)?;
+        foreign::refuse(input.path, input.bytes, format.extensions)?;
     }
     checked(read(input), input.path, input.notes)
 }
 
 /// Validates the result of a reader and removes ghost cells; adds the file and a remedy to errors.
 pub(super) fn checked(mesh: Result<Mesh>, path: &Path, notes: &Notes) -> Result<Mesh> {
-    let damaged =
-        |e: Error| e.in_file(path).remedy("the file is damaged, or was written wrong: write it again");
+    let damaged = |e: Error| e.in_file(path).remedy("the file is damaged or invalid: write it again");
     let mut mesh = mesh.map_err(damaged)?;
     mesh.validate().map_err(damaged)?;
     ghosts::remove_ghosts(&mut mesh, notes);
@@ -48,11 +47,12 @@ pub(super) fn checked(mesh: Result<Mesh>, path: &Path, notes: &Notes) -> Result<
 /// Rejects content that cannot be a mesh in any format.
 fn refuse_non_meshes(bytes: &[u8]) -> Result<()> {
     if bytes.is_empty() {
-        return Err(Error::input("is empty (0 bytes)").remedy("get the file again"));
+        return Err(Error::input("is empty (0 bytes)").remedy("get a new copy of the file"));
     }
     if bytes.starts_with(b"version https://git-lfs.github.com/spec/") {
-        return Err(Error::input("is a pointer of Git LFS, not the file itself")
-            .remedy("fetch the file: git lfs pull"));
+        return Err(
+            Error::input("is a Git LFS pointer, not the file itself").remedy("fetch the file: git lfs pull")
+        );
     }
     Ok(())
 }

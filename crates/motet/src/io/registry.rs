@@ -46,14 +46,14 @@ const REFUSED: &[Format] = &[vtkxml::OTHERS];
 fn by_extension(path: &Path) -> Result<&'static Format> {
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let mut all = FORMATS.iter().chain(REFUSED);
-    all.find(|f| f.endings.iter().any(|e| name.ends_with(e))).ok_or_else(|| {
+    all.find(|f| f.extensions.iter().any(|e| name.ends_with(e))).ok_or_else(|| {
         if let Some(error) = foreign::by_extension(path) {
             return error;
         }
-        let known: Vec<_> = FORMATS.iter().flat_map(|f| f.endings).copied().collect();
-        Error::input("no format has this file ending")
+        let known: Vec<_> = FORMATS.iter().flat_map(|f| f.extensions).copied().collect();
+        Error::input("no format has this file extension")
             .in_file(path)
-            .remedy(format!("known endings: {}", known.join(" ")))
+            .remedy(format!("known extensions: {}", known.join(" ")))
     })
 }
 
@@ -71,18 +71,18 @@ fn for_writing(path: &Path) -> Result<&'static Format> {
     if path.is_dir() {
         return match format {
             Ok(format) if !format.is_folder() => {
-                Err(Error::options(format!("is a folder, and its name that of a file ({})", format.name))
+                Err(Error::options(format!("is a folder, but its name is that of a file ({})", format.name))
                     .in_file(path)
-                    .remedy("give the file another name, or put a slash behind the folder's"))
+                    .remedy("choose another file name, or append a slash to the folder name"))
             }
             _ => Ok(&simvascular::FORMAT),
         };
     }
     let format = format?;
     match format.is_folder() {
-        true => Err(Error::options("is a mark for ParaView, and no place for a mesh")
+        true => Err(Error::options("is a marker file for ParaView and cannot hold a mesh")
             .in_file(path)
-            .remedy("name the folder: constant/polyMesh")),
+            .remedy("give the folder: constant/polyMesh")),
         false => Ok(format),
     }
 }
@@ -101,17 +101,17 @@ pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
     };
     if !writable {
         let known: Vec<_> =
-            FORMATS.iter().filter(|f| f.write.is_some()).flat_map(|f| f.endings).copied().collect();
-        return Err(Error::options("no format with this file ending can be written")
+            FORMATS.iter().filter(|f| f.write.is_some()).flat_map(|f| f.extensions).copied().collect();
+        return Err(Error::options("no format with this file extension can be written")
             .in_file(path)
-            .remedy(format!("endings that can: {}", known.join(" "))));
+            .remedy(format!("writable extensions: {}", known.join(" "))));
     }
     refuse_full_folder(path)?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     match folder.filter(|folder| !folder.is_dir()) {
         Some(_) => Err(Error::new(ErrorKind::Io, "its folder does not exist")
             .in_file(path)
-            .remedy("make the folder first")),
+            .remedy("create the folder first")),
         None => Ok(()),
     }
 }
@@ -121,7 +121,7 @@ fn refuse_full_folder(path: &Path) -> Result<()> {
     match path.read_dir().map(|mut entries| entries.next().is_some()) {
         Ok(true) => Err(Error::options("is a folder that is not empty")
             .in_file(path)
-            .remedy("name a folder that is new or empty")),
+            .remedy("give a new or empty folder")),
         _ => Ok(()),
     }
 }
@@ -169,7 +169,7 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
         return Err(Error::input(format!("{} files can only be read", format.name)).in_file(path));
     };
     mesh.validate()?;
-    if format.endings == vtkxml::VTU.endings {
+    if format.extensions == vtkxml::VTU.extensions {
         // Written directly to the file, so that large meshes are not copied in memory.
         let (mut lost, note) = replace_with(path, |sink| vtkxml::write_to(mesh, options, sink))?;
         lost.extend(note);
@@ -181,12 +181,17 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
         replace_folder(path, &written.files)?;
         return Ok(written.lost);
     }
-    let files = written.files.iter().map(|(ending, bytes)| (with_ending(path, ending), bytes.as_slice()));
+    let files =
+        written.files.iter().map(|(extension, bytes)| (with_extension(path, extension), bytes.as_slice()));
     let notes = replace_all(&files.collect::<Vec<_>>())?;
     Ok([written.lost, notes].concat())
 }
 
-/// `path` with its extension replaced; unchanged if `ending` is empty.
-fn with_ending(path: &Path, ending: &str) -> PathBuf {
-    if ending.is_empty() { path.to_owned() } else { path.with_extension(ending.trim_start_matches('.')) }
+/// `path` with its extension replaced; unchanged if `extension` is empty.
+fn with_extension(path: &Path, extension: &str) -> PathBuf {
+    if extension.is_empty() {
+        path.to_owned()
+    } else {
+        path.with_extension(extension.trim_start_matches('.'))
+    }
 }

@@ -125,10 +125,7 @@ impl Draft {
         }
         file.persist(&place).map_err(|e| Error::output(path, e.error))?;
         Ok(old.as_deref().map_or(1, hard_links).checked_sub(1).filter(|&n| n > 0).map(|n| {
-            format!(
-                "{}: {n} other hard link(s) of the file that was there keep its old content",
-                path.display()
-            )
+            format!("{}: {n} other hard link(s) to the replaced file keep its old content", path.display())
         }))
     }
 }
@@ -212,7 +209,7 @@ fn resolve_links(path: &Path) -> Result<PathBuf> {
             Err(_) => return Ok(place),
         }
     }
-    Err(Error::options("links lead round in a circle").in_file(path).remedy("remove the link"))
+    Err(Error::options("symbolic links form a cycle").in_file(path).remedy("remove the link"))
 }
 
 #[cfg(unix)]
@@ -246,7 +243,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn when_one_of_several_files_cannot_be_written_none_is_touched() {
+    fn if_one_of_several_files_cannot_be_written_none_is_changed() {
         let folder = tempfile::tempdir().unwrap();
         let (good, bad) = (folder.path().join("a"), folder.path().join("missing/b"));
         replace(&good, b"before").unwrap();
@@ -256,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn drafts_that_were_left_are_removed_by_the_names_they_were_to_have() {
+    fn leftover_drafts_are_removed_by_the_names_of_their_targets() {
         let folder = tempfile::tempdir().unwrap();
         let draft = |name: &str| Draft::new(&folder.path().join(name)).unwrap();
         let left: Vec<PathBuf> = ["a.vtu", "b.vtu", &"long".repeat(60)]
@@ -278,7 +275,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_are_followed_rights_stay_and_hard_links_are_said() {
+    fn links_are_followed_permissions_are_kept_and_hard_links_are_reported() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
@@ -302,8 +299,8 @@ mod tests {
         assert_eq!(std::fs::read(at("other")).unwrap(), b"after");
 
         symlink("round", at("round")).unwrap();
-        assert!(replace(&at("round"), b"").unwrap_err().to_string().contains("circle"));
-        assert!(replace(&at("deep"), b"").is_err(), "a folder is no file");
+        assert!(replace(&at("round"), b"").unwrap_err().to_string().contains("cycle"));
+        assert!(replace(&at("deep"), b"").is_err(), "a folder is not a file");
         replace(Path::new("/dev/null"), b"gone").unwrap();
         assert!(!std::fs::metadata("/dev/null").unwrap().is_file());
     }

@@ -138,7 +138,7 @@ impl Scalar {
 pub(super) fn write_lines<T: std::fmt::Debug>(out: &mut Vec<u8>, values: &[T]) {
     for line in values.chunks(12) {
         for value in line {
-            write!(out, "{value:?} ").expect("memory takes everything");
+            write!(out, "{value:?} ").expect("writing into memory does not fail");
         }
         out.pop();
         out.push(b'\n');
@@ -242,18 +242,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_come_back_in_either_order() {
+    fn bytes_round_trip_in_either_order() {
         let values = Values::F64(vec![1.5, -0.0, f64::MIN_POSITIVE]);
         let bytes = native_bytes(&values).into_owned();
         assert_eq!(Scalar::F64.numbers(&bytes, ByteOrder::NATIVE).unwrap(), values);
-        let mut turned = bytes;
-        swap_all(&mut turned, 8);
+        let mut swapped = bytes;
+        swap_all(&mut swapped, 8);
         let other = if ByteOrder::NATIVE == ByteOrder::Big { ByteOrder::Little } else { ByteOrder::Big };
-        assert_eq!(Scalar::F64.numbers(&turned, other).unwrap(), values);
+        assert_eq!(Scalar::F64.numbers(&swapped, other).unwrap(), values);
     }
 
     #[test]
-    fn the_first_number_that_is_no_id_is_named() {
+    fn the_first_invalid_id_is_reported() {
         assert_eq!(to_ids(&Values::I64(vec![3, -1, 1 << 40])), Err("-1".into()));
         assert_eq!(to_ids(&Values::I64(vec![3, 1 << 40])), Err("1099511627776".into()));
         assert_eq!(to_ids(&Values::F64(vec![3.0, 4.0])), Ok(vec![3, 4]));

@@ -16,7 +16,7 @@ pub(super) fn keep_cells<'m>(
         .iter()
         .filter(|(kind, _)| !holds(*kind))
         .map(|(kind, n)| {
-            format!("{n} cells of kind {} are left out: {format} has no such cells", kind.label())
+            format!("{n} cells of kind {} are not written: {format} has no such cells", kind.label())
         })
         .collect();
     if lost.is_empty() {
@@ -58,7 +58,7 @@ pub(super) fn restricted_to_cells(mesh: &Mesh, keeps: impl Fn(CellId) -> bool) -
 }
 
 /// The surface of a mesh, for formats of surfaces only: the mesh itself if it has cells of dimension 2, else
-/// the boundary of its volume cells; and messages about what is left out.
+/// the boundary of its volume cells; and messages about what is not written.
 pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Vec<String>) {
     let has = |dim| mesh.cells.kinds().iter().any(|kind| kind.dim() == Some(dim));
     if has(2) || !has(3) {
@@ -80,7 +80,7 @@ pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Ve
     surface.field_data.clone_from(&mesh.field_data);
     surface.label_names.clone_from(&mesh.label_names);
     let note = format!(
-        "{format} has surfaces only: the boundary of the volume cells is written, their inside is left out"
+        "{format} holds surfaces only: the boundary of the volume cells is written, their interior is not"
     );
     (Cow::Owned(surface), vec![note])
 }
@@ -113,7 +113,7 @@ pub(super) fn lost_arrays<'f>(
 ) -> Option<String> {
     let names: Vec<&str> = fields.into_iter().map(|f| f.name.as_str()).collect();
     (!names.is_empty())
-        .then(|| format!("{what} arrays are left out, {format} has none: {}", names.join(", ")))
+        .then(|| format!("{what} arrays are not written ({format} has none): {}", names.join(", ")))
 }
 
 #[cfg(test)]
@@ -122,7 +122,7 @@ mod tests {
     use crate::base::VertexId;
 
     #[test]
-    fn the_arrays_go_with_the_cells() {
+    fn cell_arrays_follow_the_kept_cells() {
         let mut cells = Cells::new();
         cells.push(CellKind::LINE, [0, 1].map(VertexId));
         cells.push(CellKind::TRIANGLE, [0, 1, 2].map(VertexId));
@@ -131,6 +131,6 @@ mod tests {
         let (kept, lost) = keep_cells(&mesh, "X", |kind| kind == CellKind::TRIANGLE);
         assert_eq!(kept.cells.len(), 1);
         assert_eq!(kept.cell_data[0].values, vec![3u8, 4].into());
-        assert_eq!(lost, ["1 cells of kind line are left out: X has no such cells"]);
+        assert_eq!(lost, ["1 cells of kind line are not written: X has no such cells"]);
     }
 }

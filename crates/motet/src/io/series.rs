@@ -21,7 +21,7 @@ pub fn is_series(path: impl AsRef<Path>) -> bool {
 
 /// Whether a path has the extension of series that [`SeriesWriter`] writes.
 pub fn can_write_series(path: impl AsRef<Path>) -> bool {
-    path.as_ref().extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
+    path.as_ref().extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pvd"))
 }
 
 /// Whether [`write_series`] supports this extension.
@@ -29,7 +29,7 @@ pub fn can_be_series(path: impl AsRef<Path>) -> bool {
     can_write_series(&path) || vtkhdf::is_vtkhdf_name(path.as_ref())
 }
 
-/// The file that holds a path of [`read_series`]: the path itself, or the file whose step it names.
+/// The file that holds a path of [`read_series`]: the path itself, or the file whose step it refers to.
 pub fn file_of(path: impl AsRef<Path>) -> PathBuf {
     vtkhdf::StepPath::of(path.as_ref()).map_or_else(|| path.as_ref().to_owned(), |step| step.file)
 }
@@ -48,7 +48,7 @@ pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
         return vtkhdf::times(path).map_err(|e| e.in_file(path));
     }
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
-    let damaged = |e: Error| e.in_file(path).remedy("the file is damaged, or no PVD file: write it again");
+    let damaged = |e: Error| e.in_file(path).remedy("the file is damaged or not a PVD file: write it again");
     let frames = parse_series(&bytes).map_err(damaged)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     Ok(frames.into_iter().map(|(time, file)| (time, folder.join(file))).collect())
@@ -66,7 +66,7 @@ pub fn parse_series(bytes: &[u8]) -> Result<Vec<(f64, String)>> {
         let at = reader.buffer_position();
         let event = reader
             .read_event()
-            .map_err(|e| Error::input(format!("no well-formed XML: {e}")).at(format!("byte {at}")))?;
+            .map_err(|e| Error::input(format!("not well-formed XML: {e}")).at(format!("byte {at}")))?;
         match event {
             Event::Start(e) | Event::Empty(e) if e.name().as_ref() == "VTKFile" => {
                 is_series = attribute(&e, "type")?.is_some_and(|t| t == "Collection");
@@ -80,22 +80,22 @@ pub fn parse_series(bytes: &[u8]) -> Result<Vec<(f64, String)>> {
         }
     }
     if !is_series {
-        return Err(Error::input("is no series: a VTKFile of type Collection is expected"));
+        return Err(Error::input("is not a series: expected a VTKFile of type Collection"));
     }
     match frames.windows(2).position(|f| f[0].0 == f[1].0) {
         Some(i) => Err(Error::input(format!(
-            "has the time {} once more, but one file a time is expected",
+            "has time {} more than once, but expected one file per time",
             frames[i].0
         ))
         .at(format!("entry {}", i + 1))
         .remedy("join the parts of each time into one file")),
-        None if frames.is_empty() => Err(Error::input("a series that names no file")),
+        None if frames.is_empty() => Err(Error::input("the series lists no files")),
         None => Ok(frames),
     }
 }
 
 fn frame(element: &BytesStart<'_>, place: usize) -> Result<(f64, String)> {
-    let file = attribute(element, "file")?.ok_or_else(|| Error::input("names no file"))?;
+    let file = attribute(element, "file")?.ok_or_else(|| Error::input("has no attribute `file`"))?;
     let time = match attribute(element, "timestep")? {
         None => place as f64,
         Some(text) => text
@@ -103,13 +103,13 @@ fn frame(element: &BytesStart<'_>, place: usize) -> Result<(f64, String)> {
             .parse()
             .ok()
             .filter(|t: &f64| t.is_finite())
-            .ok_or_else(|| Error::input(format!("the time `{text}` is no finite number")))?,
+            .ok_or_else(|| Error::input(format!("expected a finite number as time, found `{text}`")))?,
     };
     Ok((time, file))
 }
 
 fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
-    let bad = |e: &dyn std::fmt::Display| Error::input(format!("no well-formed XML: {e}"));
+    let bad = |e: &dyn std::fmt::Display| Error::input(format!("not well-formed XML: {e}"));
     let Some(attribute) = element.try_get_attribute(name).map_err(|e| bad(&e))? else { return Ok(None) };
     Ok(Some(unescape(&attribute.value).map_err(|e| bad(&e))?.into_owned()))
 }
@@ -137,7 +137,7 @@ pub fn write_series(
         return Ok(lost);
     }
     if !vtkhdf::is_vtkhdf_name(path) {
-        return Err(Error::options("a series is written as .pvd or as .vtkhdf").in_file(path));
+        return Err(Error::options("series are written as .pvd or .vtkhdf").in_file(path));
     }
     let mut steps = vtkhdf::Steps::default();
     for frame in frames {
@@ -187,9 +187,9 @@ impl SeriesWriter {
         let bytes = std::fs::read(&self.path).map_err(|e| Error::io(&self.path, e))?;
         let mut frames = parse_series(&bytes).map_err(|e| e.in_file(&self.path))?;
         if frames.len() < n {
-            return Err(Error::input(format!("has {} frames, expected {n} at least", frames.len()))
+            return Err(Error::input(format!("expected at least {n} frames, found {}", frames.len()))
                 .in_file(&self.path)
-                .remedy("start the run anew"));
+                .remedy("start the run again"));
         }
         frames.truncate(n);
         self.frames = frames;
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read_back() {
+    fn written_series_are_read_back() {
         let mut writer = SeriesWriter::new("a <b>.pvd", WriteOptions::default());
         writer.frames = (0..3).map(|k| (0.1 * f64::from(k), writer.frame_name(k as usize))).collect();
         assert_eq!(parse_series(writer.text().as_bytes()).unwrap(), writer.frames);
@@ -246,25 +246,25 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_series_is_reported() {
+    fn invalid_series_are_reported() {
         let refused = |text: &str| parse_series(text.as_bytes()).unwrap_err().to_string();
-        assert!(refused("").contains("no series"));
-        assert!(refused("<VTKFile type=\"Collection\"/>").contains("names no file"));
-        assert!(refused("<VTKFile type=\"PolyData\"/>").contains("no series"));
+        assert!(refused("").contains("not a series"));
+        assert!(refused("<VTKFile type=\"Collection\"/>").contains("lists no files"));
+        assert!(refused("<VTKFile type=\"PolyData\"/>").contains("not a series"));
         assert!(
             refused("<VTKFile type=\"Collection\"><DataSet/></VTKFile>")
-                .starts_with("entry 0: names no file")
+                .starts_with("entry 0: has no attribute `file`")
         );
         assert!(
             refused("<VTKFile type=\"Collection\"><DataSet file='a' timestep='x'/></VTKFile>")
                 .contains("`x`")
         );
-        assert!(refused("<VTKFile type=\"Collection\"><DataSet file='a' timestep='1'/><DataSet file='b' timestep='1'/></VTKFile>").contains("once more"));
+        assert!(refused("<VTKFile type=\"Collection\"><DataSet file='a' timestep='1'/><DataSet file='b' timestep='1'/></VTKFile>").contains("more than once"));
         assert!(refused("<VTKFile type=\"Collection\"><DataSet file=").contains("XML"));
     }
 
     #[test]
-    fn times_that_are_missing_are_counted() {
+    fn missing_times_become_indices() {
         let text = "<VTKFile type='Collection'><Collection><DataSet file='a.vtp'/><DataSet file='b.vtp'></DataSet></Collection></VTKFile>";
         assert_eq!(
             parse_series(text.as_bytes()).unwrap(),

@@ -1,6 +1,6 @@
 //! STL surfaces, text and binary. Equal points are merged; several solids become patches.
 //!
-//! A reader and writer of our own, because `stl_io` (0.11) merges points in its own way, keeps neither the
+//! Implemented here because `stl_io` (0.11) merges points in its own way, keeps neither the
 //! names of solids nor the attribute bytes, mistakes a binary file that begins with `solid` for text, and
 //! reads text in single precision only.
 //!
@@ -20,7 +20,7 @@ use crate::io::text::{Text, push_floats, quoted};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 pub(super) const FORMAT: Format =
-    Format { name: "STL", endings: &[".stl"], read: Some(read), write: Some(write) };
+    Format { name: "STL", extensions: &[".stl"], read: Some(read), write: Some(write) };
 
 /// Size of the header and the number of triangles.
 const HEAD_BYTES: usize = 84;
@@ -32,7 +32,7 @@ const MAX_NORMAL_WORDS: usize = 4;
 fn read(input: &Input<'_>) -> Result<Mesh> {
     let bytes = input.bytes;
     if let Some(triangles) = triangles_with_payload(bytes) {
-        input.notes.add("what another program has put behind each triangle is passed over");
+        input.notes.add("additional data after the triangles are skipped");
         let mut mesh = binary(triangles.into_iter())?;
         // These attributes were byte counts.
         mesh.cell_data.clear();
@@ -41,19 +41,19 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
     let mesh = match (binary_body(bytes), bytes.trim_ascii_start().get(..5)) {
         (Some((triangles, [])), _) => binary(triangles.chunks_exact(TRIANGLE_BYTES))?,
         (_, Some(word)) if word.eq_ignore_ascii_case(b"solid") => ascii(bytes)?,
-        (Some((triangles, behind)), _) => {
+        (Some((triangles, after)), _) => {
             // A nonzero attribute may be the count of bytes after its triangle, so these are not consecutive
             // triangles.
             if triangles.chunks_exact(TRIANGLE_BYTES).any(|t| t[TRIANGLE_BYTES - 2..] != [0, 0]) {
                 return Err(not_stl(bytes));
             }
-            input.notes.add(format!("{} bytes behind the last triangle are passed over", behind.len()));
+            input.notes.add(format!("{} bytes after the last triangle are skipped", after.len()));
             binary(triangles.chunks_exact(TRIANGLE_BYTES))?
         }
         (None, _) => return Err(not_stl(bytes)),
     };
     if mesh.cells.is_empty() {
-        return Err(Error::input("a surface without a triangle").remedy("export the surface again"));
+        return Err(Error::input("the surface has no triangles").remedy("export the surface again"));
     }
     Ok(mesh)
 }
@@ -75,9 +75,9 @@ fn triangles_with_payload(bytes: &[u8]) -> Option<Vec<&[u8]>> {
     }
     let mut triangles = Vec::with_capacity(n);
     for _ in 0..n {
-        let (triangle, behind) = rest.split_at_checked(TRIANGLE_BYTES)?;
+        let (triangle, after) = rest.split_at_checked(TRIANGLE_BYTES)?;
         let size = u16::from_le_bytes([triangle[TRIANGLE_BYTES - 2], triangle[TRIANGLE_BYTES - 1]]);
-        rest = behind.get(usize::from(size)..)?;
+        rest = after.get(usize::from(size)..)?;
         triangles.push(triangle);
     }
     rest.is_empty().then_some(triangles)
@@ -86,19 +86,19 @@ fn triangles_with_payload(bytes: &[u8]) -> Option<Vec<&[u8]>> {
 fn not_stl(bytes: &[u8]) -> Error {
     let error = match bytes.get(80..).and_then(|b| b.first_chunk()) {
         Some(n) => Error::input(format!(
-            "a binary STL with {} triangles has {} bytes, this file {}",
+            "a binary STL file with {} triangles has {} bytes, but this file has {}",
             u32::from_le_bytes(*n),
             HEAD_BYTES as u64 + u64::from(u32::from_le_bytes(*n)) * TRIANGLE_BYTES as u64,
             bytes.len()
         ))
         .at("byte 80"),
         None => Error::input(format!(
-            "neither a text that begins with `solid` nor the {HEAD_BYTES} bytes of a binary head; it begins with {}",
+            "expected text that starts with `solid`, or a binary header of {HEAD_BYTES} bytes, found {}",
             quoted(bytes.get(..20).unwrap_or(bytes))
         ))
         .at("byte 0"),
     };
-    error.remedy("the file is cut off, damaged or no STL: get it again")
+    error.remedy("the file is truncated, damaged or not an STL file: get a new copy")
 }
 
 /// Triangles whose corners are merged into vertices.
@@ -152,8 +152,8 @@ fn ascii(bytes: &[u8]) -> Result<Mesh> {
     while let Some(word) = text.word() {
         if !word.eq_ignore_ascii_case(b"solid") {
             return Err(text
-                .unexpected("a solid", "`solid`", word)
-                .remedy("the file is damaged: get it again"));
+                .unexpected("solid", "`solid`", word)
+                .remedy("the file is damaged: get a new copy"));
         }
         let name = String::from_utf8_lossy(text.line().unwrap_or_default()).trim().to_owned();
         let known = solids.iter().position(|solid| *solid == name && !name.is_empty());
@@ -182,7 +182,7 @@ fn facet(text: &mut Text<'_>, merged: &mut Merged) -> Result<bool> {
         return Ok(false);
     }
     if !word.eq_ignore_ascii_case(b"facet") {
-        return Err(text.unexpected("a triangle", "`facet` or `endsolid`", word));
+        return Err(text.unexpected("triangle", "`facet` or `endsolid`", word));
     }
     // The normal follows from the points, and not all programs write it as numbers.
     for _ in 0..=MAX_NORMAL_WORDS {
@@ -204,7 +204,7 @@ fn words(text: &mut Text<'_>, expected: &[&str]) -> Result<()> {
     for word in expected {
         let found = text.expect(&format!("`{word}`"))?;
         if !found.eq_ignore_ascii_case(word.as_bytes()) {
-            return Err(text.unexpected("a triangle", &format!("`{word}`"), found));
+            return Err(text.unexpected("triangle", &format!("`{word}`"), found));
         }
     }
     Ok(())
@@ -241,15 +241,15 @@ type Triangle = ([VertexId; 3], usize);
 
 fn triangles(mesh: &Mesh, lost: &mut Vec<String>) -> Vec<Triangle> {
     let mut triangles = Vec::new();
-    let mut n_cut = 0;
+    let mut n_split = 0;
     for (cell, _, v) in mesh.cells.iter() {
-        n_cut += usize::from(v.len() > 3);
+        n_split += usize::from(v.len() > 3);
         for i in 2..v.len() {
             triangles.push(([v[0], v[i - 1], v[i]], cell.index()));
         }
     }
-    if n_cut > 0 {
-        lost.push(format!("{n_cut} quads and polygons are cut into triangles"));
+    if n_split > 0 {
+        lost.push(format!("{n_split} quads and polygons are split into triangles"));
     }
     triangles
 }
@@ -267,7 +267,7 @@ fn normal([a, b, c]: [Point; 3]) -> Point {
 
 fn write_binary(mesh: &Mesh, triangles: &[Triangle], lost: &mut Vec<String>) -> Result<Vec<u8>> {
     let n = u32::try_from(triangles.len()).map_err(|_| {
-        Error::input(format!("{} triangles are more than a binary STL holds", triangles.len()))
+        Error::input(format!("{} triangles are more than a binary STL file can hold", triangles.len()))
     })?;
     let attributes = mesh.cell_field("attribute").and_then(|f| f.values.to_i64());
     let mut out = Vec::with_capacity(HEAD_BYTES + TRIANGLE_BYTES * triangles.len());
@@ -286,7 +286,7 @@ fn write_binary(mesh: &Mesh, triangles: &[Triangle], lost: &mut Vec<String>) -> 
         lost.push("binary STL rounds coordinates to single precision; text (ascii) keeps them".into());
     }
     if !mesh.label_names.patches.is_empty() {
-        lost.push("binary STL has no names of patches; text (ascii) keeps them".into());
+        lost.push("binary STL has no patch names; text (ascii) keeps them".into());
     }
     Ok(out)
 }

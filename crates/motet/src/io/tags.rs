@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_largest_number_there_is_is_a_number() {
+    fn the_largest_u64_is_a_valid_number() {
         let tags = Tags::new(&[u64::MAX], "node").unwrap();
         assert_eq!((tags.place(u64::MAX), tags.place(0)), (Some(0), None));
         assert!(Tags::new(&[u64::MAX, u64::MAX], "node").is_err());
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn every_number_finds_its_place_and_no_other_does() {
+    fn every_number_maps_to_its_index_and_others_to_none() {
         for numbers in [vec![5, 6, 7], vec![9, 1, 4], vec![1 << 60, 3, 77], vec![u64::MAX, 0], vec![]] {
             let tags = Tags::new(&numbers, "node").unwrap();
             for (place, number) in numbers.iter().enumerate() {
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_given_twice_is_named() {
+    fn a_duplicate_number_is_reported() {
         for numbers in [vec![1, 2, 2], vec![1, 1 << 40, 1]] {
             let error = Tags::new(&numbers, "node").unwrap_err().to_string();
             assert!(error.contains("occurs twice"), "{error}");

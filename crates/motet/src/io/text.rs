@@ -116,9 +116,9 @@ impl<'a> Text<'a> {
         match usize::try_from(n) {
             Ok(n) if n <= room => Ok(n),
             Ok(n) => Err(self
-                .error(format!("{n} {what} are announced, but what is left of the file holds at most {room}"))
-                .remedy("the file is cut off or damaged: get it again")),
-            Err(_) => Err(self.error(format!("{n} is no number of {what}"))),
+                .error(format!("{n} {what} declared, but the rest of the file can hold at most {room}"))
+                .remedy("the file is truncated or damaged: get a new copy")),
+            Err(_) => Err(self.error(format!("the number of {what} is negative: {n}"))),
         }
     }
 
@@ -151,10 +151,10 @@ impl<'a> Text<'a> {
         self.error(format!("{what}: expected {expected}, found {}", quoted(word)))
     }
 
-    /// The error for a text that ends too early.
+    /// The error for a file that ends where `what` is expected.
     pub(super) fn unexpected_end(&self, what: &str) -> Error {
-        self.error(format!("the file ends where {what} should follow"))
-            .remedy("the file is cut off: get it again")
+        self.error(format!("expected {what}, found the end of the file"))
+            .remedy("the file is truncated: get a new copy")
     }
 }
 
@@ -214,7 +214,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_come_with_their_lines() {
+    fn words_have_line_numbers() {
         let mut text = Text::with_comments(b"# head\n a 1 # tail\n\r\n2.5\n", b'#');
         assert_eq!(text.word(), Some(&b"a"[..]));
         assert_eq!(text.line_number(), 2);
@@ -223,11 +223,14 @@ mod tests {
         assert_eq!(text.float("x").unwrap(), 2.5);
         assert_eq!(text.line_number(), 4);
         let error = text.float("x").unwrap_err().to_string();
-        assert_eq!(error, "line 5: the file ends where x should follow; the file is cut off: get it again");
+        assert_eq!(
+            error,
+            "line 5: expected x, found the end of the file; the file is truncated: get a new copy"
+        );
     }
 
     #[test]
-    fn lines_end_as_unix_and_windows_end_them() {
+    fn lines_may_have_unix_and_windows_endings() {
         let mut text = Text::new(b"one\r\ntwo\n\nend");
         let lines: Vec<_> = std::iter::from_fn(|| text.line()).collect();
         assert_eq!(lines, [&b"one"[..], b"two", b"", b"end"]);
@@ -237,13 +240,13 @@ mod tests {
     fn a_count_that_the_file_cannot_hold_is_refused() {
         assert_eq!(Text::new(b"2 1 2").count("things", 1).unwrap(), 2);
         let error = Text::new(b"1152921504606846976 1 2").count("points", 3).unwrap_err().to_string();
-        assert!(error.starts_with("line 1: 1152921504606846976 points are announced, but"), "{error}");
+        assert!(error.starts_with("line 1: 1152921504606846976 points declared, but"), "{error}");
         assert!(Text::new(b"-1 0").count("points", 3).is_err());
         assert!(Text::new(b"99999999999999999999 0").count("points", 3).is_err());
     }
 
     #[test]
-    fn numbers_that_are_none_are_told_apart() {
+    fn numbers_are_distinguished_from_other_words() {
         assert_eq!(parse_float(b"1.5d-3"), Some(1.5e-3));
         assert_eq!(parse_float(b"-Inf"), Some(f64::NEG_INFINITY));
         assert!(parse_float(b"nan").unwrap().is_nan());
@@ -253,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn floats_come_back_bit_for_bit() {
+    fn floats_round_trip_bit_for_bit() {
         for x in [0.1, -0.0, 1.0 / 3.0, 5e-324, f64::MAX, 1e22, 123_456_789.123_456_79] {
             let mut out = Vec::new();
             push_float(&mut out, x);

@@ -18,14 +18,14 @@ pub(super) fn weld(mesh: &mut Mesh, starts: &[usize], notes: &Notes) {
     let mut firsts = firsts_at_place(&mesh.points);
     let n_split = split_ambiguous(&mut firsts, &starts);
     if n_split > 0 {
-        notes.add(format!("at {n_split} places a piece has several points: there pieces are not joined"));
+        notes.add(format!("pieces are not joined at {n_split} places where a piece has several points"));
     }
     let kept: Vec<usize> = (0..n).filter(|&v| firsts[v].index() == v).collect();
     if kept.len() == n {
         return;
     }
     notes.add(format!(
-        "pieces were joined: {} points at the same place were made one with others",
+        "pieces are joined: {} points are merged with others at the same place",
         n - kept.len()
     ));
     let mut new = vec![VertexId::default(); n];
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn what_pieces_share_becomes_one() {
+    fn points_shared_by_pieces_are_merged() {
         let (places, ids, notes) = welded(&[0.0, 1.0, 1.0, 2.0, 2.0, -0.0], &[0, 2, 4]);
         assert_eq!((places, ids), (vec![0.0, 1.0, 2.0], vec![0, 1, 1, 2, 2, 0]));
         assert!(notes[0].contains("3 points"), "{notes:?}");
@@ -102,7 +102,7 @@ mod tests {
     fn a_slit_of_one_piece_stays_open() {
         let (places, ids, notes) = welded(&[0.0, 1.0, 1.0, 2.0, 2.0, 3.0], &[0, 4]);
         assert_eq!((places, ids), (vec![0.0, 1.0, 1.0, 2.0, 3.0], vec![0, 1, 2, 3, 3, 4]));
-        assert_eq!(notes.len(), 1, "a slit within a piece is nothing to tell: {notes:?}");
+        assert_eq!(notes.len(), 1, "a slit within a piece is not reported: {notes:?}");
         let (places, _, notes) = welded(&[1.0, 1.0, 1.0, 1.0], &[0, 2]);
         assert_eq!(places.len(), 4);
         assert!(notes[0].contains("at 1 places"), "{notes:?}");

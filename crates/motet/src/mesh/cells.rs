@@ -56,10 +56,7 @@ impl Cells {
         }
         let n_vertices = vertices.len();
         let vertices = Csr::new(offsets, vertices).ok_or_else(|| {
-            Error::input(format!(
-                "the cell offsets must rise from 0 to {n_vertices}, \
-                 the number of vertex ids in the connectivity"
-            ))
+            Error::input(format!("the offsets do not ascend from 0 to {n_vertices}, the number of ids"))
         })?;
         for (i, kind) in kinds.iter().enumerate() {
             let n = vertices.list(i).len();
@@ -68,7 +65,7 @@ impl Cells {
             }
             if let Some(expected) = kind.n_vertices().filter(|&e| e != n) {
                 return Err(Error::input(format!(
-                    "a {} has {expected} vertices, this one {n}",
+                    "a {} has {expected} vertices, but this one has {n}",
                     kind.label()
                 ))
                 .at(format!("cell {i}")));
@@ -191,12 +188,9 @@ impl Cells {
                     .find_map(|f| beyond(f.items()).map(|id| ("of a polyhedron".into(), id)))
             })
             .expect("one was found above");
-        Err(Error::input(format!(
-            "names point {id}, but there are {n_points} points (0 to {})",
-            n_points.saturating_sub(1)
-        ))
-        .at(format!("cell {cell}"))
-        .remedy("the file is damaged, or its ids start at the wrong number: write it again"))
+        Err(Error::input(format!("refers to point {id}, but there are {n_points} points, numbered from 0"))
+            .at(format!("cell {cell}"))
+            .remedy("the file is damaged, or its ids start at the wrong number: write it again"))
     }
 }
 
@@ -223,13 +217,16 @@ mod tests {
         let ids = (0..7).map(VertexId).collect();
         let error =
             Cells::from_parts(vec![CellKind::TETRA, CellKind::TETRA], vec![0, 4, 7], ids).unwrap_err();
-        assert_eq!(error.to_string(), "cell 1: a tetra has 4 vertices, this one 3");
+        assert_eq!(error.to_string(), "cell 1: a tetra has 4 vertices, but this one has 3");
     }
 
     #[test]
     fn an_id_beyond_the_points_is_named_with_its_cell() {
         let cells = Cells::uniform(CellKind::LINE, [0, 1, 1, 9].map(VertexId).to_vec()).unwrap();
         let error = cells.check_ids(5).unwrap_err().to_string();
-        assert!(error.starts_with("cell 1: names point 9, but there are 5 points (0 to 4)"), "{error}");
+        assert!(
+            error.starts_with("cell 1: refers to point 9, but there are 5 points, numbered from 0"),
+            "{error}"
+        );
     }
 }

@@ -86,7 +86,7 @@ impl TetMesh {
         }
         match self.tets.iter().position(is_off) {
             None => Ok(()),
-            Some(i) => Err(Error::input("has a vertex whose coordinates are not finite numbers")
+            Some(i) => Err(Error::input("has a vertex whose coordinates are not finite")
                 .at(format!("tet {i}"))
                 .remedy("`motet info` lists what is wrong with a mesh")),
         }

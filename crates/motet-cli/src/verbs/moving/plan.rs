@@ -53,7 +53,7 @@ enum Source<'a> {
 
 /// Whether a path names a file of nodal displacements over time, by its extension.
 fn is_nodal(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("dat"))
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("dat"))
 }
 
 impl<'a> Plan<'a> {

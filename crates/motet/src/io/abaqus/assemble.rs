@@ -37,14 +37,15 @@ pub(super) fn assemble(model: Model<'_>, notes: &Notes) -> Result<Mesh> {
         if let Some(name) = &scope.name
             && instance_of_key.insert(name.key.clone(), placed.len()).is_some()
         {
-            return Err(
-                Error::input(format!("a second instance `{}`", name.shown)).remedy("give it another name")
-            );
+            return Err(Error::input(format!("duplicate instance name `{}`", name.shown))
+                .remedy("rename one of them"));
         }
         placed.push(here);
     }
     if mesh.points.is_empty() {
-        return Err(Error::input("there are no nodes").remedy("the file holds no mesh: get another"));
+        return Err(
+            Error::input("there are no nodes").remedy("the file contains no mesh: choose another file")
+        );
     }
     let mut facets = Facets::new(&mesh.cells, notes);
     let mut collected = Collected { are_several: instances.len() > 1, ..Collected::default() };
@@ -59,10 +60,7 @@ pub(super) fn assemble(model: Model<'_>, notes: &Notes) -> Result<Mesh> {
         collected.take(scope, &around, &mut facets)?;
     }
     if collected.n_internal > 0 {
-        notes.add(format!(
-            "{} sets that a preprocessor made for itself are passed over",
-            collected.n_internal
-        ));
+        notes.add(format!("sets for internal use by the preprocessor are skipped: {}", collected.n_internal));
     }
     let n_own = mesh.cells.len();
     let added = facets.added;
@@ -77,7 +75,7 @@ fn put(mesh: &mut Mesh, scope: &Scope) -> Result<Placed> {
     let nodes = Numbering::new(&scope.node_ids, "node", mesh.points.len())?;
     let elements = Numbering::new(&scope.element_ids, "element", mesh.cells.len())?;
     if mesh.points.len() + scope.points.len() > VertexId::MAX_COUNT {
-        return Err(Error::input("more nodes than ids of 32 bits can tell apart"));
+        return Err(Error::input("more nodes than a mesh can hold"));
     }
     mesh.points.extend(scope.points.iter().map(|&p| scope.placement.apply(p)));
     let first = mesh.cells.len() as u32;
@@ -87,8 +85,8 @@ fn put(mesh: &mut Mesh, scope: &Scope) -> Result<Placed> {
         rest = tail;
         let vertex = |&node: &u64| {
             nodes.place(node).map(VertexId).ok_or_else(|| {
-                Error::input(format!("element {id} names node {node}, which there is not"))
-                    .remedy("the file is cut off or damaged: write it again")
+                Error::input(format!("element {id} refers to node {node}, which does not exist"))
+                    .remedy("the file is truncated or damaged: write it again")
             })
         };
         let vertices: Vec<VertexId> = ids.iter().map(vertex).collect::<Result<_>>()?;

@@ -212,7 +212,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn families_are_reported_whatever_stands_behind() {
+    fn families_are_recognized_with_any_suffix() {
         for (names, kind) in [
             ("C3D4 C3D4H C3D4T DC3D4 AC3D4 Q3D4", CellKind::TETRA),
             ("C3D10 C3D10M C3D10MH C3D10HS DC3D10", CellKind::QUADRATIC_TETRA),

@@ -183,10 +183,10 @@ pub(super) fn set_arrays<'s>(
     n: usize,
     notes: &Notes,
 ) {
-    let mut n_left_out = 0;
+    let mut n_skipped = 0;
     for set in sets {
         if fields.len() >= MAX_ARRAYS {
-            n_left_out += 1;
+            n_skipped += 1;
             continue;
         }
         let mut values = vec![0u8; n];
@@ -197,7 +197,7 @@ pub(super) fn set_arrays<'s>(
             values: Values::U8(values),
         });
     }
-    if n_left_out > 0 {
-        notes.add(format!("{n_left_out} sets beyond the first {MAX_ARRAYS} are passed over"));
+    if n_skipped > 0 {
+        notes.add(format!("{n_skipped} sets beyond the first {MAX_ARRAYS} are skipped"));
     }
 }

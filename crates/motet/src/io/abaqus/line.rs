@@ -89,7 +89,10 @@ impl Reference {
         let to = match parse_int(rest.as_bytes()) {
             Some(id) => Target::Number(number(id)?),
             None if rest.trim().is_empty() => {
-                return Err(Error::input(format!("{} names nothing", quoted(field.as_bytes()))));
+                return Err(Error::input(format!(
+                    "expected a number or a name, found {}",
+                    quoted(field.as_bytes())
+                )));
             }
             None => Target::Label(Label::new(rest)),
         };
@@ -140,7 +143,7 @@ pub(super) fn id(field: &str, what: &str) -> Result<u64> {
 fn number(id: i64) -> Result<u64> {
     match u64::try_from(id) {
         Ok(id) if id > 0 => Ok(id),
-        _ => Err(Error::input(format!("{id} is no number of a node or element: they begin at 1"))),
+        _ => Err(Error::input(format!("{id} is not a valid node or element number: numbering starts at 1"))),
     }
 }
 

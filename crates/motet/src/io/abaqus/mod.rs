@@ -4,7 +4,7 @@
 //! translated and rotated, and from included files. The rest of a model (materials, loads, steps) is skipped
 //! with a note.
 //!
-//! Element sets become labels: those of volume cells regions, those of surface cells patches, by name. Sets
+//! Element sets become labels by name: regions for volume cells, patches for surface cells. Sets
 //! may overlap, labels may not. So for volume cells, and for surface cells, the first of the following kinds
 //! of sets that covers all cells is taken, or else the one that covers most: sets with a section, sets of
 //! `*ELSET`, sets of `*ELEMENT`, instances where there are several; sets of all cells come last. A set that
@@ -41,7 +41,7 @@ use crate::io::Format;
 
 pub(super) const FORMAT: Format = Format {
     name: "Abaqus",
-    endings: &[".inp"],
+    extensions: &[".inp"],
     read: Some(read::read),
     write: Some(|mesh, _| write::write(mesh)),
 };

@@ -21,7 +21,7 @@ pub(super) struct Model<'n> {
     block: Block,
     /// Bytes taken by further instances of a part, beyond the first.
     n_copied: usize,
-    passed_over: BTreeSet<String>,
+    skipped_keywords: BTreeSet<String>,
     notes: &'n Notes,
 }
 
@@ -81,7 +81,7 @@ impl<'n> Model<'n> {
             here: Here::Top,
             block: Block::Start,
             n_copied: 0,
-            passed_over: BTreeSet::new(),
+            skipped_keywords: BTreeSet::new(),
             notes,
         }
     }
@@ -111,9 +111,9 @@ impl<'n> Model<'n> {
             }
             name if REFUSED.contains(&name) => {
                 return Err(Error::input(format!(
-                    "*{name} makes or moves nodes or elements, which is not read"
+                    "*{name} generates or moves nodes or elements, which is not supported"
                 ))
-                .remedy("let the preprocessor write the mesh with all its nodes and elements"));
+                .remedy("have the preprocessor write all nodes and elements explicitly"));
             }
             name => {
                 if name.ends_with("SECTION")
@@ -122,7 +122,7 @@ impl<'n> Model<'n> {
                     self.scope().with_section.insert(label.key);
                 }
                 if !SILENT.contains(&name) {
-                    self.passed_over.insert(name.to_owned());
+                    self.skipped_keywords.insert(name.to_owned());
                 }
                 Block::Ignored
             }
@@ -134,10 +134,8 @@ impl<'n> Model<'n> {
         match keyword.get("SYSTEM") {
             Some("" | "R" | "r") | None => {}
             Some(other) => {
-                return Err(Error::input(format!(
-                    "nodes in the system of coordinates `{other}` are not read"
-                ))
-                .remedy("write them in Cartesian coordinates"));
+                return Err(Error::input(format!("nodes in coordinate system `{other}` are not supported"))
+                    .remedy("write them in Cartesian coordinates"));
             }
         }
         Ok(Block::Nodes(keyword.label("NSET").map(|label| self.scope().node_sets.named(label))))
@@ -146,7 +144,7 @@ impl<'n> Model<'n> {
     fn elements(&mut self, keyword: &Keyword) -> Result<Block> {
         let name = Label::new(keyword.expect("TYPE")?).key;
         let Some(of) = ElementType::of(&name) else {
-            self.notes.add(format!("elements of type {name} are passed over: motet has no such cells"));
+            self.notes.add(format!("elements of type {name} are skipped: motet has no such cell kind"));
             return Ok(Block::Ignored);
         };
         let set = keyword.label("ELSET").map(|label| self.scope().element_sets.named(label));
@@ -173,7 +171,7 @@ impl<'n> Model<'n> {
         let is_of_elements =
             keyword.get("TYPE").is_none_or(|t| t.is_empty() || t.eq_ignore_ascii_case("ELEMENT"));
         if !is_of_elements || ["COMBINE", "CROP"].iter().any(|p| keyword.get(p).is_some()) {
-            self.notes.add(format!("surface {} is passed over: it is not made of faces", label.shown));
+            self.notes.add(format!("surface {} is skipped: it is not made of element faces", label.shown));
             return Ok(Block::Ignored);
         }
         let is_internal = keyword.get("INTERNAL").is_some();
@@ -186,7 +184,7 @@ impl<'n> Model<'n> {
         let name = Label::new(keyword.expect("NAME")?);
         if self.part_of_key.insert(name.key.clone(), self.parts.len()).is_some() {
             return Err(
-                Error::input(format!("a second part `{}`", name.shown)).remedy("give it another name")
+                Error::input(format!("duplicate part name `{}`", name.shown)).remedy("rename one of them")
             );
         }
         self.here = Here::Part(self.parts.len());
@@ -201,10 +199,10 @@ impl<'n> Model<'n> {
         let part = Label::new(keyword.expect("PART")?);
         let &place = self.part_of_key.get(&part.key).ok_or_else(|| {
             Error::input(format!(
-                "instance `{}` is of part `{}`, which was not there yet",
+                "instance `{}` refers to part `{}`, which is not defined before it",
                 name.shown, part.shown
             ))
-            .remedy("write the file again")
+            .remedy("define the part before its instances")
         })?;
         let part = &self.parts[place];
         if std::mem::replace(&mut self.is_used[place], true) {
@@ -212,9 +210,9 @@ impl<'n> Model<'n> {
         }
         if self.n_copied > MAX_COPIED_BYTES {
             return Err(Error::input(format!(
-                "the instances of its parts take more than {MAX_COPIED_BYTES} bytes"
+                "the copies of parts for instances would take more than {MAX_COPIED_BYTES} bytes"
             ))
-            .remedy("read the parts one by one"));
+            .remedy("write each part to its own file"));
         }
         let scope = Scope { name: Some(name), ..part.clone() };
         self.here = Here::Instance(self.instances.len());
@@ -228,10 +226,8 @@ impl<'n> Model<'n> {
         let notes = self.notes;
         let scope = self.scope();
         let taken = match &mut block {
-            Block::Start => {
-                Err(Error::input("data before the first keyword, a line that begins with a star")
-                    .remedy("is this another format? AVS UCD has the same ending"))
-            }
+            Block::Start => Err(Error::input("data line before the first keyword, which begins with `*`")
+                .remedy("check the format of the file: AVS UCD has the same extension")),
             Block::Ignored => Ok(()),
             Block::Nodes(set) => node(scope, *set, &fields(line)),
             Block::Elements(elements) => elements.line(scope, &fields(line), notes),
@@ -272,9 +268,10 @@ impl<'n> Model<'n> {
             self.instances = std::mem::take(&mut self.parts);
         }
         self.parts.clear();
-        if !self.passed_over.is_empty() {
-            let names: Vec<_> = self.passed_over.iter().map(|name| format!("*{name}")).collect();
-            self.notes.add(format!("what is no mesh is passed over: {}", names.join(", ")));
+        if !self.skipped_keywords.is_empty() {
+            let names: Vec<_> = self.skipped_keywords.iter().map(|name| format!("*{name}")).collect();
+            self.notes
+                .add(format!("keywords that do not describe the mesh are skipped: {}", names.join(", ")));
         }
         Ok(())
     }
@@ -282,10 +279,10 @@ impl<'n> Model<'n> {
 
 /// Reads a node: a number and up to three coordinates.
 fn node(scope: &mut Scope, set: Option<usize>, row: &[&str]) -> Result<()> {
-    let id = id(row.first().copied().unwrap_or_default(), "number of a node")?;
+    let id = id(row.first().copied().unwrap_or_default(), "node number")?;
     let mut point = [0.0; 3];
     for (x, field) in point.iter_mut().zip(row.iter().skip(1)) {
-        *x = float(field, "coordinate of a node")?;
+        *x = float(field, "node coordinate")?;
     }
     scope.node_ids.push(id);
     scope.points.push(point);
@@ -299,11 +296,11 @@ impl Elements {
     /// Takes a data line; an element continues over lines until it has all its nodes.
     fn line(&mut self, scope: &mut Scope, row: &[&str], notes: &Notes) -> Result<()> {
         for field in row {
-            self.pending.push(id(field, "number of an element or of its nodes")?);
+            self.pending.push(id(field, "element or node number")?);
         }
         let n = self.of.n_nodes;
         if self.of.may_have_orientation_node && self.pending.len() == n + 2 {
-            notes.add("nodes that tell how beams are turned are passed over");
+            notes.add("orientation nodes of beams are skipped");
             self.pending.pop();
         }
         if self.pending.len() > n + 1 {
@@ -326,8 +323,8 @@ impl Elements {
         let (of, n) = (&self.name, self.of.n_nodes);
         let number = self.pending.first().copied().unwrap_or_default();
         let found = self.pending.len().saturating_sub(1);
-        Error::input(format!("element {number} of type {of} has {n} nodes, but {found} are given"))
-            .remedy("the file is cut off or damaged: write it again")
+        Error::input(format!("element {number} of type {of}: expected {n} nodes, found {found}"))
+            .remedy("the file is truncated or damaged: write it again")
     }
 }
 
@@ -338,8 +335,8 @@ fn member(sets: &mut Sets, set: usize, field: &str, instance: &Option<String>) -
     match &reference.to {
         Target::Number(id) => sets.add(set, *id, instance),
         Target::Label(label) if instance.is_none() && sets.find(&label.key).is_none() => {
-            return Err(Error::input(format!("set `{}` is named, which was not there yet", label.shown))
-                .remedy("put it before the set that names it"));
+            return Err(Error::input(format!("set `{}` is used before its definition", label.shown))
+                .remedy("define it before the set that refers to it"));
         }
         Target::Label(_) => sets.entries.push((set, Entry::Set(Reference { instance, ..reference }))),
     }
@@ -348,35 +345,46 @@ fn member(sets: &mut Sets, set: usize, field: &str, instance: &Option<String>) -
 
 /// Parses a range: first, last and an optional step.
 fn generate(row: &[&str], instance: &Option<String>) -> Result<Entry> {
-    let what = "first, last and step of a set";
+    let what = "range of a set";
     let ids: Vec<u64> = row.iter().map(|field| id(field, what)).collect::<Result<_>>()?;
     let (first, last, step) = match ids[..] {
         [first, last] => (first, last, 1),
         [first, last, step] => (first, last, step),
-        _ => return Err(Error::input(format!("expected {what}, found {} numbers", ids.len()))),
+        _ => {
+            return Err(Error::input(format!(
+                "{what}: expected two or three numbers (first, last, step), found {}",
+                ids.len()
+            )));
+        }
     };
     if first > last {
-        return Err(
-            Error::input(format!("a set goes from {first} to {last}")).remedy("write the smaller first")
-        );
+        return Err(Error::input(format!(
+            "{what}: the first number, {first}, is greater than the last, {last}"
+        ))
+        .remedy("write the smaller number first"));
     }
     Ok(Entry::Ids { first, last, step, instance: instance.clone() })
 }
 
 /// Takes a placement line of an instance: the first translates it, the second rotates it.
 fn place(placement: &mut Placement, line: usize, row: &[&str]) -> Result<()> {
-    let numbers: Vec<f64> = row.iter().map(|f| float(f, "how an instance lies")).collect::<Result<_>>()?;
+    let numbers: Vec<f64> =
+        row.iter().map(|f| float(f, "placement of an instance")).collect::<Result<_>>()?;
     let at = |i: usize| numbers.get(i).copied().unwrap_or(0.0);
     match line {
         1 => placement.translation = [at(0), at(1), at(2)],
         2 => {
             let (a, b) = ([at(0), at(1), at(2)], [at(3), at(4), at(5)]);
             if a == b {
-                return Err(Error::input("the two points of an axis are one").remedy("write the file again"));
+                return Err(Error::input("the two points of the rotation axis coincide")
+                    .remedy("give two different points"));
             }
             placement.rotation = Some((a, b, at(6)));
         }
-        _ => return Err(Error::input("a third line on how an instance lies").remedy("write the file again")),
+        _ => {
+            return Err(Error::input("placement of an instance: expected at most two lines, found a third")
+                .remedy("remove it"));
+        }
     }
     Ok(())
 }

@@ -15,10 +15,10 @@ pub(super) fn bare_number(name: &str, prefix: &str) -> Option<i32> {
 /// A number for each name: the one in the name if it is a bare number, otherwise the next free one from 1.
 pub(super) fn numbers(names: &[&str], prefix: &str) -> Vec<i32> {
     let mut taken = BTreeSet::from([0]);
-    let said: Vec<Option<i32>> =
+    let own: Vec<Option<i32>> =
         names.iter().map(|name| bare_number(name, prefix).filter(|&number| taken.insert(number))).collect();
     let mut free = (1..).filter(|number| !taken.contains(number));
-    said.into_iter().map(|number| number.or_else(|| free.next()).unwrap_or_default()).collect()
+    own.into_iter().map(|number| number.or_else(|| free.next()).unwrap_or_default()).collect()
 }
 
 /// A name as written to a file: quoted where it is not a plain word, or where quotes distinguish it from
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_that_are_numbers_keep_them_and_others_get_what_is_free() {
+    fn bare_numbers_are_kept_and_other_names_get_free_ones() {
         assert_eq!(numbers(&["a", "REGION_1", "b", "region_-7", "REGION_1"], REGION), [2, 1, 3, -7, 4]);
         for name in ["REGION_0", "REGION_01", "REGION_", "PATCH_1", "REGION_1x", "é"] {
             assert_eq!(bare_number(name, REGION), None, "{name}");
@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_quoted_where_they_must_be() {
+    fn names_are_quoted_where_necessary() {
         assert_eq!(written("wall-1", false), "wall-1");
         assert_eq!(written("wall", true), "\"wall\"");
         assert_eq!(written("2 \"x\"", false), "\"2 'x'\"");

@@ -63,28 +63,28 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads an included file, whose path is relative to the folder of the file that names it.
+    /// Reads an included file, whose path is relative to the folder of the including file.
     fn include(&mut self, name: &str) -> Result<()> {
         let name = name.trim_matches('"');
         let from = self.open.last().and_then(|path| path.parent()).unwrap_or(Path::new(""));
         let path = from.join(name);
         let refuse = |what: &str| {
-            Error::input(format!("the file `{name}` is included, {what}")).remedy("write the file again")
+            Error::input(format!("included file `{name}` {what}")).remedy("write the mesh to a single file")
         };
         if self.open.iter().any(|open| is_same_file(open, &path)) {
-            return Err(refuse("which includes the file that names it"));
+            return Err(refuse("includes itself, directly or through others"));
         }
         self.n_included += 1;
         if self.open.len() > MAX_INCLUDE_DEPTH || self.n_included > MAX_INCLUDED_FILES {
-            return Err(refuse("but too many are already"));
+            return Err(refuse("exceeds the limits: too many includes, or nested too deeply"));
         }
         // Reading a device or pipe might never end.
         if path.metadata().is_ok_and(|m| !m.is_file()) {
-            return Err(refuse("but it is no file"));
+            return Err(refuse("is not a regular file"));
         }
         let bytes = std::fs::read(&path).map_err(|e| {
-            Error::input(format!("the file `{name}` is included, but cannot be read: {e}"))
-                .remedy("put it where the file that names it lies")
+            Error::input(format!("included file `{name}` cannot be read: {e}"))
+                .remedy("its path is relative to the folder of the including file")
         })?;
         self.open.push(path.clone());
         self.lines(&bytes).map_err(|e| e.in_file(&path))?;

@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_instance_is_shifted_and_then_turned_by_the_right_hand() {
+    fn an_instance_is_translated_and_then_rotated_by_the_right_hand_rule() {
         let rotation = Some(([1.0, 0.0, 0.0], [1.0, 0.0, 2.0], 90.0));
         let p = Placement { translation: [0.0, 0.0, 5.0], rotation }.apply([2.0, 0.0, 0.0]);
         for (x, y) in p.into_iter().zip([1.0, 1.0, 5.0]) {

@@ -90,7 +90,7 @@ impl<'a> Context<'a> {
     pub(super) fn scope(&self, instance: Option<&String>) -> Result<&'a Placed> {
         let Some(key) = instance else { return Ok(self.here) };
         self.instance_of_key.get(key).map(|&i| &self.instances[i]).ok_or_else(|| {
-            Error::input(format!("instance `{key}` is named, but there is none"))
+            Error::input(format!("instance `{key}` is not defined"))
                 .remedy("the file is damaged: write it again")
         })
     }
@@ -101,7 +101,8 @@ impl<'a> Context<'a> {
         let mut n_runs = 0;
         for entries in sets.entries.chunk_by(|a, b| a.0 == b.0) {
             let set = entries[0].0;
-            // Taken out so that the other sets can be read meanwhile; a set that names itself adds nothing.
+            // Taken out so that the other sets can be read meanwhile; a set that refers to itself adds
+            // nothing.
             let mut whole = std::mem::take(&mut found[set]);
             let mut gathered = Gathered::default();
             let mut known = HashSet::new();
@@ -127,9 +128,8 @@ impl<'a> Context<'a> {
             gathered.runs = merged(gathered.runs);
             n_runs += gathered.runs.len();
             if n_runs > MAX_RUNS {
-                return Err(
-                    Error::input("its sets repeat each other too often").remedy("write the file again")
-                );
+                return Err(Error::input("sets contain each other too often")
+                    .remedy("write the sets without nesting"));
             }
             whole.n_missing = whole.n_missing.saturating_add(gathered.n_missing);
             whole.runs.append(&mut gathered.runs);
@@ -138,7 +138,7 @@ impl<'a> Context<'a> {
         }
         for (set, gathered) in sets.all.iter().zip(&found).filter(|(_, gathered)| gathered.n_missing > 0) {
             let n = gathered.n_missing;
-            self.notes.add(format!("set {} names {n} {} that there are not", set.label.shown, kind.what()));
+            self.notes.add(format!("set {} refers to nonexistent {}: {n}", set.label.shown, kind.what()));
         }
         let by_key = sets.all.iter().zip(0..).map(|(set, i)| (set.label.key.clone(), i)).collect();
         Ok(Members { runs: found.into_iter().map(|gathered| gathered.runs).collect(), by_key })
@@ -165,7 +165,7 @@ impl<'a> Context<'a> {
 #[derive(Default)]
 struct Gathered {
     runs: Runs,
-    /// How many numbers refer to no node or element.
+    /// Number of references to nonexistent nodes or elements.
     n_missing: usize,
 }
 
@@ -203,8 +203,7 @@ fn key_of(reference: &Reference) -> String {
 }
 
 pub(super) fn no_set(key: &str) -> Error {
-    Error::input(format!("set `{key}` is named, but there is none"))
-        .remedy("the file is damaged: write it again")
+    Error::input(format!("set `{key}` is not defined")).remedy("the file is damaged: write it again")
 }
 
 /// Sorts runs and joins those that touch or overlap.
@@ -225,12 +224,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn runs_that_touch_are_one() {
+    fn touching_runs_are_joined() {
         assert_eq!(merged(vec![5..6, 0..2, 2..3, 1..2, 6..9]), [0..3, 5..9]);
     }
 
     #[test]
-    fn a_range_finds_the_numbers_that_there_are() {
+    fn a_range_finds_existing_numbers() {
         let numbering = Numbering::new(&[10, 4, 7, 40], "node", 100).unwrap();
         let mut places: Vec<u32> = numbering.between(4, 10, 3).collect();
         places.sort_unstable();

@@ -21,7 +21,7 @@ pub(super) fn facet_key(corners: impl IntoIterator<Item = VertexId>) -> FacetKey
     key
 }
 
-/// The facets that surfaces name, as existing cells of the mesh or as cells appended to it.
+/// The facets of surfaces, as existing cells of the mesh or as cells appended to it.
 pub(super) struct Facets<'m> {
     cells: &'m Cells,
     /// The faces S1, S2, ... of each kind.
@@ -55,7 +55,7 @@ impl<'m> Facets<'m> {
                     Some(cell) => self.face(cell, face, &surface.label.shown, &mut runs)?,
                     None => self
                         .notes
-                        .add(format!("surface {} names elements that there are not", surface.label.shown)),
+                        .add(format!("surface {} refers to nonexistent elements", surface.label.shown)),
                 },
                 Target::Label(set) => {
                     if !known.insert((&reference.instance, &set.key, face)) {
@@ -71,7 +71,7 @@ impl<'m> Facets<'m> {
             self.n_runs += runs.len();
             if self.n_runs > MAX_RUNS {
                 return Err(
-                    Error::input("its surfaces repeat each other too often").remedy("write the file again")
+                    Error::input("surfaces repeat the same sets too often").remedy("write each surface once")
                 );
             }
             all.append(&mut runs);
@@ -98,14 +98,14 @@ impl<'m> Facets<'m> {
                 let n = faces.len();
                 let place = place.ok_or_else(|| {
                     Error::input(format!(
-                        "surface {surface} names face `{face}` of a solid that has S1 to S{n}"
+                        "surface {surface} refers to face `{face}` of a solid with faces S1 to S{n}"
                     ))
                     .remedy("the file is damaged: write it again")
                 })?;
                 runs.push(self.facet(cell, kind, place));
             }
             (Some(2), "" | "SPOS" | "SNEG" | "POS" | "NEG" | "P" | "N") => runs.push(cell..cell + 1),
-            _ => self.notes.add(format!("surface {surface}: edges and ends are passed over, faces are kept")),
+            _ => self.notes.add(format!("surface {surface}: edges and ends are skipped, faces are kept")),
         }
         Ok(())
     }

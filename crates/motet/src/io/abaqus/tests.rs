@@ -65,9 +65,9 @@ fn flat() -> String {
 }
 
 #[test]
-fn a_flat_file_is_read_whatever_its_spelling() {
+fn a_flat_file_is_read_in_any_spelling() {
     let (mesh, notes) = parse(&flat());
-    assert_eq!(notes, ["set every names 997 elements that there are not"]);
+    assert_eq!(notes, ["set every refers to nonexistent elements: 997"]);
     assert_eq!(mesh.points[2..], [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]]);
     assert_eq!(
         mesh.cells.kinds(),
@@ -93,8 +93,12 @@ fn a_flat_file_is_read_whatever_its_spelling() {
 }
 
 #[test]
-fn what_is_not_held_is_reported() {
-    assert!(error_of(FLAT).contains("names face `S9999` of a solid that has S1 to S4"), "{}", error_of(FLAT));
+fn skipped_content_is_reported() {
+    assert!(
+        error_of(FLAT).contains("refers to face `S9999` of a solid with faces S1 to S4"),
+        "{}",
+        error_of(FLAT)
+    );
     let text = flat()
         + "*Element, type=MASS, elset=m\n77, 9\n*Material, name=steel\n*Elastic\n1.,2.\n*Surface, name=s, type=NODE\nends\n\
            *Surface, name=e\n33, E1\n77, \n*Elset, elset=gone\n33, 78\n*Nset, nset=_x, internal\n9\n\
@@ -102,15 +106,15 @@ fn what_is_not_held_is_reported() {
     let (mesh, notes) = parse(&text);
     assert_eq!(mesh.cells.kinds()[3], CellKind::LINE);
     let expected = [
-        "elements of type MASS are passed over: motet has no such cells",
-        "surface s is passed over: it is not made of faces",
-        "nodes that tell how beams are turned are passed over",
-        "what is no mesh is passed over: *ELASTIC, *MATERIAL",
-        "set every names 996 elements that there are not",
-        "set gone names 1 elements that there are not",
-        "surface e: edges and ends are passed over, faces are kept",
-        "surface e names elements that there are not",
-        "1 sets that a preprocessor made for itself are passed over",
+        "elements of type MASS are skipped: motet has no such cell kind",
+        "surface s is skipped: it is not made of element faces",
+        "orientation nodes of beams are skipped",
+        "keywords that do not describe the mesh are skipped: *ELASTIC, *MATERIAL",
+        "set every refers to nonexistent elements: 996",
+        "set gone refers to nonexistent elements: 1",
+        "surface e: edges and ends are skipped, faces are kept",
+        "surface e refers to nonexistent elements",
+        "sets for internal use by the preprocessor are skipped: 1",
     ];
     for note in expected {
         assert!(notes.iter().any(|n| n == note), "{note}: {notes:?}");
@@ -119,7 +123,7 @@ fn what_is_not_held_is_reported() {
 }
 
 #[test]
-fn labels_are_sets_that_do_not_overlap_those_with_sections_first() {
+fn labels_are_disjoint_sets_those_with_sections_first() {
     let head = "*NODE\n1\n2,1\n3,0,1\n4,0,0,1\n5,1,1,1\n*ELEMENT,TYPE=C3D4,ELSET=A\n1,1,2,3,4\n*ELEMENT,TYPE=C3D4,ELSET=B\n2,2,3,4,5\n3,1,3,4,5\n";
     let regions = |tail: &str| {
         let mesh = parse(&format!("{head}{tail}")).0;
@@ -174,9 +178,9 @@ One.body, S1
 ";
 
 #[test]
-fn instances_lie_where_they_are_put() {
+fn instances_are_placed_by_translation_and_rotation() {
     let (mesh, notes) = parse(PARTS);
-    assert_eq!(notes, ["1 sets that a preprocessor made for itself are passed over"]);
+    assert_eq!(notes, ["sets for internal use by the preprocessor are skipped: 1"]);
     assert_eq!(mesh.points.len(), 9);
     for (point, expected) in
         mesh.points[4..].iter().zip([[10.0, 0.0, 0.0], [10.0, 1.0, 0.0], [9.0, 0.0, 0.0]])
@@ -198,15 +202,16 @@ fn instances_lie_where_they_are_put() {
     let alone = &PARTS[..PARTS.find("*Assembly").unwrap()];
     assert_eq!(parse(alone).0.label_names.regions[&1], "body");
     assert!(
-        error_of(&PARTS.replace("part=BAR", "part=none")).contains("part `none`, which was not there yet")
+        error_of(&PARTS.replace("part=BAR", "part=none"))
+            .contains("part `none`, which is not defined before it")
     );
-    assert!(error_of(&PARTS.replace("name=Two", "name=one")).contains("a second instance `one`"));
-    assert!(error_of(&PARTS.replace("One.2", "Three.2")).contains("instance `THREE` is named"));
-    assert!(error_of(&PARTS.replace("10., 0., 1., 90.", "10., 0., 0., 90.")).contains("are one"));
+    assert!(error_of(&PARTS.replace("name=Two", "name=one")).contains("duplicate instance name `one`"));
+    assert!(error_of(&PARTS.replace("One.2", "Three.2")).contains("instance `THREE` is not defined"));
+    assert!(error_of(&PARTS.replace("10., 0., 1., 90.", "10., 0., 0., 90.")).contains("coincide"));
 }
 
 #[test]
-fn copies_without_end_are_refused() {
+fn too_many_copies_are_refused() {
     let nodes: String = (1..1000).map(|i| format!("{i},{i}\n")).collect();
     let instances: String = (0..60_000).map(|i| format!("*INSTANCE,NAME=i{i},PART=p\n")).collect();
     let error = error_of(&format!("*PART,NAME=p\n*NODE\n{nodes}*END PART\n{instances}"));
@@ -214,7 +219,7 @@ fn copies_without_end_are_refused() {
 }
 
 #[test]
-fn faces_of_solids_are_those_that_the_manual_draws() {
+fn faces_of_solids_match_the_manual() {
     // Corners of the unit cube in the order of C3D8; the wedge and the pyramid use some of them.
     let nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n";
     for (element, faces) in [
@@ -238,7 +243,7 @@ fn faces_of_solids_are_those_that_the_manual_draws() {
 }
 
 #[test]
-fn elements_of_many_nodes_go_on_over_lines() {
+fn elements_with_many_nodes_continue_over_lines() {
     let nodes: String = (1..=20).map(|i| format!("{i}, {i}.\n")).collect();
     let text = format!(
         "*NODE\n{nodes}*ELEMENT, TYPE=C3D20R\n1, 1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,\n** between\n16,17,18,19,20\n2, 20,19,18,17,16,15,14,13,12,11,10,9,8\n7,6,5,4,3,2,1\n*ELEMENT,TYPE=B32\n3, 1,2,3\n"
@@ -249,10 +254,10 @@ fn elements_of_many_nodes_go_on_over_lines() {
     // Abaqus numbers the nodes from end to end; VTK puts the middle node last.
     assert_eq!(mesh.cells.connectivity().list(2), [0, 2, 1].map(VertexId));
     let error = error_of(&text.replace(",19,20\n2", ",19,20,21\n2"));
-    assert!(error.contains("element 1 of type C3D20R has 20 nodes, but 21 are given"), "{error}");
+    assert!(error.contains("element 1 of type C3D20R: expected 20 nodes, found 21"), "{error}");
     assert!(error.contains("line 25"), "{error}");
     let error = error_of(&text.replace("7,6,5,4,3,2,1\n", ""));
-    assert!(error.contains("element 2 of type C3D20R has 20 nodes, but 13 are given"), "{error}");
+    assert!(error.contains("element 2 of type C3D20R: expected 20 nodes, found 13"), "{error}");
 }
 
 fn write_files(files: &[(&str, &str)]) -> tempfile::TempDir {
@@ -265,7 +270,7 @@ fn write_files(files: &[(&str, &str)]) -> tempfile::TempDir {
 }
 
 #[test]
-fn included_files_stand_where_they_are_named() {
+fn included_files_replace_their_include_lines() {
     let folder = write_files(&[
         (
             "a.inp",
@@ -285,19 +290,14 @@ fn included_files_stand_where_they_are_named() {
     let mesh = read("a.inp").unwrap();
     assert_eq!((mesh.points.len(), mesh.cells.len()), (4, 2));
     let error = |name: &str| read(name).unwrap_err().to_string();
-    assert!(
-        error("loop.inp").contains("back.txt: line 1: the file `../loop.inp` is included, which includes")
-    );
-    assert!(
-        error("none.inp")
-            .contains("none.inp: line 1: the file `nothing.txt` is included, but cannot be read")
-    );
-    assert!(error("folder.inp").contains("but it is no file"));
-    assert!(error("bad.inp").contains("bad.txt: line 2: coordinate of a node: expected a number, found `x`"));
+    assert!(error("loop.inp").contains("back.txt: line 1: included file `../loop.inp` includes itself"));
+    assert!(error("none.inp").contains("none.inp: line 1: included file `nothing.txt` cannot be read"));
+    assert!(error("folder.inp").contains("is not a regular file"));
+    assert!(error("bad.inp").contains("bad.txt: line 2: node coordinate: expected a number, found `x`"));
 }
 
 #[test]
-fn files_within_files_without_end_are_refused() {
+fn too_many_nested_includes_are_refused() {
     let names: Vec<String> = (0..20).map(|i| format!("f{i}.inp")).collect();
     let texts: Vec<String> = (1..21).map(|i| format!("*INCLUDE,INPUT=f{i}.inp\n").repeat(10)).collect();
     let files: Vec<(&str, &str)> = names.iter().zip(&texts).map(|(n, t)| (n.as_str(), t.as_str())).collect();
@@ -311,33 +311,36 @@ fn files_within_files_without_end_are_refused() {
 }
 
 #[test]
-fn what_is_wrong_is_reported_with_its_line() {
+fn errors_report_their_line() {
     for (text, words) in [
-        ("1 2 3\n", "line 1: data before the first keyword"),
+        ("1 2 3\n", "line 1: data line before the first keyword"),
         ("*HEADING\n", "there are no nodes"),
         ("*NODE\n1,0\n1,1\n", "node 1 occurs twice"),
-        ("*NODE\n0,0\n", "line 2: 0 is no number"),
-        ("*NODE\n-1,0\n", "-1 is no number"),
+        ("*NODE\n0,0\n", "line 2: 0 is not a valid node or element number"),
+        ("*NODE\n-1,0\n", "-1 is not a valid node or element number"),
         ("*NODE\n1.5,0\n", "expected a whole number, found `1.5`"),
-        ("*NODE,SYSTEM=C\n1,0\n", "line 1: nodes in the system of coordinates `C`"),
-        ("*NODE\n1,1e999\n", "line 2: coordinate of a node: expected a number, found `1e999`"),
+        ("*NODE,SYSTEM=C\n1,0\n", "line 1: nodes in coordinate system `C`"),
+        ("*NODE\n1,1e999\n", "line 2: node coordinate: expected a number, found `1e999`"),
         ("*NODE\n1\n*ELEMENT\n1,1\n", "line 3: *ELEMENT has no parameter TYPE"),
-        ("*NODE\n1\n*ELEMENT,TYPE=T3D2\n1,1,2\n", "element 1 names node 2, which there is not"),
+        ("*NODE\n1\n*ELEMENT,TYPE=T3D2\n1,1,2\n", "element 1 refers to node 2, which does not exist"),
         ("*NODE\n1\n2\n*ELEMENT,TYPE=T3D2\n1,1,2\n1,2,1\n", "element 1 occurs twice"),
         (
             "*NODE\n1\n*ELEMENT,TYPE=T3D2\n1,1\n*NSET,NSET=a\n1\n",
-            "line 5: element 1 of type T3D2 has 2 nodes, but 1",
+            "line 5: element 1 of type T3D2: expected 2 nodes, found 1",
         ),
-        ("*NODE\n1\n*ELEMENT,TYPE=T3D2\n1,1,1,1\n", "has 2 nodes, but 3 are given"),
+        ("*NODE\n1\n*ELEMENT,TYPE=T3D2\n1,1,1,1\n", "expected 2 nodes, found 3"),
         ("*NODE\n1\n*ELEMENT,TYPE=T3D2\n1,,1\n", "found ``"),
-        ("*NODE\n1\n*NSET,NSET=a,GENERATE\n1\n", "found 1 numbers"),
-        ("*NODE\n1\n*NSET,NSET=a,GENERATE\n3,1\n", "a set goes from 3 to 1"),
-        ("*NODE\n1\n*NSET,NSET=a,GENERATE\n1,3,0\n", "0 is no number"),
-        ("*NODE\n1\n*NSET,NSET=a\nb\n*NSET,NSET=b\n1\n", "line 4: set `b` is named, which was not there yet"),
-        ("*NODE\n1\n*NSET,NSET=a,ELSET=b\n", "set `B` is named, but there is none"),
-        ("*NODE\n1\n*SURFACE,NAME=a\nb,S1\n", "set `B` is named, but there is none"),
-        ("*NODE\n1\n*NGEN\n1,9\n", "line 3: *NGEN makes or moves nodes"),
-        ("*PART,NAME=a\n*PART,NAME=A\n", "a second part `A`"),
+        ("*NODE\n1\n*NSET,NSET=a,GENERATE\n1\n", "(first, last, step), found 1"),
+        (
+            "*NODE\n1\n*NSET,NSET=a,GENERATE\n3,1\n",
+            "range of a set: the first number, 3, is greater than the last, 1",
+        ),
+        ("*NODE\n1\n*NSET,NSET=a,GENERATE\n1,3,0\n", "0 is not a valid node or element number"),
+        ("*NODE\n1\n*NSET,NSET=a\nb\n*NSET,NSET=b\n1\n", "line 4: set `b` is used before its definition"),
+        ("*NODE\n1\n*NSET,NSET=a,ELSET=b\n", "set `B` is not defined"),
+        ("*NODE\n1\n*SURFACE,NAME=a\nb,S1\n", "set `B` is not defined"),
+        ("*NODE\n1\n*NGEN\n1,9\n", "line 3: *NGEN generates or moves nodes"),
+        ("*PART,NAME=a\n*PART,NAME=A\n", "duplicate part name `A`"),
     ] {
         let error = error_of(text);
         assert!(error.contains(words), "{text:?}: {error}");
@@ -348,7 +351,7 @@ fn what_is_wrong_is_reported_with_its_line() {
 }
 
 #[test]
-fn a_file_cut_off_or_damaged_anywhere_is_no_panic() {
+fn truncated_and_damaged_files_never_panic() {
     for text in [flat(), PARTS.to_owned()] {
         let bytes = text.as_bytes();
         let check = |bytes: &[u8]| {
@@ -388,7 +391,7 @@ fn labelled() -> Mesh {
 }
 
 #[test]
-fn a_mesh_comes_back_with_its_labels_and_sets() {
+fn labels_and_sets_round_trip() {
     let mut mesh = labelled();
     mesh.set_cell_field(Field::scalars("elset:loaded", vec![1u8, 0, 0, 0, 1]));
     mesh.set_cell_field(Field::scalars("surface:both", vec![0u8, 1, 0, 1, 0]));
@@ -405,7 +408,7 @@ fn a_mesh_comes_back_with_its_labels_and_sets() {
 }
 
 #[test]
-fn what_a_file_cannot_hold_is_reported() {
+fn losses_are_reported() {
     let mut mesh = labelled();
     mesh.set_point_field(Field::scalars("p", vec![0.5; 5]));
     mesh.set_point_field(Field::scalars("nset:two", vec![2u8; 5]));
@@ -418,29 +421,29 @@ fn what_a_file_cannot_hold_is_reported() {
     assert_eq!(
         lost,
         [
-            "Abaqus knows patches by name: their numbers come back counted from 1",
-            "elset:blood is written as set blood_2: a label has its name",
-            "surface line is left out: it is no surface of volume cells",
-            "cell arrays are left out, Abaqus has none: q",
-            "point arrays are left out, Abaqus has none: p, nset:two",
-            "field arrays are left out, Abaqus has none: t",
+            "numbers of patches are not kept: Abaqus identifies patches by name",
+            "elset:blood is written as set blood_2: a label already has this name",
+            "surface line is not written: not all its cells are faces of volume cells",
+            "cell arrays are not written (Abaqus has none): q",
+            "point arrays are not written (Abaqus has none): p, nset:two",
+            "field arrays are not written (Abaqus has none): t",
             "the name \"a \\\"b\\\"\" is written as \"a 'b'\"",
         ]
     );
 }
 
 #[test]
-fn labels_that_a_file_would_make_one_are_reported() {
+fn labels_that_a_file_would_merge_are_reported() {
     let mut mesh = labelled();
     mesh.label_names.regions.insert(1, "the wall".into());
     mesh.label_names.patches.insert(4, "x".repeat(81));
     let lost = print(&mesh).1;
-    assert!(lost.iter().any(|l| l == "regions of one name come back as one"), "{lost:?}");
-    assert!(lost.iter().any(|l| l.ends_with("has more than 80 characters: Abaqus refuses it")), "{lost:?}");
+    assert!(lost.iter().any(|l| l == "regions with the same name are merged"), "{lost:?}");
+    assert!(lost.iter().any(|l| l.ends_with("has more than 80 characters: Abaqus rejects it")), "{lost:?}");
 }
 
 #[test]
-fn a_set_of_solids_and_curves_is_a_label_and_an_array_and_comes_back_as_one() {
+fn a_set_of_solids_and_curves_round_trips_as_a_label_and_an_array() {
     let mut mesh = labelled();
     mesh.set_cell_field(Field::scalars("elset:blood", vec![0u8, 0, 1, 0, 1]));
     let (text, lost) = print(&mesh);

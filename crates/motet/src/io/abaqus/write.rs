@@ -122,14 +122,14 @@ fn element_sets(mesh: &Mesh, patches: &ByLabel, lost: &mut Vec<String>) -> Sets 
         in_order.sort_by_key(|(_, name)| place_of[*name]);
         let names: Vec<&str> = in_order.iter().map(|label| label.1).collect();
         if !numbers(&names, prefix).into_iter().eq(in_order.iter().map(|label| label.0)) {
-            lost.push(format!("Abaqus knows {what} by name: their numbers come back counted from 1"));
+            lost.push(format!("numbers of {what} are not kept: Abaqus identifies {what} by name"));
         }
         if names.windows(2).any(|pair| pair[0] == pair[1]) {
-            lost.push(format!("{what} of one name come back as one"));
+            lost.push(format!("{what} with the same name are merged"));
         }
     }
     for (name, cells) in sets_from_arrays(&mesh.cell_data, ELSET) {
-        // The array holds the cells of a label, and curves besides: both are one set.
+        // The array holds the cells of a label, and curves in addition: both form one set.
         let can_have_label = |&&cell: &&usize| mesh.cells.kinds()[cell].dim() > Some(1);
         if let Some(&place) = place_of.get(&name)
             && cells.iter().filter(can_have_label).eq(&sorted(&sets[place].1))
@@ -139,7 +139,7 @@ fn element_sets(mesh: &Mesh, patches: &ByLabel, lost: &mut Vec<String>) -> Sets 
         }
         let unused = unused_name(&name, |name| place_of.contains_key(name));
         if unused != name {
-            lost.push(format!("{ELSET}{name} is written as set {unused}: a label has its name"));
+            lost.push(format!("{ELSET}{name} is written as set {unused}: a label already has this name"));
         }
         place_of.insert(unused.clone(), sets.len());
         sets.push((unused, cells));
@@ -203,7 +203,9 @@ fn surfaces(out: &mut Vec<u8>, mesh: &Mesh, sets: &Sets, lost: &mut Vec<String>)
                 }
             }
             None if mesh.cell_field(&format!("{SURFACE}{name}")).is_some() => {
-                lost.push(format!("surface {name} is left out: it is no surface of volume cells"));
+                lost.push(format!(
+                    "surface {name} is not written: not all its cells are faces of volume cells"
+                ));
             }
             None => {}
         }
@@ -262,8 +264,8 @@ fn report_losses(mesh: &Mesh, lost: &mut Vec<String>) {
     labels.iter_mut().zip(kinds).filter(|(_, kind)| kind.dim() < Some(2)).for_each(|(label, _)| *label = 0);
     let is_set = |f: &&Field, prefixes: &[&str]| prefixes.iter().any(|p| marks(f, p).is_some());
     let cell_arrays = mesh.cell_data.iter().filter(|f| !is_set(f, &[ELSET, SURFACE]));
-    let unsaid = cell_arrays.filter(|f| !labels_cover(&labels, mesh, f));
-    lost.extend(lost_arrays("Abaqus", "cell", unsaid));
+    let unexpressed = cell_arrays.filter(|f| !labels_cover(&labels, mesh, f));
+    lost.extend(lost_arrays("Abaqus", "cell", unexpressed));
     lost.extend(lost_arrays("Abaqus", "point", mesh.point_data.iter().filter(|f| !is_set(f, &[NSET]))));
     lost.extend(lost_arrays("Abaqus", "field", &mesh.field_data));
     let names = mesh.label_names.regions.values().chain(mesh.label_names.patches.values());
@@ -273,7 +275,7 @@ fn report_losses(mesh: &Mesh, lost: &mut Vec<String>) {
         }
         if name.chars().count() > MAX_NAME_LENGTH {
             lost.push(format!(
-                "the name {name:?} has more than {MAX_NAME_LENGTH} characters: Abaqus refuses it"
+                "the name {name:?} has more than {MAX_NAME_LENGTH} characters: Abaqus rejects it"
             ));
         }
     }

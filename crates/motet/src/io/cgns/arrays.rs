@@ -48,7 +48,7 @@ impl Solutions {
         for solution in zone.children()?.into_iter().filter(is_known) {
             let is_on_points = is_on_points(&solution)?;
             let some = Numbers::of(&solution, "PointList", "PointRange")?;
-            // User-defined data is a solution if it names the entities that it is defined on.
+            // User-defined data is a solution if it lists the entities that it is defined on.
             if some.is_none() && solution.label != "FlowSolution_t" {
                 continue;
             }
@@ -56,13 +56,13 @@ impl Solutions {
             let arrays = if is_on_points { &mut self.points } else { &mut self.cells };
             for node in solution.children_of("DataArray_t")? {
                 let Some(array) = node.array()?.filter(|array| array.is_supported()) else {
-                    notes.add(format!("{} holds no numbers: passed over", node.path()));
+                    notes.add(format!("{} contains no numbers: skipped", node.path()));
                     continue;
                 };
                 let values = array.all()?;
                 if values.len() != rows.len() {
                     notes.add(format!(
-                        "{} has {} values for {} {}: passed over",
+                        "{} has {} values for {} {}: skipped",
                         node.path(),
                         values.len(),
                         rows.len(),
@@ -106,7 +106,7 @@ impl Places<'_> {
 impl Arrays {
     fn take(&mut self, node: Node, values: Values, rows: &[u32], notes: &Notes) {
         if self.by_name.len() >= MAX_ARRAYS && !self.by_name.contains_key(&node.name) {
-            notes.add(format!("arrays beyond the first {MAX_ARRAYS} are passed over"));
+            notes.add(format!("arrays beyond the first {MAX_ARRAYS} are skipped"));
             return;
         }
         let place = node.path().to_owned();
@@ -115,13 +115,13 @@ impl Arrays {
                 self.by_name.insert(node.name, Column { values, rows: rows.to_vec() });
             }
             Some(column) if column.rows.iter().any(|row| rows.first() == Some(row)) => {
-                notes.add(format!("{place} is there more than once: the first one counts"));
+                notes.add(format!("{place} occurs more than once: only the first is used"));
             }
             Some(column) => {
                 if column.append(&values) {
                     column.rows.extend(rows);
                 } else {
-                    notes.add(format!("{place} holds no numbers: passed over"));
+                    notes.add(format!("{place} contains no numbers: skipped"));
                 }
             }
         }

@@ -55,7 +55,13 @@ pub(super) fn place(zone: &Zone, first_point: u32, cells: &mut Cells) -> Result<
             Body::Faces(lists) => {
                 for (nodes, is_cell) in lists.iter().zip(is_cell) {
                     places.push(here(cells, is_cell));
-                    let message = || format!("section {}: a polygon of {} nodes", section.name, nodes.len());
+                    let message = || {
+                        format!(
+                            "section {}: a polygon has {} nodes, but at least 3 are needed",
+                            section.name,
+                            nodes.len()
+                        )
+                    };
                     let kind = polygon(nodes.len()).ok_or_else(|| zone.node.error(message()))?;
                     if is_cell {
                         cells.push(kind, shifted(nodes, first_point));
@@ -70,7 +76,7 @@ pub(super) fn place(zone: &Zone, first_point: u32, cells: &mut Cells) -> Result<
             }
         }
         if cells.connectivity().items().len() > VertexId::MAX_COUNT {
-            return Err(zone.node.error("more nodes of elements than a mesh can hold"));
+            return Err(zone.node.error("more element nodes than a mesh can hold"));
         }
         spans.push(Span { name: section.name.clone(), first: section.first, places });
     }
@@ -97,7 +103,7 @@ struct Faces<'a> {
 
 impl Faces<'_> {
     /// For each section, which of its polygons are cells: all of them, or where polygons bound polyhedra,
-    /// those that a boundary condition names.
+    /// those in a boundary condition.
     fn are_cells(&self) -> Vec<Vec<bool>> {
         let sections = &self.zone.sections;
         let all = !sections.iter().any(|section| matches!(section.body, Body::Polyhedra(_)));
@@ -137,16 +143,21 @@ impl Faces<'_> {
         node_budget: &mut usize,
     ) -> Result<Vec<Vec<VertexId>>> {
         if numbers.len() < 4 {
-            return Err(self.zone.node.error(format!("a polyhedron of {} polygons", numbers.len())));
+            return Err(self
+                .zone
+                .node
+                .error(format!("a polyhedron has {} polygons, but at least 4 are needed", numbers.len())));
         }
         let mut rings = Vec::with_capacity(numbers.len());
         for &number in numbers {
             let nodes = self.face(number.saturating_abs()).ok_or_else(|| {
-                self.zone.node.error(format!("a polyhedron names element {number}, which is no polygon"))
+                self.zone
+                    .node
+                    .error(format!("a polyhedron refers to element {number}, which is not a polygon"))
             })?;
             *node_budget = node_budget
                 .checked_sub(nodes.len())
-                .ok_or_else(|| self.zone.node.error("polyhedra name polygons more often than twice"))?;
+                .ok_or_else(|| self.zone.node.error("polyhedra refer to polygons more than twice"))?;
             let mut ring: Vec<VertexId> = shifted(nodes, first_point).collect();
             if number < 0 {
                 ring.reverse();

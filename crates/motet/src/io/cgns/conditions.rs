@@ -1,4 +1,4 @@
-//! The elements or points that a boundary condition names.
+//! The elements or points of boundary conditions.
 
 use crate::base::Result;
 use crate::io::cgns::node::Node;
@@ -46,7 +46,7 @@ impl Numbers {
         let Some(range) = node.child(range)? else { return Ok(None) };
         match range.ints()?.as_slice() {
             &[first, last] => Ok(Some(Self::Range(first.min(last), first.max(last)))),
-            _ => Err(range.error("a range is a pair of numbers")),
+            _ => Err(range.error("range: expected two numbers")),
         }
     }
 }
@@ -67,7 +67,7 @@ pub(super) fn conditions(zone: &Node, notes: &Notes) -> Result<Vec<Condition>> {
                     name: node.name,
                     members,
                 }),
-                None => notes.add(format!("{} names neither elements nor points: passed over", node.path())),
+                None => notes.add(format!("{} has neither elements nor points: skipped", node.path())),
             }
         }
     }

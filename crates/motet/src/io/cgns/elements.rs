@@ -53,12 +53,12 @@ impl Section {
 fn range(node: &Node) -> Result<(i64, usize)> {
     let ends = node.required_child("ElementRange")?.ints()?;
     let &[first, last] = ends.as_slice() else {
-        return Err(node.error("the range of elements is no pair of numbers"));
+        return Err(node.error("element range: expected two numbers"));
     };
     let n = last.checked_sub(first).and_then(|n| n.checked_add(1)).and_then(|n| usize::try_from(n).ok());
     match n.filter(|_| first >= 1) {
         Some(n) => Ok((first, n)),
-        None => Err(node.error(format!("elements from {first} to {last} are announced"))),
+        None => Err(node.error(format!("invalid element range: {first} to {last}"))),
     }
 }
 
@@ -73,7 +73,8 @@ impl Source<'_> {
     fn point(&self, id: i64) -> Result<u32> {
         let place = usize::try_from(id).ok().and_then(|id| id.checked_sub(1)).filter(|&p| p < self.n_points);
         place.map(|p| p as u32).ok_or_else(|| {
-            self.node.error(format!("an element names point {id}, there are {}", self.n_points))
+            self.node
+                .error(format!("an element refers to point {id}, but there are {} points", self.n_points))
         })
     }
 
@@ -82,7 +83,7 @@ impl Source<'_> {
             return Ok(());
         }
         Err(self.node.error(format!(
-            "{} elements are announced, to which {} numbers of nodes do not belong",
+            "{} elements declared, but {} node numbers do not match them",
             self.n,
             self.ids.len()
         )))
@@ -91,7 +92,7 @@ impl Source<'_> {
     /// Elements of one type.
     fn fixed(&self, number: i64, notes: &Notes) -> Result<Body> {
         let Some(element) = ElementType::of(number) else {
-            return Err(self.node.error(format!("elements of type {number} are unknown")));
+            return Err(self.node.error(format!("unknown element type {number}")));
         };
         self.fits(self.n.checked_mul(element.n_nodes))?;
         let mut out = Cells::default();
@@ -103,15 +104,15 @@ impl Source<'_> {
     fn mixed(&self, notes: &Notes) -> Result<Body> {
         let mut out = Cells::default();
         let mut rest = self.ids.as_slice();
-        while let Some((&number, behind)) = rest.split_first() {
+        while let Some((&number, tail)) = rest.split_first() {
             let Some(element) = ElementType::of(number) else {
-                return Err(self.node.error(format!("an element of type {number} among others is unknown")));
+                return Err(self.node.error(format!("unknown element type {number} in a mixed section")));
             };
-            let Some((ids, behind)) = behind.split_at_checked(element.n_nodes) else {
-                return Err(self.node.error("the last element is cut off"));
+            let Some((ids, tail)) = tail.split_at_checked(element.n_nodes) else {
+                return Err(self.node.error("the last element is truncated"));
             };
             out.push(self, element, ids)?;
-            rest = behind;
+            rest = tail;
         }
         self.fits((out.kinds.len() == self.n).then_some(self.ids.len()))?;
         out.finish(notes)
@@ -136,7 +137,7 @@ impl Source<'_> {
                     || ends.is_none_or(|(&first, &last)| first != 0 || usize::try_from(last) != Ok(n))
                 {
                     return Err(offsets.error(format!(
-                        "{} numbers that rise from 0 to {n} are expected",
+                        "expected {} numbers that ascend from 0 to {n}",
                         self.n.saturating_add(1)
                     )));
                 }
@@ -144,13 +145,13 @@ impl Source<'_> {
             }
             None => {
                 let mut rest = self.ids.as_slice();
-                while let Some((&n, behind)) = rest.split_first() {
-                    let list = usize::try_from(n).ok().and_then(|n| behind.split_at_checked(n));
-                    let (list, behind) = list.ok_or_else(|| {
-                        self.node.error(format!("a list of {n} is longer than what is left"))
+                while let Some((&n, tail)) = rest.split_first() {
+                    let list = usize::try_from(n).ok().and_then(|n| tail.split_at_checked(n));
+                    let (list, tail) = list.ok_or_else(|| {
+                        self.node.error(format!("a list of length {n} exceeds the remaining data"))
                     })?;
                     push(list)?;
-                    rest = behind;
+                    rest = tail;
                 }
             }
         }
@@ -185,7 +186,7 @@ impl Cells {
 
     fn finish(self, notes: &Notes) -> Result<Body> {
         for (name, n) in self.n_unsupported {
-            notes.add(format!("{n} elements of type {name} are passed over: motet has no such cells"));
+            notes.add(format!("elements of type {name} are skipped ({n}): motet has no such cell kind"));
         }
         Ok(Body::Cells(self.kinds, self.nodes))
     }

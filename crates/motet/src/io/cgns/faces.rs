@@ -74,7 +74,7 @@ impl Faces {
         let is_flat = |(cell, kind): (usize, &CellKind)| kind.dim() == Some(3) && of_cells[cell].len() < 4;
         match mesh.cells.kinds().iter().enumerate().position(is_flat) {
             Some(cell) => {
-                Err(Error::input("a volume cell of less than four faces").at(format!("cell {cell}")))
+                Err(Error::input("a volume cell has fewer than four faces").at(format!("cell {cell}")))
             }
             None => Ok(Self { rings, of_cells }),
         }

@@ -24,7 +24,7 @@ impl Families {
         let mut all = BTreeMap::new();
         for node in &nodes {
             // Gmsh names the family after its own entity, and stores the user's name inside it. If that name
-            // is itself a family, this is a family of families and the name no alias.
+            // is itself a family, this is a family of families and the name is not an alias.
             let within = node.text_of("FamilyName_t")?;
             let within = within.filter(|name| !name.is_empty() && !names.contains(&name.as_str()));
             let number = match node.child_of("Ordinal_t")? {

@@ -1,5 +1,5 @@
-//! Regions and patches: from boundary conditions, and for cells that no condition names, from families, zones
-//! and sections.
+//! Regions and patches: from boundary conditions, and for cells without a condition, from families, zones and
+//! sections.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -96,7 +96,7 @@ impl Labels {
                 let cells = self.on_points(mesh, zone, numbers);
                 if cells.is_empty() && self.dim == 2 {
                     notes.add(format!(
-                        "boundary condition {} names points on which there are no surface cells: passed over",
+                        "boundary condition {} is skipped: no surface cells lie on its points",
                         condition.name
                     ));
                 }
@@ -112,7 +112,7 @@ impl Labels {
             match &mut self.of_cells[cell] {
                 free if *free == NONE => *free = label,
                 other if *other == label => {}
-                _ => notes.add("of a cell in several boundary conditions the first counts"),
+                _ => notes.add("for cells in several boundary conditions, only the first is used"),
             }
         }
     }

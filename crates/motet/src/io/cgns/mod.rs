@@ -8,9 +8,9 @@
 //!   Family_t            a name that sections and boundary conditions share; Ordinal: its number
 //!   Zone_t              numbers of points and cells; several zones are joined
 //!     GridCoordinates_t     CoordinateX, CoordinateY, CoordinateZ
-//!     Elements_t            cells of one kind or of several, of every dimension; numbered through from 1
+//!     Elements_t            cells of one kind or several, of any dimension; numbered consecutively from 1
 //!     ZoneGridConnectivity_t    points that are those of another zone
-//!     ZoneBC_t  BC_t        a name for elements, or for all that lies on some points
+//!     ZoneBC_t  BC_t        a name for elements, or for everything on some points
 //!     FlowSolution_t        arrays: a value for each point or each cell
 //!     UserDefinedData_t     arrays on some elements, such as surface cells
 //! ```
@@ -21,7 +21,7 @@
 //! | `kinds` | types of elements, and the order of their nodes |
 //! | `elements` | the lists of a section |
 //! | `zone` | points, elements, conditions of a zone |
-//! | `conditions` | which elements or points a boundary condition names |
+//! | `conditions` | the elements or points of a boundary condition |
 //! | `families` | names and numbers of families |
 //! | `cells` | the elements of a zone as cells |
 //! | `labels` | regions and patches from conditions, families, sections and zones |
@@ -61,4 +61,4 @@ use crate::io::format::Format;
 
 /// Unstructured meshes with boundary conditions and solutions.
 pub(super) const FORMAT: Format =
-    Format { name: "CGNS", endings: &[".cgns"], read: Some(read::read), write: Some(write::write) };
+    Format { name: "CGNS", extensions: &[".cgns"], read: Some(read::read), write: Some(write::write) };

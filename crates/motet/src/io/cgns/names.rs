@@ -37,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_cut_between_characters_and_told_apart() {
+    fn names_are_truncated_between_characters_and_stay_distinct() {
         assert_eq!(valid("wall", &[]), "wall");
         assert_eq!(valid("a/b", &["a_b".into()]), "a_b_2");
         assert_eq!(valid(" ", &[]), "unnamed");

@@ -20,11 +20,13 @@ impl Node {
     /// Opens the root node, whose children are the bases.
     pub(super) fn root(bytes: &[u8]) -> Result<Self> {
         if bytes.get(4..).is_some_and(|rest| rest.starts_with(ADF)) {
-            return Err(Error::input("is a CGNS file of the older form ADF, of which only HDF5 is read")
-                .remedy("turn it into HDF5: cgnsconvert -h old.cgns new.cgns"));
+            return Err(Error::input("is a CGNS file in the older ADF format; only HDF5 is read")
+                .remedy("convert it to HDF5: cgnsconvert -h old.cgns new.cgns"));
         }
         if !is_hdf5(bytes) {
-            return Err(Error::input("is no CGNS file: neither HDF5 nor ADF").remedy("get the file again"));
+            return Err(
+                Error::input("is not a CGNS file: neither HDF5 nor ADF").remedy("get a new copy of the file")
+            );
         }
         Ok(Self { name: String::new(), label: String::new(), group: open(bytes)? })
     }
@@ -58,7 +60,7 @@ impl Node {
         if group.text("type") == Some("LK") {
             return Err(Error::input("is a link to a node elsewhere: links are not followed")
                 .at(group.path())
-                .remedy("put what is linked in its place: cgnsconvert -f -h -l linked.cgns whole.cgns"));
+                .remedy("replace links by their targets: cgnsconvert -f -h -l linked.cgns whole.cgns"));
         }
         let label = group.text("label").unwrap_or_default().to_owned();
         Ok(Some(Self { name: name.to_owned(), label, group }))
@@ -76,12 +78,12 @@ impl Node {
 
     /// The values of the node; an error if it has none.
     pub(super) fn values(&self) -> Result<Values> {
-        self.array()?.ok_or_else(|| self.error("a node without values"))?.all()
+        self.array()?.ok_or_else(|| self.error("the node has no values"))?.all()
     }
 
     /// The values of the node as integers.
     pub(super) fn ints(&self) -> Result<Vec<i64>> {
-        self.values()?.to_i64().ok_or_else(|| self.error("whole numbers are expected"))
+        self.values()?.to_i64().ok_or_else(|| self.error("expected whole numbers"))
     }
 
     /// The values of the node as text; empty if it has none.
@@ -91,7 +93,7 @@ impl Node {
             Values::I8(values) => values.into_iter().map(|c| c as u8).collect(),
             Values::U8(values) => values,
             Values::Text(values) => values.concat().into_bytes(),
-            _ => return Err(self.error("a text is expected")),
+            _ => return Err(self.error("expected text")),
         };
         Ok(String::from_utf8_lossy(&bytes).trim_end_matches(['\0', ' ']).to_owned())
     }
@@ -103,8 +105,8 @@ impl Node {
 
     /// An error that names this node.
     pub(super) fn error(&self, what: impl Into<String>) -> Error {
-        Error::input(what).at(self.path()).remedy(
-            "the file is damaged, or was written wrong: look at it with cgnscheck, and write it again",
-        )
+        Error::input(what)
+            .at(self.path())
+            .remedy("the file is damaged or invalid: check it with cgnscheck and write it again")
     }
 }

@@ -60,7 +60,7 @@ pub(super) fn parts(mesh: &Mesh, lost: &mut Vec<String>) -> Vec<Part> {
             let name = valid(&wanted, &taken);
             if number != 0 && name != wanted {
                 lost.push(format!(
-                    "the name {wanted:?}: CGNS has names of 32 bytes, each once and without slashes; it is called {name:?}"
+                    "the name {wanted:?} is written as {name:?}: CGNS names are unique, without slashes, and at most 32 bytes long"
                 ));
             }
             taken.push(name.clone());

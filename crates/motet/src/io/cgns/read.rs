@@ -21,11 +21,11 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
         return Ok(mesh);
     }
     let base = bases.first().ok_or_else(|| {
-        Error::input("is an HDF5 file, but has no node of label CGNSBase_t")
-            .remedy("name the file after what it holds")
+        Error::input("is an HDF5 file without a node labelled CGNSBase_t")
+            .remedy("give the file the extension of its format")
     })?;
     if bases.len() > 1 {
-        input.notes.add(format!("the file has {} bases: {} was read", bases.len(), base.name));
+        input.notes.add(format!("the file has {} bases: only {} is read", bases.len(), base.name));
     }
     let cell_dim = base.ints()?.first().and_then(|&dim| usize::try_from(dim).ok()).unwrap_or(0);
     let families = Families::of(base)?;
@@ -36,7 +36,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
         zones.push(join(&mut mesh, &mut solutions, Zone::read(node, input.notes)?, cell_dim, input.notes)?);
     }
     if zones.is_empty() {
-        return Err(base.error("a base without zones holds no mesh"));
+        return Err(base.error("a base without zones contains no mesh"));
     }
     mesh.point_data = solutions.points.finish(mesh.points.len());
     mesh.cell_data = solutions.cells.finish(mesh.cells.len());
@@ -105,6 +105,6 @@ fn join_zones(mesh: &mut Mesh, zones: &[Joined], notes: &Notes) {
         return;
     }
     if join_points(mesh, &pairs) > 0 || is_open {
-        notes.add("zones meet in ways that do not say which points are one: there these are there twice");
+        notes.add("points are duplicated where zones meet without valid point-to-point lists");
     }
 }

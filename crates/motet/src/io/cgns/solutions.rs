@@ -43,7 +43,7 @@ pub(super) fn solutions(
     let lower: Vec<usize> = (0..cell_dim.min(2)).flat_map(of_dim).collect();
     let of_lower = cells.iter().filter(|f| has_values(&picked(f, &lower)));
     if let Some(names) = lost_arrays("CGNS", "cell", of_lower) {
-        lost.push(format!("on curves and points {names}"));
+        lost.push(format!("on curves and points, {names}"));
     }
     lost.extend(lost_arrays("CGNS", "field", &mesh.field_data));
     all
@@ -68,7 +68,10 @@ fn converted(field: &Field, what: &str, lost: &mut Vec<String>) -> Option<Field>
         Values::U32(_) | Values::U64(_) => match field.values.to_i64() {
             Some(values) => Values::I64(values),
             None => {
-                lost.push(format!("{what} array {}: its numbers are larger than CGNS has them", field.name));
+                lost.push(format!(
+                    "{what} array {} is not written: its numbers exceed signed 64-bit integers",
+                    field.name
+                ));
                 return None;
             }
         },
@@ -78,7 +81,10 @@ fn converted(field: &Field, what: &str, lost: &mut Vec<String>) -> Option<Field>
         }
         same => return Some(Field { values: same.clone(), ..field.clone() }),
     };
-    lost.push(format!("the type of {what} array {}: CGNS has whole numbers of 32 and 64 bits", field.name));
+    lost.push(format!(
+        "the type of {what} array {} is not kept: CGNS has only signed integers of 32 and 64 bits",
+        field.name
+    ));
     Some(Field { name: field.name.clone(), components: field.components, values })
 }
 
@@ -102,7 +108,7 @@ fn solution(
         for (component, wanted) in names(field, lost).into_iter().enumerate() {
             let name = valid(&wanted, &taken);
             if name != wanted {
-                lost.push(format!("the name {wanted:?} of an array, which is called {name:?}"));
+                lost.push(format!("the array name {wanted:?} is written as {name:?}"));
             }
             let rows = (0..field.n_rows()).map(|row| row * field.components + component);
             let flat = Field { name: String::new(), components: 1, values: field.values.clone() };
@@ -120,12 +126,15 @@ fn names(field: &Field, lost: &mut Vec<String>) -> Vec<String> {
         3 => {
             let stem = truncated(&field.name, MAX_NAME_LENGTH - 1);
             if stem != field.name {
-                lost.push(format!("the name {:?} of an array, which is called {stem:?}", field.name));
+                lost.push(format!("the array name {:?} is written as {stem:?}", field.name));
             }
             ["X", "Y", "Z"].map(|axis| format!("{stem}{axis}")).to_vec()
         }
         n => {
-            lost.push(format!("array {} is written as {n} scalars: CGNS has vectors of three", field.name));
+            lost.push(format!(
+                "array {} is written as {n} scalars: CGNS vectors have three components",
+                field.name
+            ));
             (1..=n).map(|i| format!("{}_{i}", field.name)).collect()
         }
     }

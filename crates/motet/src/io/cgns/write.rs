@@ -29,7 +29,7 @@ pub(super) fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     let order: Vec<usize> =
         first.into_iter().chain(then).flat_map(|part| part.cells.iter().copied()).collect();
     if order.windows(2).any(|w| w[0] > w[1]) {
-        lost.push("the order of the cells: CGNS has those of one region or patch together".into());
+        lost.push("the order of the cells is not kept: CGNS groups cells by region and patch".into());
     }
     let ints = Ints::of(&mesh);
     let mut numbered =

@@ -22,13 +22,16 @@ impl Zone {
         let kind = node.child_of("ZoneType_t")?.map(|node| node.text()).transpose()?;
         if kind.as_deref() != Some("Unstructured") {
             let kind = kind.filter(|kind| !kind.is_empty()).unwrap_or_else(|| "Structured".to_owned());
-            return Err(Error::input(format!("zone {} is {kind}; unstructured zones are read", node.name))
-                .at(node.path())
-                .remedy("in ParaView, open it, apply `Merge Blocks` and save the data as .vtu"));
+            return Err(Error::input(format!(
+                "zone {} is {kind}; only unstructured zones are read",
+                node.name
+            ))
+            .at(node.path())
+            .remedy("in ParaView, open it, apply `Merge Blocks` and save the data as .vtu"));
         }
         let n_points = node.ints()?.first().copied().unwrap_or(0);
         let n_points = usize::try_from(n_points).ok().filter(|&n| n <= VertexId::MAX_COUNT);
-        let n_points = n_points.ok_or_else(|| node.error("a number of points that no mesh has"))?;
+        let n_points = n_points.ok_or_else(|| node.error("invalid number of points"))?;
         let points = points(&node, n_points)?;
         let mut sections = Vec::new();
         for section in node.children_of("Elements_t")? {
@@ -38,7 +41,7 @@ impl Zone {
         let overlap = sections.windows(2).find(|pair| pair[1].first - pair[0].first < pair[0].len() as i64);
         if let Some(pair) = overlap {
             let (a, b) = (&pair[0].name, &pair[1].name);
-            return Err(node.error(format!("the sections {a} and {b} have elements of the same numbers")));
+            return Err(node.error(format!("sections {a} and {b} overlap in element numbers")));
         }
         let conditions = conditions(&node, notes)?;
         let family = node.text_of("FamilyName_t")?.filter(|name| !name.is_empty());
@@ -54,7 +57,7 @@ fn points(zone: &Node, n: usize) -> Result<Vec<Point>> {
         Some(grid) => Some(grid),
         None => zone.child_of("GridCoordinates_t")?,
     };
-    let grid = grid.ok_or_else(|| zone.error("a zone without coordinates"))?;
+    let grid = grid.ok_or_else(|| zone.error("the zone has no coordinates"))?;
     columns(&grid, Some(n))
 }
 
@@ -69,18 +72,16 @@ pub(super) fn columns(grid: &Node, n: Option<usize>) -> Result<Vec<Point>> {
         };
         let values = match node.values()? {
             Values::F64(values) => values,
-            other => other.to_f64().ok_or_else(|| node.error("coordinates are no numbers"))?,
+            other => other.to_f64().ok_or_else(|| node.error("coordinates are not numbers"))?,
         };
         let n = *n.get_or_insert(values.len());
         if values.len() != n {
-            return Err(node.error(format!("{} values, where there are {n} points", values.len())));
+            return Err(node.error(format!("{} values for {n} points", values.len())));
         }
         columns.push(Some(values));
     }
     if columns.iter().all(Option::is_none) {
-        return Err(grid
-            .error("no coordinates X, Y, Z")
-            .remedy("points are read in Cartesian coordinates: turn them into these"));
+        return Err(grid.error("no coordinates X, Y, Z").remedy("convert the coordinates to Cartesian"));
     }
     let at = |axis: usize, i: usize| columns[axis].as_ref().map_or(0.0, |column| column[i]);
     Ok((0..n.unwrap_or(0)).map(|i| [0, 1, 2].map(|axis| at(axis, i))).collect())

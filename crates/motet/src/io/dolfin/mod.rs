@@ -1,14 +1,14 @@
 //! DOLFIN XML (FEniCS), also compressed with gzip. Read only.
 //!
 //! DOLFIN sorts the vertices of a cell by their numbers, so about half of the tetrahedra in such a file have
-//! negative volume without meaning anything by it: they are made positive by exchanging the last two
+//! negative volume, which carries no meaning: they are made positive by exchanging the last two
 //! vertices.
 //!
 //! Marks of cells become the array `region`. Marks of facets, given as (cell, local index in the cell),
 //! become triangles with the array `patch`, one for each marked facet, appended after the cells; the local
-//! index of a facet is that of the vertex opposite to it among the *sorted* vertices. The triangles face out
-//! of the cell that names them first. Label 0 means no label here, so if a file uses the mark 0, all labels
-//! are one higher, and the marks of the file become their names.
+//! index of a facet is that of the vertex opposite to it among the *sorted* vertices. The triangles face
+//! outward from the first cell that refers to them. Label 0 means no label here, so if a file uses the mark
+//! 0, all labels are one higher, and the marks of the file become their names.
 //!
 //! Marks of edges and vertices, and marks by DOLFIN's own facet numbers, are skipped with a note. No crate
 //! reads this format.
@@ -25,11 +25,11 @@ use crate::mesh::{CellKind, Cells, Field, Mesh};
 use xml::{Collection, Document};
 
 pub(super) const FORMAT: Format =
-    Format { name: "DOLFIN XML", endings: &[".xml", ".xml.gz"], read: Some(read), write: None };
+    Format { name: "DOLFIN XML", extensions: &[".xml", ".xml.gz"], read: Some(read), write: None };
 
 fn read(input: &Input<'_>) -> Result<Mesh> {
-    let unpacked = gzip::is_gzip(input.bytes).then(|| gzip::decompress(input.bytes)).transpose()?;
-    let document = xml::parse(unpacked.as_deref().unwrap_or(input.bytes), input.notes)?;
+    let decompressed = gzip::is_gzip(input.bytes).then(|| gzip::decompress(input.bytes)).transpose()?;
+    let document = xml::parse(decompressed.as_deref().unwrap_or(input.bytes), input.notes)?;
     build(document, input.notes)
 }
 
@@ -62,8 +62,8 @@ fn build(document: Document, notes: &Notes) -> Result<Mesh> {
             }
             (0, false) => collection.put_points(&mut mesh, document.points.len())?,
             (dim, by_cell) => notes.add(format!(
-                "marks on entities of dimension {dim}, given {}, are passed over",
-                if by_cell { "by cell" } else { "by DOLFIN's own numbers" }
+                "marks on entities of dimension {dim}, given {}, are skipped",
+                if by_cell { "by cell" } else { "by DOLFIN's own numbering" }
             )),
         }
     }
@@ -163,7 +163,7 @@ impl Collection {
     }
 
     fn no_such_entity(&self, what: String) -> Error {
-        Error::input(format!("{what} is marked, which does not exist"))
+        Error::input(format!("a mark refers to {what}, which does not exist"))
             .at(format!("marks of dimension {}", self.dim))
             .remedy("the file is damaged: write it again")
     }

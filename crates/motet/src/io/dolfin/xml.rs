@@ -59,7 +59,7 @@ struct Parser<'a> {
     notes: &'a Notes,
     document: Document,
     list: List,
-    /// Number of cells read so far, which come in ascending order.
+    /// Number of cells read so far; cells are in ascending order.
     n_cells: usize,
     data_name: String,
     seen_mesh: bool,
@@ -99,16 +99,16 @@ pub(super) fn parse(bytes: &[u8], notes: &Notes) -> Result<Document> {
             }
             Ok(Event::Eof) => break,
             Ok(_) => {}
-            Err(e) => return Err(parser.error(format!("not well-formed XML: {e}")).remedy(CUT_OFF)),
+            Err(e) => return Err(parser.error(format!("not well-formed XML: {e}")).remedy(TRUNCATED)),
         }
     }
     if depth > 0 {
-        return Err(parser.error("the file ends before its last element is closed").remedy(CUT_OFF));
+        return Err(parser.error("the file ends before all elements are closed").remedy(TRUNCATED));
     }
     parser.finish()
 }
 
-const CUT_OFF: &str = "the file is cut off or damaged: get it again";
+const TRUNCATED: &str = "the file is truncated or damaged: get a new copy";
 
 impl Parser<'_> {
     fn open(&mut self, e: &BytesStart<'_>, depth: usize) -> Result<()> {
@@ -116,8 +116,8 @@ impl Parser<'_> {
             ("dolfin", _) if depth == 0 => {}
             (name, _) if depth == 0 => {
                 return Err(self
-                    .error(format!("the root element is {}, expected `dolfin`", quoted(name.as_bytes())))
-                    .remedy("only DOLFIN's XML is read under this ending"));
+                    .error(format!("expected root element `dolfin`, found {}", quoted(name.as_bytes())))
+                    .remedy("files with this extension must be DOLFIN XML"));
             }
             ("mesh", _) => self.open_mesh(e)?,
             ("vertices", _) => {
@@ -138,18 +138,18 @@ impl Parser<'_> {
             (name, List::Cells { n }) if name == self.document.cell_type => self.cell(e, n)?,
             (name, List::None) => {
                 if !matches!(name, "domains" | "data") {
-                    self.notes.add(format!("element {} is passed over", quoted(name.as_bytes())));
+                    self.notes.add(format!("element {} is skipped", quoted(name.as_bytes())));
                 }
             }
             (name, _) => {
-                return Err(self.error(format!("element {} does not belong here", quoted(name.as_bytes()))));
+                return Err(self.error(format!("unexpected element {}", quoted(name.as_bytes()))));
             }
         }
         Ok(())
     }
 
     fn close(&mut self, name: &str) -> Result<()> {
-        let (got, expected) = match (name, self.list) {
+        let (found, expected) = match (name, self.list) {
             ("vertices", List::Vertices { n }) => (n, self.document.points.len()),
             ("cells", List::Cells { n }) => (self.n_cells, n),
             ("mesh_value_collection" | "mesh_function" | "meshfunction", List::Marks { n }) => {
@@ -158,24 +158,22 @@ impl Parser<'_> {
             _ => return Ok(()),
         };
         self.list = List::None;
-        if got != expected {
-            return Err(self
-                .error(format!("{expected} elements are announced, {got} are there"))
-                .remedy(CUT_OFF));
+        if found != expected {
+            return Err(self.error(format!("{expected} elements declared, {found} found")).remedy(TRUNCATED));
         }
         Ok(())
     }
 
     fn open_mesh(&mut self, e: &BytesStart<'_>) -> Result<()> {
         if self.seen_mesh {
-            return Err(self.error("a second mesh in one file").remedy("write each into a file of its own"));
+            return Err(self
+                .error("expected one mesh, found a second")
+                .remedy("write each mesh to its own file"));
         }
         self.seen_mesh = true;
         let cell_type = self.text(e, "celltype")?.unwrap_or_default();
         let Some(&(name, n)) = CELL_TYPES.iter().find(|(name, _)| *name == cell_type) else {
-            return Err(
-                self.error(format!("cells of type {}, which are not read", quoted(cell_type.as_bytes())))
-            );
+            return Err(self.error(format!("cell type {} is not supported", quoted(cell_type.as_bytes()))));
         };
         self.document.cell_type = name.to_owned();
         self.document.n_vertices = n;
@@ -217,7 +215,7 @@ impl Parser<'_> {
             if vertex as usize >= self.document.points.len() {
                 return Err(self
                     .error(format!(
-                        "cell {index} names vertex {vertex}, but there are {} (from 0)",
+                        "cell {index} refers to vertex {vertex}, but there are {} vertices, numbered from 0",
                         self.document.points.len()
                     ))
                     .remedy("the file is damaged: write it again"));
@@ -237,7 +235,7 @@ impl Parser<'_> {
         };
         let value = self.mark_value(e)?;
         let Some(collection) = self.document.collections.last_mut().filter(|c| c.marks.len() < n) else {
-            return Err(self.error(format!("{n} values are announced, but there are more")).remedy(CUT_OFF));
+            return Err(self.error(format!("{n} values declared, but there are more")).remedy(TRUNCATED));
         };
         collection.marks.push([entity, place, value]);
         Ok(())
@@ -262,17 +260,17 @@ impl Parser<'_> {
     }
 
     fn out_of_order(&self, what: &str, index: usize, expected: usize, n: usize) -> Error {
-        self.error(format!("{what} {index} stands where {what} {expected} of {n} should"))
-            .remedy("number them from 0 without gaps, in rising order")
+        self.error(format!("expected {what} {expected} of {n}, found {what} {index}"))
+            .remedy("number them consecutively from 0")
     }
 
     fn finish(self) -> Result<Document> {
         if !self.seen_mesh {
-            let error = self.error("there is no mesh in this file");
+            let error = self.error("the file contains no mesh");
             return Err(if self.seen_function {
-                error.remedy("it holds marks of a mesh: name the file of the mesh itself")
+                error.remedy("it contains marks on a mesh: give the mesh file")
             } else {
-                error.remedy(CUT_OFF)
+                error.remedy(TRUNCATED)
             });
         }
         Ok(self.document)
@@ -283,15 +281,15 @@ impl Parser<'_> {
         let n = self.number::<u64>(e, "size")?;
         let room = (self.bytes.len() - self.at) / MIN_ELEMENT_BYTES;
         usize::try_from(n).ok().filter(|n| *n <= room).ok_or_else(|| {
-            self.error(format!("{n} {what} are announced, but what is left of the file holds at most {room}"))
-                .remedy(CUT_OFF)
+            self.error(format!("{n} {what} declared, but the rest of the file can hold at most {room}"))
+                .remedy(TRUNCATED)
         })
     }
 
     fn text(&self, e: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
         let attribute = e
             .try_get_attribute(name)
-            .map_err(|error| self.error(format!("not well-formed XML: {error}")).remedy(CUT_OFF))?;
+            .map_err(|error| self.error(format!("not well-formed XML: {error}")).remedy(TRUNCATED))?;
         let Some(attribute) = attribute else { return Ok(None) };
         let value = quick_xml::escape::unescape(&attribute.value)
             .map_err(|error| self.error(format!("not well-formed XML: {error}")))?;
@@ -301,7 +299,7 @@ impl Parser<'_> {
     fn required_attribute(&self, e: &BytesStart<'_>, name: &str) -> Result<String> {
         self.text(e, name)?.ok_or_else(|| {
             self.error(format!("element {} has no attribute `{name}`", quoted(e.name().as_ref().as_bytes())))
-                .remedy(CUT_OFF)
+                .remedy(TRUNCATED)
         })
     }
 

@@ -20,7 +20,8 @@ pub(in crate::io) fn is_hdf5(bytes: &[u8]) -> bool {
 /// Opens a file in memory and returns its root group.
 pub(in crate::io) fn open(bytes: &[u8]) -> Result<Group> {
     if !is_hdf5(bytes) {
-        return Err(Error::input("is no HDF5 file: its signature is missing").remedy("get the file again"));
+        return Err(Error::input("is not an HDF5 file: the signature is missing")
+            .remedy("get a new copy of the file"));
     }
     let file = guarded("/", || File::from_bytes(bytes.to_vec()))?;
     let budget = Rc::new(MemoryBudget::of(bytes.len() as u64));
@@ -40,7 +41,7 @@ fn guarded<T>(place: &str, call: impl FnOnce() -> Result<T, hdf5_pure::Error>) -
     match catch_unwind(AssertUnwindSafe(call)) {
         Ok(Ok(value)) => Ok(value),
         Ok(Err(e)) => Err(Error::input(e.to_string()).at(place)),
-        Err(_) => Err(Error::input("the library for HDF5 (hdf5-pure) fails on what stands here").at(place)),
+        Err(_) => Err(Error::input("the HDF5 library (hdf5-pure) failed here").at(place)),
     }
 }
 
@@ -106,7 +107,7 @@ impl Group {
         self.array(name)?.ok_or_else(|| {
             Error::input(format!("the array {name} is missing"))
                 .at(self.path())
-                .remedy("the file is damaged, or not finished: write it again")
+                .remedy("the file is damaged or incomplete: write it again")
         })
     }
 
@@ -143,7 +144,7 @@ impl Array {
         // Values that were never written take no space in the file, but may take much memory.
         budget.take_once(&path, bytes(&shape).max(bytes(&chunk))).map_err(|e| e.at(path.as_str()))?;
         let fits = shape.iter().map(|&d| usize::try_from(d).ok()).collect::<Option<Vec<_>>>();
-        let shape = fits.ok_or_else(|| Error::input("an array that is too large").at(path.as_str()))?;
+        let shape = fits.ok_or_else(|| Error::input("the array is too large").at(path.as_str()))?;
         Ok(Self { inner, path, shape, kind })
     }
 
@@ -171,27 +172,25 @@ impl Array {
     pub(in crate::io) fn values(&self, rows: Range<usize>) -> Result<Values> {
         if rows.start > rows.end || rows.end > self.rows() {
             let (start, end, n) = (rows.start, rows.end, self.rows());
-            return Err(self.error(format!("rows {start} to {end} are asked for, but there are {n}")));
+            return Err(self.error(format!("rows {start} to {end} requested, but there are {n}")));
         }
         let expected = rows.len().saturating_mul(self.components());
         let values = if expected == 0 { self.empty()? } else { self.read(rows)? };
         match values.len() == expected {
             true => Ok(values),
-            false => Err(self.error(format!("{expected} values are expected, {} came", values.len()))),
+            false => Err(self.error(format!("expected {expected} values, found {}", values.len()))),
         }
     }
 
     /// The values of a range of rows as integers, whatever their integer type.
     pub(in crate::io) fn ints(&self, rows: Range<usize>) -> Result<Vec<i64>> {
         let values = self.values(rows)?;
-        values.to_i64().ok_or_else(|| self.error("whole numbers are expected"))
+        values.to_i64().ok_or_else(|| self.error("expected whole numbers"))
     }
 
     /// An error that names this array.
     pub(in crate::io) fn error(&self, what: impl Into<String>) -> Error {
-        Error::input(what)
-            .at(self.path.as_str())
-            .remedy("the file is damaged, or was written wrong: write it again")
+        Error::input(what).at(self.path.as_str()).remedy("the file is damaged or invalid: write it again")
     }
 }
 
@@ -243,6 +242,6 @@ reading! {
 
 impl Array {
     fn unknown(&self) -> Error {
-        self.error(format!("values of type {} are neither numbers nor texts", self.kind))
+        self.error(format!("values of type {} are neither numbers nor text", self.kind))
     }
 }

@@ -107,7 +107,7 @@ impl Node {
 }
 
 fn not_storable(e: impl std::fmt::Display) -> Error {
-    Error::input(format!("HDF5 cannot hold this: {e}"))
+    Error::input(format!("cannot be stored as HDF5: {e}"))
 }
 
 fn attribute(value: Attribute) -> Result<AttrValue> {

@@ -34,10 +34,10 @@ impl Type {
             "vtkidtype" => Self::Id,
             "string" | "utf8_string" => Self::Text,
             _ => {
-                return Err(Error::input(format!("values of type `{}` are not known", truncated(word)))
+                return Err(Error::input(format!("unknown value type `{}`", truncated(word)))
                     .at(source.place())
                     .remedy(
-                        "known: bit, char, short, int, long (all also unsigned_), float, double, string",
+                        "supported: bit, char, short, int, long (each also with unsigned_), float, double, string",
                     ));
             }
         })
@@ -72,9 +72,7 @@ fn texts(source: &mut Source<'_>, n: usize) -> Result<Values> {
             decode_utf8_or_latin1(source.take_bytes(n)?)
         } else {
             let line = source.line();
-            decode(
-                line.ok_or_else(|| source.error(format!("{n} texts should stand here, {} do", texts.len())))?,
-            )
+            decode(line.ok_or_else(|| source.error(format!("expected {n} texts, found {}", texts.len())))?)
         });
     }
     Ok(Values::Text(texts))
@@ -153,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_come_back_whatever_they_are_made_of() {
+    fn names_round_trip() {
         for name in ["plain", "my vec %", "", "é\n\t\"", "%zz%2"] {
             assert_eq!(decode(encode(name).as_bytes()), name);
         }
@@ -162,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_of_texts_come_back() {
+    fn text_lengths_round_trip() {
         for n in [0, 63, 64, 0x3fff, 0x4000, 0x3fff_ffff, 0x4000_0000] {
             let bytes = encode_length(n);
             let mut source = Source::new(&bytes);

@@ -2,8 +2,8 @@
 //!
 //! Unstructured grids and polygonal data of file versions 2.0 to 5.1 are read, with cells in the layout
 //! before 5.0 (`n id id ...`, cell after cell) and since (`OFFSETS`, `CONNECTIVITY`). An unstructured grid of
-//! version 5.1 is written, or of 4.2 on request. `vtkio` 0.7.0-rc2 fails on 5.1 files; hence a reader of our
-//! own.
+//! version 5.1 is written, or of 4.2 on request. Implemented here because `vtkio` 0.7.0-rc2 fails on
+//! 5.1 files.
 //!
 //! | file | idea |
 //! |---|---|
@@ -21,4 +21,4 @@ use crate::io::format::Format;
 
 /// Legacy VTK files.
 pub(super) const VTK: Format =
-    Format { name: "VTK legacy", endings: &[".vtk"], read: Some(read::read), write: Some(write::write) };
+    Format { name: "VTK legacy", extensions: &[".vtk"], read: Some(read::read), write: Some(write::write) };

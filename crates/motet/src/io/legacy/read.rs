@@ -11,8 +11,8 @@ use crate::io::scalar::{Scalar, to_ids, to_points};
 use crate::io::surplus_points::trim;
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
-const TABLES: &str = "lookup tables were left out: colours are no part of a mesh";
-const NAMES: &str = "names of single components of arrays were left out";
+const TABLES: &str = "lookup tables are skipped: colours are not part of a mesh";
+const NAMES: &str = "names of array components are skipped";
 
 pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let mut source = Source::new(input.bytes);
@@ -30,37 +30,34 @@ fn read_header(source: &mut Source<'_>) -> Result<bool> {
     let first = source.line().unwrap_or_default();
     if !first.to_ascii_lowercase().starts_with(b"# vtk datafile version") {
         let xml = first.trim_ascii_start().starts_with(b"<");
-        return Err(Error::input("the first line is not `# vtk DataFile Version ...`").at("line 1").remedy(
-            if xml {
-                "this is an XML file: give it the ending .vtu or .vtp"
+        return Err(Error::input("expected `# vtk DataFile Version ...` as the first line")
+            .at("line 1")
+            .remedy(if xml {
+                "this is an XML file: give it the extension .vtu or .vtp"
             } else {
-                "this is no legacy VTK file: give it the ending of its own format"
-            },
-        ));
+                "this is not a legacy VTK file: give it the extension of its format"
+            }));
     }
     source.line();
     source.binary = match source.text("ASCII or BINARY")?.to_ascii_uppercase().as_str() {
         "ASCII" => false,
         "BINARY" => true,
         other => {
-            return Err(
-                source.error(format!("ASCII or BINARY should stand here, not `{}`", truncated(other)))
-            );
+            return Err(source.error(format!("expected ASCII or BINARY, found `{}`", truncated(other))));
         }
     };
     let word = source.text("DATASET")?;
     if !word.eq_ignore_ascii_case("DATASET") {
-        return Err(source.error(format!("DATASET should stand here, not `{}`", truncated(word))));
+        return Err(source.error(format!("expected DATASET, found `{}`", truncated(word))));
     }
     match source.text("the kind of data set")?.to_ascii_uppercase().as_str() {
         "UNSTRUCTURED_GRID" => Ok(true),
         "POLYDATA" => Ok(false),
-        other => Err(Error::input(format!(
-            "the file holds {}, not an UNSTRUCTURED_GRID or POLYDATA",
-            truncated(other)
-        ))
-        .at(source.place())
-        .remedy("in ParaView, apply `Append Datasets` (or vtkAppendFilter) to turn it into a .vtu")),
+        other => {
+            Err(Error::input(format!("expected UNSTRUCTURED_GRID or POLYDATA, found {}", truncated(other)))
+                .at(source.place())
+                .remedy("convert it to .vtu: in ParaView, apply `Append Datasets` (vtkAppendFilter)"))
+        }
     }
 }
 
@@ -117,13 +114,13 @@ impl Reader<'_> {
         }
         let values = values(&mut self.source, kind, 3 * n)?;
         self.mesh.points =
-            to_points(values).ok_or_else(|| self.source.error("points are texts, not numbers"))?;
+            to_points(values).ok_or_else(|| self.source.error("point coordinates are text, not numbers"))?;
         self.skip_metadata(3);
         Ok(())
     }
 
     fn read_type(&mut self) -> Result<Type> {
-        let word = self.source.text("a type of values")?;
+        let word = self.source.text("a value type")?;
         Type::parse(&self.source, word)
     }
 
@@ -141,20 +138,19 @@ impl Reader<'_> {
             let offsets = self.read_named_ids("OFFSETS", n)?;
             let ids = self.read_named_ids("CONNECTIVITY", size)?;
             return Csr::new(offsets, bytemuck::allocation::cast_vec(ids)).ok_or_else(|| {
-                self.source
-                    .error(format!("the offsets do not rise from 0 to the {size} ids of the connectivity"))
+                self.source.error(format!("the offsets do not ascend from 0 to {size}, the number of ids"))
             });
         }
         let numbers = self.source.numbers(Scalar::I32, size)?;
         let numbers = self.to_ids(&numbers)?;
         split_length_prefixed(&numbers, n)
-            .ok_or_else(|| self.source.error(format!("{size} numbers do not make the lists of {n} cells")))
+            .ok_or_else(|| self.source.error(format!("{size} numbers do not form the lists of {n} cells")))
     }
 
     fn read_named_ids(&mut self, name: &str, n: usize) -> Result<Vec<u32>> {
         let word = self.source.text(name)?;
         if !word.eq_ignore_ascii_case(name) {
-            return Err(self.source.error(format!("{name} should stand here, not `{}`", truncated(word))));
+            return Err(self.source.error(format!("expected {name}, found `{}`", truncated(word))));
         }
         let kind = self.read_type()?;
         let numbers = values(&mut self.source, kind, n)?;
@@ -162,7 +158,7 @@ impl Reader<'_> {
     }
 
     fn to_ids(&self, numbers: &Values) -> Result<Vec<u32>> {
-        to_ids(numbers).map_err(|bad| self.source.error(format!("{bad} is no id")))
+        to_ids(numbers).map_err(|bad| self.source.error(format!("{bad} is not a valid id")))
     }
 
     fn read_kinds(&mut self) -> Result<()> {
@@ -170,7 +166,9 @@ impl Reader<'_> {
         let numbers = self.source.numbers(Scalar::I32, n)?;
         let kinds = self.to_ids(&numbers)?.into_iter().map(|k| u8::try_from(k).map(CellKind));
         self.kinds = Some(
-            kinds.collect::<Result<_, _>>().map_err(|_| self.source.error("a cell type is beyond 255"))?,
+            kinds
+                .collect::<Result<_, _>>()
+                .map_err(|_| self.source.error("a cell type is not between 0 and 255"))?,
         );
         Ok(())
     }
@@ -195,7 +193,7 @@ impl Reader<'_> {
         if n == expected {
             return Ok(());
         }
-        Err(self.source.error(format!("{word} is for {n}, but there are {expected}")))
+        Err(self.source.error(format!("{word}: expected {expected} rows, found {n}")))
     }
 
     fn n_rows(&self, owner: AttributeTarget) -> usize {
@@ -216,7 +214,7 @@ impl Reader<'_> {
             }
             ("LOOKUP_TABLE", _) => return self.skip_table(),
             (_, AttributeTarget::Mesh) => {
-                return Err(self.source.error(format!("the section `{}` is not known", truncated(word))));
+                return Err(self.source.error(format!("unknown section `{}`", truncated(word))));
             }
             _ => {}
         }
@@ -232,7 +230,7 @@ impl Reader<'_> {
                 let components = self.source.count("the number of texture coordinates")?;
                 self.read_array(name, components, n)?
             }
-            _ => return Err(self.source.error(format!("the section `{}` is not known", truncated(word)))),
+            _ => return Err(self.source.error(format!("unknown section `{}`", truncated(word)))),
         };
         self.add(owner, field);
         Ok(())
@@ -254,7 +252,9 @@ impl Reader<'_> {
 
     fn read_values(&mut self, name: String, components: usize, n_rows: usize, kind: Type) -> Result<Field> {
         let n = n_rows.checked_mul(components).filter(|_| components > 0);
-        let n = n.ok_or_else(|| self.source.error(format!("{n_rows} rows of {components} components")))?;
+        let n = n.ok_or_else(|| {
+            self.source.error(format!("invalid array size: {n_rows} rows of {components} components"))
+        })?;
         let values = values(&mut self.source, kind, n).map_err(|e| e.at(format!("array {name}")))?;
         Ok(Field { name, components, values })
     }
@@ -305,7 +305,7 @@ impl Reader<'_> {
             if !matches!(owner, AttributeTarget::Mesh) && n_rows != expected {
                 return Err(self
                     .source
-                    .error(format!("the array {name} has {n_rows} rows, {expected} are needed")));
+                    .error(format!("array {name}: expected {expected} rows, found {n_rows}")));
             }
             let field = self.read_array(name, components, n_rows)?;
             self.add(owner, field);
@@ -340,9 +340,10 @@ fn grid_cells(kinds: Vec<CellKind>, lists: Csr<VertexId>, notes: &Notes) -> Resu
     let mut cells = Cells::new();
     for (i, (kind, list)) in kinds.into_iter().zip(lists.iter()).enumerate() {
         if kind != CellKind::POLYHEDRON {
-            if kind.n_vertices().is_some_and(|n| n != list.len()) {
-                return Err(Error::input(format!("a {} with {} vertices", kind.label(), list.len()))
-                    .at(format!("cell {i}")));
+            if let Some(expected) = kind.n_vertices().filter(|&n| n != list.len()) {
+                let (label, n) = (kind.label(), list.len());
+                let what = format!("a {label} has {expected} vertices, but this one has {n}");
+                return Err(Error::input(what).at(format!("cell {i}")));
             }
             cells.push(kind, list.iter().copied());
             continue;
@@ -350,7 +351,7 @@ fn grid_cells(kinds: Vec<CellKind>, lists: Csr<VertexId>, notes: &Notes) -> Resu
         let mut stream: &[u32] = bytemuck::cast_slice(list);
         let faces = next_polyhedron(&mut stream).filter(|_| stream.is_empty());
         let faces = faces.ok_or_else(|| {
-            Error::input("the faces of this polyhedron do not fit into its list").at(format!("cell {i}"))
+            Error::input("the face list of the polyhedron is inconsistent").at(format!("cell {i}"))
         })?;
         let mut vertices = faces.items().to_vec();
         vertices.sort_unstable();

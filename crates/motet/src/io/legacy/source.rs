@@ -4,7 +4,7 @@ use crate::base::{Error, Result};
 use crate::io::scalar::{ByteOrder, Scalar};
 use crate::mesh::Values;
 
-pub(super) const WRITE_AGAIN: &str = "the file is cut off or damaged: write it again";
+pub(super) const WRITE_AGAIN: &str = "the file is truncated or damaged: write it again";
 
 /// The file and the current position in it.
 pub(super) struct Source<'a> {
@@ -60,14 +60,15 @@ impl<'a> Source<'a> {
 
     /// The next word as text; `what` names the expected item in messages.
     pub(super) fn text(&mut self, what: &str) -> Result<&'a str> {
-        let word = self.word().ok_or_else(|| self.error(format!("the file ends where {what} should be")))?;
+        let word =
+            self.word().ok_or_else(|| self.error(format!("expected {what}, found the end of the file")))?;
         std::str::from_utf8(word).map_err(|_| self.error(format!("{what} is not text")))
     }
 
     /// The next word as a count.
     pub(super) fn count(&mut self, what: &str) -> Result<usize> {
         let text = self.text(what)?;
-        text.parse().map_err(|_| self.error(format!("{what} should be a count, not `{}`", truncated(text))))
+        text.parse().map_err(|_| self.error(format!("{what}: expected a count, found `{}`", truncated(text))))
     }
 
     /// The rest of this line as a count, consumed only if it is one.
@@ -102,7 +103,7 @@ impl<'a> Source<'a> {
     /// Takes the next `n` bytes of binary data; after words, call [`Self::start_data`] first.
     pub(super) fn take_bytes(&mut self, n: usize) -> Result<&'a [u8]> {
         let Some(bytes) = self.rest().get(..n) else {
-            return Err(self.error(format!("{n} bytes should follow, {} are left", self.rest().len())));
+            return Err(self.error(format!("expected {n} bytes, but only {} are left", self.rest().len())));
         };
         self.at += n;
         Ok(bytes)
@@ -122,20 +123,21 @@ impl<'a> Source<'a> {
         // A number takes at least a digit and a blank.
         if n > self.rest().len().div_ceil(2) {
             return Err(
-                self.error(format!("{n} numbers should follow, {} bytes are left", self.rest().len()))
+                self.error(format!("expected {n} numbers, but only {} bytes are left", self.rest().len()))
             );
         }
         let mut words = Words(self);
         let values = kind.parse(n, &mut words).map_err(str::to_owned);
-        let values =
-            values.map_err(|bad| self.error(format!("`{}` is no number of its type", truncated(&bad))))?;
+        let values = values.map_err(|bad| {
+            self.error(format!("`{}` is not a number of the declared type", truncated(&bad)))
+        })?;
         if values.len() == n {
             return Ok(values);
         }
-        Err(self.error(format!("{n} numbers should stand here, {} do", values.len())))
+        Err(self.error(format!("expected {n} numbers, found {}", values.len())))
     }
 
-    /// Moves to the start of binary data on a new line, before calls to [`Self::take`].
+    /// Moves to the start of binary data on a new line, before calls to [`Self::take_bytes`].
     pub(super) fn start_data(&mut self) {
         self.end_header();
     }

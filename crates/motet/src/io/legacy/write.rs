@@ -15,7 +15,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
         None | Some("5.1") => true,
         Some("4.2") => false,
         Some(other) => {
-            return Err(Error::options(format!("legacy VTK files of version {other} are not written"))
+            return Err(Error::options(format!("version {other} of legacy VTK cannot be written"))
                 .remedy("choose 5.1 or 4.2"));
         }
     };
@@ -93,7 +93,7 @@ impl Writer {
                 lists.iter().flat_map(|list| std::iter::once(list.len() as u32).chain(list.iter().copied()));
             let counted = counted.map(i32::try_from).collect::<Result<_, _>>();
             self.numbers(&Values::I32(counted.map_err(|_| {
-                Error::options("ids beyond 2^31 do not fit into a file of version 4.2").remedy("choose 5.1")
+                Error::options("ids above 2^31 - 1 do not fit in version 4.2").remedy("choose 5.1")
             })?));
         }
         self.line(&format!("CELL_TYPES {}", lists.len()));
@@ -118,9 +118,10 @@ impl Writer {
             let (mut name, components) = (encode(&field.name), field.components);
             if name.is_empty() {
                 name += "unnamed";
-                self.lost.push("an array without a name: it is called `unnamed`".into());
+                self.lost.push("an array without a name is written as `unnamed`".into());
             }
-            writeln!(self.out, "{name} {components} {} {kind}", field.n_rows()).expect("memory takes all");
+            writeln!(self.out, "{name} {components} {} {kind}", field.n_rows())
+                .expect("writing into memory does not fail");
             self.numbers(&field.values);
         }
     }

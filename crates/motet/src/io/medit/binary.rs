@@ -32,8 +32,8 @@ impl<'a> Binary<'a> {
         binary.version = binary.fixed_i32("the version")?;
         if !(1..=4).contains(&binary.version) {
             return Err(binary
-                .error(format!("version {} of the format; 1 to 4 are read", binary.version))
-                .remedy("the file is damaged, or of another format: get it again"));
+                .error(format!("expected format version 1 to 4, found {}", binary.version))
+                .remedy("the file is damaged or in another format: get a new copy"));
         }
         Ok(Some(binary))
     }
@@ -48,9 +48,9 @@ impl<'a> Binary<'a> {
             return Ok(Some(Cow::Borrowed(END.name)));
         }
         let next = if self.version < 3 {
-            self.fixed_i32("where the next section begins")?
+            self.fixed_i32("the position of the next section")?
         } else {
-            self.int64("where the next section begins")?
+            self.int64("the position of the next section")?
         };
         self.next = match usize::try_from(next) {
             // The section declares itself the last.
@@ -59,10 +59,10 @@ impl<'a> Binary<'a> {
             _ => {
                 return Err(self
                     .error(format!(
-                        "section {number} says that the next begins at byte {next}, but that lies not between here and the end of the file, {}",
+                        "section {number}: the position of the next section, byte {next}, is not between here and the end of the file, byte {}",
                         self.bytes.len()
                     ))
-                    .remedy("the file is cut off or damaged: get it again"));
+                    .remedy("the file is truncated or damaged: get a new copy"));
             }
         };
         let name = i32::try_from(number).ok().and_then(name_of);
@@ -73,10 +73,11 @@ impl<'a> Binary<'a> {
         // `End` may still follow a section that declares itself the last.
         if self.next < self.bytes.len() && self.at != self.next {
             return Err(self
-                .error(format!("the next section should begin here, but the file says at byte {}", self.next))
-                .remedy(
-                    "the number at the head of the section is wrong, or the file is damaged: write it again",
-                ));
+                .error(format!(
+                    "the section ends here, but the file places the next one at byte {}",
+                    self.next
+                ))
+                .remedy("the count of the section is wrong, or the file is damaged: write it again"));
         }
         Ok(())
     }
@@ -93,10 +94,8 @@ impl<'a> Binary<'a> {
             .max(1);
         let room = self.remaining() / bytes_each;
         usize::try_from(n).ok().filter(|&n| n <= room).ok_or_else(|| {
-            self.error(format!(
-                "{n} {what} are announced, but what is left of the section holds at most {room}"
-            ))
-            .remedy("the file is cut off or damaged: get it again")
+            self.error(format!("{n} {what} declared, but the rest of the section can hold at most {room}"))
+                .remedy("the file is truncated or damaged: get a new copy")
         })
     }
 
@@ -142,8 +141,8 @@ impl<'a> Binary<'a> {
         let Some(&bytes) = self.bytes[self.at..self.next].first_chunk::<N>() else {
             let of = if self.next < self.bytes.len() { "section" } else { "file" };
             return Err(self
-                .error(format!("the {of} ends where {what} should follow"))
-                .remedy("the file is cut off or damaged: get it again"));
+                .error(format!("expected {what}, found the end of the {of}"))
+                .remedy("the file is truncated or damaged: get a new copy"));
         };
         self.at += N;
         Ok(bytes)

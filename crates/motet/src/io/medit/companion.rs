@@ -16,12 +16,12 @@ pub(super) fn read_mesh(input: &Input<'_>) -> Result<Mesh> {
     let Some((path, bytes)) = find_companion(input.path, "sol")? else { return Ok(mesh) };
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     if !is_medit(&bytes) {
-        input.notes.add(format!("{name} beside is passed over: it is no solution of Medit"));
+        input.notes.add(format!("{name} is skipped: it is not a Medit solution"));
         return Ok(mesh);
     }
     let solutions = read_solutions(&path, &bytes, input.notes)?;
     if let Err(misfit) = attach(&mut mesh, &solutions.solutions) {
-        input.notes.add(format!("{name} beside is passed over: it {}", misfit.what()));
+        input.notes.add(format!("{name} is skipped: it {}", misfit.what()));
     }
     Ok(mesh)
 }
@@ -31,11 +31,11 @@ pub(super) fn read_solution(input: &Input<'_>) -> Result<Mesh> {
     let solutions = read_solutions(input.path, input.bytes, input.notes)?;
     if solutions.solutions.is_empty() {
         return Err(Error::input("there is no solution (SolAtVertices, SolAtTetrahedra, ...)")
-            .remedy("the file is damaged, or no solution: get it again"));
+            .remedy("the file is damaged or not a solution: get a new copy"));
     }
     let (path, bytes) = find_companion(input.path, "mesh")?.ok_or_else(|| {
-        Error::input("there is no mesh of the same name beside it, which the solution belongs to")
-            .remedy("put the .mesh or .meshb file of the same name beside it")
+        Error::input("there is no mesh of the same name, which the solution needs")
+            .remedy("put the .mesh or .meshb file of the same name in the same folder")
     })?;
     let in_companion = |e: Error| e.in_file(&path);
     let mut mesh = Content::read(&bytes, input.notes).and_then(Content::into_mesh).map_err(in_companion)?;
@@ -47,16 +47,16 @@ fn read_solutions(path: &Path, bytes: &[u8], notes: &Notes) -> Result<Content> {
     Content::read(bytes, notes).map_err(|e| e.in_file(path))
 }
 
-/// The file of the same name with the extension `ending`, or with a `b` appended; the same form (text or
+/// The file of the same name with the extension `extension`, or with a `b` appended; the same form (text or
 /// binary) as `path` is tried first.
-fn find_companion(path: &Path, ending: &str) -> Result<Option<(PathBuf, Vec<u8>)>> {
+fn find_companion(path: &Path, extension: &str) -> Result<Option<(PathBuf, Vec<u8>)>> {
     let is_binary = path.extension().is_some_and(|e| e.to_string_lossy().to_lowercase().ends_with('b'));
-    let mut endings = [ending.to_owned(), format!("{ending}b")];
+    let mut extensions = [extension.to_owned(), format!("{extension}b")];
     if is_binary {
-        endings.reverse();
+        extensions.reverse();
     }
-    for ending in endings {
-        let path = path.with_extension(ending);
+    for extension in extensions {
+        let path = path.with_extension(extension);
         if let Some(bytes) = read_if_exists(&path)? {
             return Ok(Some((path, bytes)));
         }

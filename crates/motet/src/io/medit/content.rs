@@ -31,7 +31,7 @@ impl Content {
         let mut content = Self::default();
         loop {
             let Some(name) = source.section()? else {
-                notes.add("there is no `End`: the file may be cut off behind a section");
+                notes.add("`End` is missing: the file may be truncated after a section");
                 break;
             };
             if is_end(&name) {
@@ -46,7 +46,7 @@ impl Content {
         if name == DIMENSION.name {
             match source.fixed_i32("dimension")? {
                 dim @ 2..=3 => self.dim = dim as usize,
-                other => return Err(source.error(format!("{other} dimensions; 2 and 3 are read"))),
+                other => return Err(source.error(format!("expected dimension 2 or 3, found {other}"))),
             }
             return source.end_section();
         }
@@ -69,7 +69,7 @@ impl Content {
             }
         }
         let name = quoted(name.as_bytes());
-        notes.add(format!("section {name} is passed over: a mesh here has no place for it"));
+        notes.add(format!("section {name} is skipped: a mesh cannot hold it"));
         source.skip_section();
         Ok(())
     }
@@ -77,7 +77,7 @@ impl Content {
     fn require_dim(&self, source: &Source<'_>, what: &str) -> Result<()> {
         if self.dim == 0 {
             return Err(source
-                .error(format!("{} come before the dimension", what.to_lowercase()))
+                .error(format!("{} precede the dimension", what.to_lowercase()))
                 .remedy("write the file again"));
         }
         Ok(())
@@ -86,7 +86,7 @@ impl Content {
     fn vertices(&mut self, source: &mut Source<'_>) -> Result<()> {
         self.require_dim(source, "vertices")?;
         if self.points.is_some() {
-            return Err(source.error("a second section of vertices").remedy("write the file again"));
+            return Err(source.error("duplicate section Vertices").remedy("write the file again"));
         }
         let n = source.count("vertices", 1, self.dim)?;
         let mut points = Vec::with_capacity(n);
@@ -94,10 +94,10 @@ impl Content {
         for _ in 0..n {
             let mut point = [0.0; 3];
             for x in &mut point[..self.dim] {
-                *x = source.float("coordinate of a vertex")?;
+                *x = source.float("vertex coordinate")?;
             }
             points.push(point);
-            self.point_refs.push(source.int32("reference of a vertex")?);
+            self.point_refs.push(source.int32("vertex reference")?);
         }
         self.points = Some(points);
         Ok(())
@@ -115,11 +115,11 @@ impl Content {
         let mut vertices = [VertexId::default(); MAX_CELL_VERTICES];
         for _ in 0..n_cells {
             for vertex in &mut vertices[..n] {
-                let id = source.int("vertex of a cell")?;
+                let id = source.int("cell vertex")?;
                 *vertex = vertex_id(id, n_points, source)?;
             }
             self.cells.push(kind, vertices[..n].iter().copied());
-            self.cell_refs.push(source.int32("reference of a cell")?);
+            self.cell_refs.push(source.int32("cell reference")?);
         }
         Ok(())
     }
@@ -132,10 +132,11 @@ impl Content {
         array: &'static str,
     ) -> Result<()> {
         for _ in 0..source.count(name, 1, 0)? {
-            let id = source.int("a marked place")?;
+            let id = source.int("marked entity")?;
             let place = usize::try_from(id).ok().and_then(|id| id.checked_sub(1));
-            let place =
-                place.ok_or_else(|| source.error(format!("{name} names {id}, but counting begins at 1")))?;
+            let place = place.ok_or_else(|| {
+                source.error(format!("{name}: {id} is not a valid number: numbering starts at 1"))
+            })?;
             self.marks.push((of, array, place));
         }
         Ok(())
@@ -149,7 +150,7 @@ fn vertex_id(id: i64, n_points: Option<usize>, source: &Source<'_>) -> Result<Ve
     match usize::try_from(id).ok().and_then(|id| id.checked_sub(1)).filter(|&place| place < n) {
         Some(place) => Ok(VertexId::new(place)),
         None => Err(source
-            .error(format!("a cell names vertex {id}, but there are {n} (1 to {n})"))
+            .error(format!("a cell refers to vertex {id}, but there are {n} vertices, numbered from 1"))
             .remedy("the file is damaged: write it again")),
     }
 }

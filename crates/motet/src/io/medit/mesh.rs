@@ -11,7 +11,7 @@ impl Content {
     pub(super) fn into_mesh(self) -> Result<Mesh> {
         let Some(points) = self.points else {
             return Err(Error::input("there is no section Vertices")
-                .remedy("the file holds no mesh, or is cut off: get it again"));
+                .remedy("the file contains no mesh or is truncated: get a new copy"));
         };
         let mut mesh = Mesh::new(points, self.cells);
         if self.point_refs.iter().any(|&r| r != 0) {
@@ -36,10 +36,10 @@ fn set_marks(mesh: &mut Mesh, marks: &[(usize, &'static str, usize)]) -> Result<
         for &(_, array, place) in marks.iter().filter(|m| m.0 == of) {
             let Some(&row) = places.get(place) else {
                 return Err(Error::input(format!(
-                    "{} of {} {} is marked, which does not exist",
+                    "a mark refers to entry {} of section {}, which has {}",
                     place + 1,
-                    places.len(),
-                    section.list.name
+                    section.list.name,
+                    places.len()
                 ))
                 .remedy("the file is damaged: write it again"));
             };

@@ -43,25 +43,25 @@ use crate::mesh::marks::{CORNER, REQUIRED, RIDGE};
 
 pub(super) const MESH: Format = Format {
     name: "Medit",
-    endings: &[".mesh"],
+    extensions: &[".mesh"],
     read: Some(companion::read_mesh),
     write: Some(|mesh, _| write::mesh(mesh, false)),
 };
 pub(super) const MESHB: Format = Format {
     name: "Medit binary",
-    endings: &[".meshb"],
+    extensions: &[".meshb"],
     read: Some(companion::read_mesh),
     write: Some(|mesh, _| write::mesh(mesh, true)),
 };
 pub(super) const SOL: Format = Format {
     name: "Medit solution",
-    endings: &[".sol"],
+    extensions: &[".sol"],
     read: Some(companion::read_solution),
     write: Some(|mesh, _| write::solution(mesh, false)),
 };
 pub(super) const SOLB: Format = Format {
     name: "Medit binary solution",
-    endings: &[".solb"],
+    extensions: &[".solb"],
     read: Some(companion::read_solution),
     write: Some(|mesh, _| write::solution(mesh, true)),
 };

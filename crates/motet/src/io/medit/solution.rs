@@ -50,15 +50,15 @@ impl Solution {
         let n_fields = source.fixed_i32("the number of arrays")?;
         let n_fields = usize::try_from(n_fields).ok().filter(|&n| n <= MAX_ARRAYS).ok_or_else(|| {
             source
-                .error(format!("{n_fields} arrays in one section; 0 to {MAX_ARRAYS} are read"))
+                .error(format!("expected 0 to {MAX_ARRAYS} arrays in a section, found {n_fields}"))
                 .remedy("the file is damaged: write it again")
         })?;
         let mut kinds = Vec::with_capacity(n_fields);
         for _ in 0..n_fields {
-            let number = source.fixed_i32("type of an array")?;
+            let number = source.fixed_i32("array type")?;
             let kind = KINDS.iter().find(|kind| i64::from(kind.number) == number).ok_or_else(|| {
                 source
-                    .error(format!("{number} is no type of an array: 1 to 4 are"))
+                    .error(format!("expected an array type from 1 to 4, found {number}"))
                     .remedy("the file is damaged: write it again")
             })?;
             kinds.push((kind, if dim == 2 { kind.places_2d } else { kind.places }));
@@ -68,9 +68,9 @@ impl Solution {
         if n_rows > room {
             return Err(source
                 .error(format!(
-                    "{n_rows} rows of {n_each} values are announced, but what is left holds at most {room}"
+                    "{n_rows} rows of {n_each} values declared, but the remaining data can hold at most {room}"
                 ))
-                .remedy("the file is cut off or damaged: get it again"));
+                .remedy("the file is truncated or damaged: get a new copy"));
         }
         let zeros =
             |kind: &Kind| Rows { components: kind.components, values: vec![0.0; n_rows * kind.components] };
@@ -99,7 +99,7 @@ pub(super) fn attach(mesh: &mut Mesh, solutions: &[Solution]) -> Result<()> {
                 "has {} values on {of}, but the mesh has {n}",
                 solution.n_rows
             ))
-            .remedy("the files do not belong together: make the solution anew, or move it away"));
+            .remedy("the files do not belong together: compute the solution again, or remove it"));
         }
     }
     let points = solutions.iter().filter(|s| SECTIONS[s.of].cells.is_none()).flat_map(|s| &s.fields);

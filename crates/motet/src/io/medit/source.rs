@@ -31,8 +31,8 @@ impl<'a> Source<'a> {
         let Some(word) = text.word() else { return Ok(None) };
         if !word[0].is_ascii_alphabetic() {
             return Err(text
-                .unexpected("a section", "its name", word)
-                .remedy("the number at the head of the section before is wrong, or the file is damaged"));
+                .unexpected("section", "a name", word)
+                .remedy("the count of the previous section is wrong, or the file is damaged"));
         }
         let name = String::from_utf8_lossy(word);
         let known = ALIASES.iter().find(|(other, _)| *other == name).map(|&(_, known)| known);
@@ -133,14 +133,14 @@ fn text(bytes: &[u8]) -> Result<Text<'_>> {
         Some(b"MeshVersionFormatted") => {}
         Some(word) => {
             return Err(text
-                .unexpected("the first word", "`MeshVersionFormatted`, or the number 1 of binary files", word)
-                .remedy("is this another format?"));
+                .unexpected("the first word", "`MeshVersionFormatted`, or the number 1 in binary files", word)
+                .remedy("check the format of the file"));
         }
         None => return Err(text.unexpected_end("`MeshVersionFormatted`")),
     }
     let version = text.int("version")?;
     if !(0..=4).contains(&version) {
-        return Err(text.error(format!("version {version} of the format; 1 to 4 are read")));
+        return Err(text.error(format!("expected format version 1 to 4, found {version}")));
     }
     Ok(text)
 }

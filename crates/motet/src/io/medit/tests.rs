@@ -92,7 +92,7 @@ fn error_of(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn every_version_is_read_in_either_order_of_bytes() {
+fn every_version_is_read_in_either_byte_order() {
     for version in 1..=4 {
         for big in [false, true] {
             let (mesh, notes) = parse_meshb(&Bytes::new(version, big).tet());
@@ -103,40 +103,43 @@ fn every_version_is_read_in_either_order_of_bytes() {
             assert_eq!(mesh.cell_field(REF).unwrap().values, Values::I32(vec![5]));
             assert_eq!(mesh.point_field(REF).unwrap().values, Values::I32(vec![0, 1, 2, 3]));
             assert_eq!(mesh.point_field(REQUIRED).unwrap().values, Values::U8(vec![0, 1, 0, 0]));
-            assert_eq!(notes, ["section `number 999` is passed over: a mesh here has no place for it"]);
+            assert_eq!(notes, ["section `number 999` is skipped: a mesh cannot hold it"]);
         }
     }
 }
 
 #[test]
-fn a_file_cut_off_anywhere_is_reported() {
+fn truncated_files_are_reported() {
     for version in 1..=4 {
         let bytes = Bytes::new(version, false).tet();
         // Between two sections only the missing end reveals the cut; a file cut after the number of `End` is
         // complete.
         for n in 0..bytes.len() - if version < 3 { 4 } else { 8 } {
             let (mesh, notes) = parse_meshb(&bytes[..n]);
-            assert!(mesh.is_err() || notes.iter().any(|n| n.contains("no `End`")), "{version} at {n}");
+            assert!(
+                mesh.is_err() || notes.iter().any(|n| n.contains("`End` is missing")),
+                "{version} at {n}"
+            );
         }
     }
 }
 
 #[test]
-fn positions_and_counts_that_are_wrong_are_reported() {
+fn wrong_positions_and_counts_are_reported() {
     let good = Bytes::new(2, false).tet();
     // The position after the dimension, and those in the head of the vertices (whose section begins at byte
     // 20).
     for (at, value, words) in [
-        (12, 4, "the next begins at byte 4"),
-        (12, 1_000_000, "the next begins at byte 1000000"),
-        (12, -1, "the next begins at byte -1"),
-        (24, 20, "the next begins at byte 20"),
-        (24, 40, "4 vertices are announced, but what is left of the section holds at most 0"),
-        (28, 5, "5 vertices are announced"),
-        (28, 3, "the next section should begin here, but the file says at byte 144"),
-        (28, -1, "-1 vertices are announced"),
-        (4, 5, "version 5 of the format"),
-        (16, 4, "4 dimensions"),
+        (12, 4, "the next section, byte 4,"),
+        (12, 1_000_000, "the next section, byte 1000000,"),
+        (12, -1, "the next section, byte -1,"),
+        (24, 20, "the next section, byte 20,"),
+        (24, 40, "4 vertices declared, but the rest of the section can hold at most 0"),
+        (28, 5, "5 vertices declared"),
+        (28, 3, "the section ends here, but the file places the next one at byte 144"),
+        (28, -1, "-1 vertices declared"),
+        (4, 5, "expected format version 1 to 4, found 5"),
+        (16, 4, "expected dimension 2 or 3, found 4"),
     ] {
         let mut bytes = good.clone();
         bytes[at..at + 4].copy_from_slice(&i32::to_le_bytes(value));
@@ -146,13 +149,13 @@ fn positions_and_counts_that_are_wrong_are_reported() {
     for count in [i64::MAX, i64::MIN, 1 << 60] {
         let mut bytes = Bytes::new(4, false).tet();
         bytes[36..44].copy_from_slice(&count.to_le_bytes());
-        assert!(error_of(&bytes).contains("vertices are announced"));
+        assert!(error_of(&bytes).contains("vertices declared"));
     }
-    assert!(error_of(b"\x02\0\0\0\x02\0\0\0").contains("is this another format"));
+    assert!(error_of(b"\x02\0\0\0\x02\0\0\0").contains("check the format of the file"));
 }
 
 #[test]
-fn whatever_byte_is_wrong_nothing_panics() {
+fn damaged_bytes_never_panic() {
     for version in [1, 3] {
         let good = Bytes::new(version, false).tet();
         for at in 0..good.len() {
@@ -188,7 +191,7 @@ fn read_from(folder: &Path, name: &str) -> (Mesh, Vec<String>) {
 }
 
 #[test]
-fn a_solution_of_every_type_comes_back_with_its_mesh_in_both_forms() {
+fn solutions_of_every_type_round_trip_in_both_forms() {
     let mut mesh = two_kinds();
     for (name, components) in [("medit:sol", 1), ("medit:sol_2", 3), ("medit:sol_3", 6), ("medit:sol_4", 9)] {
         mesh.set_point_field(field(name, components, 4));
@@ -209,7 +212,7 @@ fn a_solution_of_every_type_comes_back_with_its_mesh_in_both_forms() {
 }
 
 #[test]
-fn a_tensor_stands_row_by_row_of_its_lower_half() {
+fn a_tensor_is_stored_by_rows_of_its_lower_triangle() {
     let mut mesh = Mesh::new(vec![[0.0; 3]], Cells::new());
     // xx yy zz xy yz xz
     mesh.set_point_field(Field {
@@ -220,11 +223,11 @@ fn a_tensor_stands_row_by_row_of_its_lower_half() {
     let Written { files, lost } = write::solution(&mesh, false).unwrap();
     let text = String::from_utf8(files[0].1.clone()).unwrap();
     assert!(text.contains("SolAtVertices\n1\n1 3\n11.0 12.0 22.0 13.0 23.0 33.0\n"), "{text}");
-    assert_eq!(lost, ["arrays are written without names, solutions of Medit have none: t"]);
+    assert_eq!(lost, ["array names are not written (Medit solutions have none): t"]);
 }
 
 #[test]
-fn values_of_two_dimensions_are_filled_up() {
+fn two_dimensional_values_are_padded_with_zeros() {
     let folder = tempfile::tempdir().unwrap();
     let put = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     put("a.mesh", "MeshVersionFormatted 2 Dimension 2 Vertices 1 5 6 0 End");
@@ -242,7 +245,7 @@ fn values_of_two_dimensions_are_filled_up() {
 }
 
 #[test]
-fn only_what_came_as_a_solution_goes_beside_a_mesh() {
+fn only_solution_arrays_are_written_beside_a_mesh() {
     let mut mesh = two_kinds();
     mesh.set_point_field(field("pressure", 1, 4));
     mesh.set_cell_field(field("pair", 2, 2));
@@ -252,14 +255,14 @@ fn only_what_came_as_a_solution_goes_beside_a_mesh() {
     assert!(lost.iter().any(|l| l.contains("pressure, n")) && lost.iter().any(|l| l.contains(".solb")));
     let Written { files, lost } = write::solution(&mesh, true).unwrap();
     assert_eq!(files.iter().map(|f| f.0.as_str()).collect::<Vec<_>>(), ["", ".meshb"]);
-    assert!(lost.iter().any(|l| l == "cell arrays are left out, Medit has none: pair"), "{lost:?}");
-    assert!(lost.iter().any(|l| l == "point arrays are left out, Medit has none: n"), "{lost:?}");
+    assert!(lost.iter().any(|l| l == "cell arrays are not written (Medit has none): pair"), "{lost:?}");
+    assert!(lost.iter().any(|l| l == "point arrays are not written (Medit has none): n"), "{lost:?}");
     mesh.point_data.clear();
-    assert!(write::solution(&mesh, true).unwrap_err().to_string().contains("no array of real numbers"));
+    assert!(write::solution(&mesh, true).unwrap_err().to_string().contains("no real-valued array"));
 }
 
 #[test]
-fn values_on_some_kinds_leave_the_others_out() {
+fn kinds_without_values_have_no_solution_section() {
     let mut mesh = two_kinds();
     mesh.set_cell_field(Field::scalars("medit:sol", vec![f64::NAN, 2.5]));
     let folder = tempfile::tempdir().unwrap();
@@ -272,7 +275,7 @@ fn values_on_some_kinds_leave_the_others_out() {
 }
 
 #[test]
-fn a_solution_that_does_not_belong_is_passed_over_by_the_mesh_and_refused_by_name() {
+fn a_solution_that_does_not_fit_is_skipped_with_the_mesh_and_refused_on_its_own() {
     let folder = tempfile::tempdir().unwrap();
     write_to(folder.path(), "a.mesh", &two_kinds());
     let put = |text: &str| std::fs::write(folder.path().join("a.sol"), text).unwrap();
@@ -280,7 +283,7 @@ fn a_solution_that_does_not_belong_is_passed_over_by_the_mesh_and_refused_by_nam
     put(&format!("{head}SolAtVertices\n3\n1 1\n1 2 3\nEnd\n"));
     let (mesh, notes) = read_from(folder.path(), "a.mesh");
     assert!(mesh.point_data.is_empty());
-    assert_eq!(notes, ["a.sol beside is passed over: it has 3 values on Vertices, but the mesh has 4"]);
+    assert_eq!(notes, ["a.sol is skipped: it has 3 values on Vertices, but the mesh has 4"]);
     let error = crate::io::read(folder.path().join("a.sol")).unwrap_err().to_string();
     assert!(
         error.contains("has 3 values on Vertices") && error.contains("do not belong together"),
@@ -288,16 +291,16 @@ fn a_solution_that_does_not_belong_is_passed_over_by_the_mesh_and_refused_by_nam
     );
     put("TITLE = \"some other program's\"\n");
     let (_, notes) = read_from(folder.path(), "a.mesh");
-    assert_eq!(notes, ["a.sol beside is passed over: it is no solution of Medit"]);
+    assert_eq!(notes, ["a.sol is skipped: it is not a Medit solution"]);
     // A damaged solution is reported even if only the mesh was named.
     for (text, words) in [
-        ("SolAtVertices\n4\n1 5\n1 2 3 4\nEnd\n", "5 is no type of an array"),
+        ("SolAtVertices\n4\n1 5\n1 2 3 4\nEnd\n", "expected an array type from 1 to 4, found 5"),
         ("SolAtVertices\n4\n1 1\n1 2 3\nEnd\n", "found `End`"),
-        ("SolAtVertices\n4\n1 1\n1 2 3", "4 rows of 1 values are announced"),
-        ("SolAtVertices\n4\n99999999999 1\n", "99999999999 arrays in one section; 0 to 1000 are read"),
-        ("SolAtVertices\n4\n1001 1 1\n", "1001 arrays in one section"),
-        ("SolAtVertices\n9999999999999\n1 1\n", "rows of a solution are announced"),
-        ("SolAtVertices\n40000\n1 4\n1 2", "rows of a solution are announced"),
+        ("SolAtVertices\n4\n1 1\n1 2 3", "4 rows of 1 values declared"),
+        ("SolAtVertices\n4\n99999999999 1\n", "expected 0 to 1000 arrays in a section, found 99999999999"),
+        ("SolAtVertices\n4\n1001 1 1\n", "arrays in a section, found 1001"),
+        ("SolAtVertices\n9999999999999\n1 1\n", "rows of a solution declared"),
+        ("SolAtVertices\n40000\n1 4\n1 2", "rows of a solution declared"),
     ] {
         put(&format!("{head}{text}"));
         for name in ["a.mesh", "a.sol"] {
@@ -315,14 +318,14 @@ fn a_solution_that_does_not_belong_is_passed_over_by_the_mesh_and_refused_by_nam
 }
 
 #[test]
-fn a_binary_solution_cut_off_anywhere_is_reported() {
+fn truncated_binary_solutions_are_reported() {
     let mut mesh = two_kinds();
     mesh.set_point_field(field("medit:sol", 6, 4));
     let Written { files, .. } = write::solution(&mesh, true).unwrap();
     for n in 0..files[0].1.len() - 4 {
         let notes = Notes::default();
         let content = content::Content::read(&files[0].1[..n], &notes);
-        assert!(content.is_err() || notes.into_vec().iter().any(|n| n.contains("no `End`")), "{n}");
+        assert!(content.is_err() || notes.into_vec().iter().any(|n| n.contains("`End` is missing")), "{n}");
     }
 }
 
@@ -331,8 +334,8 @@ fn marks_without_a_section_are_reported() {
     let mut mesh = two_kinds();
     mesh.set_cell_field(Field::scalars(RIDGE, vec![1u8, 0]));
     mesh.set_cell_field(Field::scalars(REQUIRED, vec![1u8, 1]));
-    let ridge = "medit:ridge of 1 Triangles is left out: there is no section for it";
+    let ridge = "medit:ridge of 1 Triangles is not written: there is no section for it";
     assert_eq!(write::mesh(&mesh, false).unwrap().lost, [ridge]);
-    let required = "medit:required of 1 Tetrahedra is left out: there is no section for it";
+    let required = "medit:required of 1 Tetrahedra is not written: there is no section for it";
     assert_eq!(write::mesh(&mesh, true).unwrap().lost, [ridge, required]);
 }

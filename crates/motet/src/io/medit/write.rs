@@ -14,10 +14,7 @@ pub(super) fn mesh(mesh: &Mesh, binary: bool) -> Result<Written> {
     let (mesh, lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
     let mut parts = Parts::of(&mesh, binary, |f| is_solution(f) && f.name.starts_with(SOLUTION), lost);
     if parts.omits_any(is_solution) {
-        parts.lost.push(
-            "arrays of real numbers are written where a name that ends with .sol or .solb is asked for"
-                .into(),
-        );
+        parts.lost.push("real-valued arrays are written only to .sol and .solb files".into());
     }
     let mut files = vec![(String::new(), parts.mesh_file())];
     if parts.has_solution() {
@@ -31,7 +28,7 @@ pub(super) fn solution(mesh: &Mesh, binary: bool) -> Result<Written> {
     let (mesh, lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
     let mut parts = Parts::of(&mesh, binary, is_solution, lost);
     if !parts.has_solution() {
-        return Err(Error::input("there is no array of real numbers that a solution could hold")
+        return Err(Error::input("there is no real-valued array to write as a solution")
             .remedy("write the mesh alone, as .mesh or .meshb"));
     }
     let mut files = vec![(String::new(), parts.solution_file())];
@@ -96,10 +93,7 @@ impl<'m> Parts<'m> {
     fn report_losses(&mut self) {
         let mesh = self.mesh;
         if !mesh.cells.kinds().is_sorted_by_key(|&kind| section_of(kind)) {
-            self.lost.push(
-                "Medit keeps cells by their kinds: their order in the file differs from that in the mesh"
-                    .into(),
-            );
+            self.lost.push("the order of the cells is not kept: Medit groups cells by kind".into());
         }
         let [points, cells] = &self.other;
         let cells = cells.iter().filter(|f| !is_mark(f) && !labels_cover(&self.labels, mesh, f));
@@ -123,14 +117,14 @@ impl<'m> Parts<'m> {
         let mut lost = Vec::new();
         if !nameless.is_empty() {
             let names = nameless.join(", ");
-            lost.push(format!("arrays are written without names, solutions of Medit have none: {names}"));
+            lost.push(format!("array names are not written (Medit solutions have none): {names}"));
         }
         if !single.is_empty() {
-            lost.push(format!("arrays come back in double precision: {}", single.join(", ")));
+            lost.push(format!("arrays are converted to double precision: {}", single.join(", ")));
         }
         if quadratic > 0 && !self.cells.is_empty() {
             lost.push(format!(
-                "values on {quadratic} cells of second order are left out: Medit has no solutions on these"
+                "values on {quadratic} second-order cells are not written: Medit has no solutions on them"
             ));
         }
         self.lost.extend(lost);
@@ -181,7 +175,7 @@ impl<'m> Parts<'m> {
                 _ if marked.is_empty() => {}
                 Some((list, _)) => write_places(sink, list, &marked),
                 None => self.lost.push(format!(
-                    "{} of {} {} is left out: there is no section for it",
+                    "{} of {} {} is not written: there is no section for it",
                     field.name,
                     marked.len(),
                     section.list.name

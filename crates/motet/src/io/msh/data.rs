@@ -44,7 +44,10 @@ impl Data {
         }
         let [step, components, n, ..] = integers[..] else {
             return Err(source
-                .error("an array without its step, its number of components and its number of values")
+                .error(format!(
+                    "expected at least 3 integer tags of an array (step, components, values), found {}",
+                    integers.len()
+                ))
                 .remedy("write the file again"));
         };
         source.text.line();
@@ -52,7 +55,7 @@ impl Data {
         let components = usize::try_from(components)
             .ok()
             .filter(|c| *c > 0)
-            .ok_or_else(|| source.error(format!("{components} is no number of components")))?;
+            .ok_or_else(|| source.error(format!("{components} is not a valid number of components")))?;
         let n = source.checked_count(
             u64::try_from(n).unwrap_or(u64::MAX),
             "values",
@@ -63,7 +66,7 @@ impl Data {
         data.tags.reserve(n);
         data.values.reserve(n * components);
         for _ in 0..n {
-            data.tags.push(i64::from(source.int("number of a node or element")?) as u64);
+            data.tags.push(i64::from(source.int("node or element number")?) as u64);
             for _ in 0..components {
                 data.values.push(source.double("value of an array")?);
             }
@@ -87,7 +90,7 @@ impl Data {
         let mut missing = vec![true; n_rows];
         for (tag, row) in self.tags.iter().zip(self.values.chunks_exact(self.components)) {
             let Some(place) = tags.place(*tag) else {
-                return Err(Error::input(format!("gives a value to {what} {tag}, which is not in the mesh"))
+                return Err(Error::input(format!("has a value for {what} {tag}, which does not exist"))
                     .at(format!("array {}", self.name))
                     .remedy("the file is damaged: write it again"));
             };
@@ -98,7 +101,7 @@ impl Data {
         let n_missing = missing.iter().filter(|m| **m).count();
         if n_missing > 0 {
             notes.add(format!(
-                "array {} has no value for {n_missing} of {n_rows} {what}s: there it is NaN",
+                "array {}: {n_missing} of {n_rows} {what}s have no value and get NaN",
                 self.name
             ));
         }
@@ -106,7 +109,7 @@ impl Data {
         let mut name = self.name;
         if fields.iter().any(|f| f.name == name) {
             let longer = format!("{name}:{}", self.step);
-            notes.add(format!("array {name} occurs more than once: a later one is now {longer}"));
+            notes.add(format!("array {name} occurs more than once: a later one is renamed {longer}"));
             name = longer;
         }
         if fields.iter().any(|f| f.name == name) {
@@ -123,7 +126,7 @@ impl Data {
     fn checked_size(&self, n_rows: usize) -> Result<usize> {
         let limit = 16 * n_rows.max(self.values.len()).max(1);
         n_rows.checked_mul(self.components).filter(|&size| size <= limit).ok_or_else(|| {
-            Error::input(format!("{} components on each of {n_rows}", self.components))
+            Error::input(format!("too many components: {} for each of {n_rows} rows", self.components))
                 .at(format!("array {}", self.name))
                 .remedy("the file is damaged: write it again")
         })

@@ -34,7 +34,7 @@ impl Entities {
         let counts = entity_counts(source)?;
         for (dim, n) in (0..).zip(counts) {
             for _ in 0..n {
-                let tag = source.int("number of an entity")?;
+                let tag = source.int("entity number")?;
                 let entity = EntityLabels { geometrical: tag, ..EntityLabels::default() };
                 self.read_body(source, (dim, tag), entity, notes)?;
             }
@@ -46,19 +46,19 @@ impl Entities {
     pub(super) fn read_partitioned(&mut self, source: &mut Source<'_>, notes: &Notes) -> Result<()> {
         source.size("the number of partitions")?;
         for _ in 0..source.count("ghost entities", 2)? {
-            source.int("number of a ghost entity")?;
+            source.int("ghost entity number")?;
             source.int("partition of a ghost entity")?;
-            notes.add("ghost entities are passed over: a mesh here has no place for them");
+            notes.add("ghost entities are skipped: a mesh cannot hold them");
         }
         let counts = entity_counts(source)?;
         for (dim, n) in (0..).zip(counts) {
             for _ in 0..n {
-                let tag = source.int("number of a partitioned entity")?;
+                let tag = source.int("partitioned entity number")?;
                 let parent_dim = source.int("dimension of the parent entity")?;
-                let parent = source.int("number of the parent entity")?;
+                let parent = source.int("parent entity number")?;
                 let mut partition = 0;
                 for i in 0..source.count("partitions of an entity", 1)? {
-                    let number = source.int("number of a partition")?;
+                    let number = source.int("partition number")?;
                     partition = if i == 0 { number } else { partition };
                 }
                 let geometrical = if parent_dim == dim { parent } else { tag };
@@ -78,21 +78,21 @@ impl Entities {
         notes: &Notes,
     ) -> Result<()> {
         for _ in 0..if key.0 == 0 { 3 } else { 6 } {
-            source.double("box of an entity")?;
+            source.double("bounding box of an entity")?;
         }
         let n_physical = source.count("physical groups of an entity", 1)?;
         for i in 0..n_physical {
             // The sign states whether the group reverses the entity; its elements are stored reversed
             // already.
-            let tag = source.int("number of a physical group")?.saturating_abs();
+            let tag = source.int("physical group number")?.saturating_abs();
             entity.physical = if i == 0 { tag } else { entity.physical };
         }
         if n_physical > 1 {
-            notes.add("some entities are in several physical groups: their cells keep the first of them");
+            notes.add("some entities are in several physical groups: their cells keep the first");
         }
         if key.0 > 0 {
             for _ in 0..source.count("bounding entities", 1)? {
-                source.int("number of a bounding entity")?;
+                source.int("bounding entity number")?;
             }
         }
         self.0.insert(key, entity);

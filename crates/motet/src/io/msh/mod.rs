@@ -13,7 +13,7 @@
 //! Version 4.1 is written unless 2.2 is requested, or only some cells have a label: meshio (5.3) cannot read
 //! such files in version 4.1.
 //!
-//! `mshio` (0.4, 2020) was tried: it reads ASCII 4.1, but neither the binary files of meshio nor 2.2, no
+//! Not used: `mshio` (0.4, 2020), which reads ASCII 4.1, but no binary files of meshio, no version 2.2, no
 //! names and no data, and does not write.
 
 mod data;
@@ -27,4 +27,4 @@ mod write;
 use crate::io::Format;
 
 pub(super) const FORMAT: Format =
-    Format { name: "Gmsh MSH", endings: &[".msh"], read: Some(read::read), write: Some(write::write) };
+    Format { name: "Gmsh MSH", extensions: &[".msh"], read: Some(read::read), write: Some(write::write) };

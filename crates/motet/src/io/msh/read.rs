@@ -57,17 +57,17 @@ impl Reader {
             ("Comments", _) => return source.skip_section(name),
             ("NOD" | "ELM", _) => {
                 return Err(source
-                    .error("this is MSH version 1; versions 2.2 and 4.1 are read")
-                    .remedy("turn it into another version: gmsh FILE -save -format msh41 -o NEW.msh"));
+                    .error("expected MSH version 2.2 or 4.1, found version 1")
+                    .remedy("convert it: gmsh FILE -save -format msh41 -o NEW.msh"));
             }
             (_, Version::Unknown) => {
                 return Err(source
-                    .error(format!("expected $MeshFormat at the head of the file, found ${name}"))
-                    .remedy("is this a Gmsh file? A geometry (.geo) has to be meshed first"));
+                    .error(format!("expected $MeshFormat at the start of the file, found ${name}"))
+                    .remedy("check that it is a Gmsh mesh: a geometry (.geo) must be meshed first"));
             }
             ("PhysicalNames", _) => self.physical_names(source)?,
             ("Nodes" | "ParametricNodes", _) if self.nodes.is_some() => {
-                return Err(source.error("a second section of nodes"));
+                return Err(source.error("duplicate section $Nodes"));
             }
             ("Nodes", Version::V2) => self.nodes2(source, false)?,
             ("ParametricNodes", Version::V2) => self.nodes2(source, true)?,
@@ -79,7 +79,7 @@ impl Reader {
             ("NodeData", _) => self.data.push(Data::read(source, Location::Node)?),
             ("ElementData", _) => self.data.push(Data::read(source, Location::Element)?),
             _ => {
-                notes.add(format!("section ${name} is passed over: a mesh here has no place for it"));
+                notes.add(format!("section ${name} is skipped: a mesh cannot hold it"));
                 return source.skip_section(name);
             }
         }
@@ -94,26 +94,26 @@ impl Reader {
             b"4.1" => Version::V4,
             _ => {
                 return Err(source
-                    .error(format!("this is MSH version {}; versions 2.2 and 4.1 are read", quoted(version)))
-                    .remedy("turn it into another version: gmsh FILE -save -format msh41 -o NEW.msh"));
+                    .error(format!("expected MSH version 2.2 or 4.1, found version {}", quoted(version)))
+                    .remedy("convert it: gmsh FILE -save -format msh41 -o NEW.msh"));
             }
         };
         let binary = source.int("the kind of file (0 ascii, 1 binary)")? != 0;
         source.size_bytes = match source.int("the size of numbers")? {
             4 => 4,
             8 => 8,
-            other => return Err(source.error(format!("numbers of {other} bytes; 4 and 8 are read"))),
+            other => return Err(source.error(format!("expected numbers of 4 or 8 bytes, found {other}"))),
         };
         if binary {
             source.text.line();
             source.form = Form::Binary { swapped: false };
-            source.form = match source.int("the number 1, by which the order of bytes is known")? {
+            source.form = match source.int("the number 1, which determines the byte order")? {
                 1 => Form::Binary { swapped: false },
                 0x0100_0000 => Form::Binary { swapped: true },
                 other => {
                     return Err(source
-                        .error(format!("expected the number 1 in either order of bytes, found {other}"))
-                        .remedy("the file is damaged, or not binary as it says"));
+                        .error(format!("expected the number 1 in either byte order, found {other}"))
+                        .remedy("the file is damaged, or not binary as declared"));
                 }
             };
         }
@@ -125,7 +125,7 @@ impl Reader {
         let text = &mut source.text;
         for _ in 0..text.count("physical names", 3)? {
             let dim = text.int("dimension of a physical group")?;
-            let tag = text.int32("number of a physical group")?;
+            let tag = text.int32("physical group number")?;
             let line = text.line().ok_or_else(|| text.unexpected_end("name of a physical group"))?;
             let name = unquoted(line);
             match dim {
@@ -133,7 +133,10 @@ impl Reader {
                 2 => drop(self.label_names.patches.insert(tag, name)),
                 1 => self.field_data.push(Field::scalars(format!("curve:{name}"), vec![tag])),
                 0 => self.field_data.push(Field::scalars(format!("point:{name}"), vec![tag])),
-                _ => return Err(text.error(format!("{dim} is no dimension of a physical group"))),
+                _ => {
+                    return Err(text
+                        .error(format!("expected the dimension of a physical group, 0 to 3, found {dim}")));
+                }
             }
         }
         Ok(())
@@ -145,14 +148,14 @@ impl Reader {
         let n = source.checked_count(n as u64, "nodes", 4)?;
         self.reserve_nodes(n);
         for _ in 0..n {
-            let tag = source.int("number of a node")?;
+            let tag = source.int("node number")?;
             let tag =
-                u64::try_from(tag).map_err(|_| source.error(format!("{tag} is no number of a node")))?;
+                u64::try_from(tag).map_err(|_| source.error(format!("node number {tag} is negative")))?;
             self.node_tags.push(tag);
             self.points.push(source.point()?);
             if parametric {
                 let dim = source.int("dimension of an entity")?;
-                source.int("number of an entity")?;
+                source.int("entity number")?;
                 for _ in 0..if (1..3).contains(&dim) { dim } else { 0 } {
                     source.double("parameter of a node")?;
                 }
@@ -165,17 +168,17 @@ impl Reader {
     fn nodes4(&mut self, source: &mut Source<'_>) -> Result<()> {
         let n_blocks = source.count("blocks of nodes", 4)?;
         let n_nodes = source.count("nodes", 4)?;
-        source.size("the least number of a node")?;
-        source.size("the largest number of a node")?;
+        source.size("the smallest node number")?;
+        source.size("the largest node number")?;
         self.reserve_nodes(n_nodes);
         for _ in 0..n_blocks {
             let dim = source.int("dimension of an entity")?;
-            let entity = source.int("number of an entity")?;
+            let entity = source.int("entity number")?;
             let parametric = source.int("whether nodes are parametric")? != 0;
             let n = source.count("nodes of a block", 4)?;
             let n_parameters = if parametric { dim.clamp(0, 3) } else { 0 };
             for _ in 0..n {
-                self.node_tags.push(source.size("number of a node")?);
+                self.node_tags.push(source.size("node number")?);
             }
             for _ in 0..n {
                 self.points.push(source.point()?);
@@ -187,7 +190,7 @@ impl Reader {
         }
         if self.points.len() != n_nodes {
             return Err(source
-                .error(format!("{n_nodes} nodes are announced, but the blocks hold {}", self.points.len()))
+                .error(format!("{n_nodes} nodes declared, but the blocks contain {}", self.points.len()))
                 .remedy("the file is damaged: write it again"));
         }
         self.nodes = Some(Tags::new(&self.node_tags, "node").map_err(|e| e.at("$Nodes"))?);
@@ -208,11 +211,11 @@ impl Reader {
         while done < n {
             let (header_tag, number, n_here) = match source.form {
                 Form::Ascii => {
-                    let tag = source.int("number of an element")?;
-                    (Some(tag), source.int("type of an element")?, 1)
+                    let tag = source.int("element number")?;
+                    (Some(tag), source.int("element type")?, 1)
                 }
                 Form::Binary { .. } => {
-                    let number = source.int("type of elements")?;
+                    let number = source.int("element type")?;
                     (None, number, source.int_count("elements of a block", 2)?)
                 }
             };
@@ -221,14 +224,14 @@ impl Reader {
             for _ in 0..n_here {
                 let tag = match header_tag {
                     Some(tag) => tag,
-                    None => source.int("number of an element")?,
+                    None => source.int("element number")?,
                 };
                 let labels = tags2(source, n_tags, notes)?;
                 // Numbers of elements only serve as names here, so a negative one is valid.
                 self.element(source, element_type, i64::from(tag) as u64, labels)?;
             }
             if n_here == 0 {
-                return Err(source.error("a block without an element"));
+                return Err(source.error("a block contains no elements"));
             }
             done += n_here;
         }
@@ -252,7 +255,7 @@ impl Reader {
         if kept.len() == same.len() {
             return;
         }
-        notes.add("some elements are in several physical groups: their cells keep the first of them");
+        notes.add("some elements are in several physical groups: their cells keep the first");
         let mut cells = Cells::new();
         kept.iter().for_each(|&cell| cells.push(of(cell).0, of(cell).1.iter().copied()));
         let mut places = vec![0; same.len()];
@@ -266,26 +269,26 @@ impl Reader {
         let types = element_types();
         let n_blocks = source.count("blocks of elements", 4)?;
         let n_elements = source.count("elements", 2)?;
-        source.size("the least number of an element")?;
-        source.size("the largest number of an element")?;
+        source.size("the smallest element number")?;
+        source.size("the largest element number")?;
         self.element_tags.reserve(n_elements);
         let before = self.cells.len();
         for _ in 0..n_blocks {
             let dim = source.int("dimension of an entity")?;
-            let entity = source.int("number of an entity")?;
-            let number = source.int("type of elements")?;
+            let entity = source.int("entity number")?;
+            let number = source.int("element type")?;
             let element_type = find_type(&types, number, source)?;
             let n = source.count("elements of a block", 1 + element_type.vtk_to_gmsh.len())?;
             let labels = self.entities.get(dim, entity);
             for _ in 0..n {
-                let tag = source.size("number of an element")?;
+                let tag = source.size("element number")?;
                 self.element(source, element_type, tag, labels)?;
             }
         }
         if self.cells.len() - before != n_elements {
             return Err(source
                 .error(format!(
-                    "{n_elements} elements are announced, but the blocks hold {}",
+                    "{n_elements} elements declared, but the blocks contain {}",
                     self.cells.len() - before
                 ))
                 .remedy("the file is damaged: write it again"));
@@ -304,7 +307,7 @@ impl Reader {
         let order = &element_type.vtk_to_gmsh;
         let mut gmsh = [VertexId::default(); 32];
         let Some(nodes) = &self.nodes else {
-            return Err(source.error("elements come before the nodes").remedy("write the file again"));
+            return Err(source.error("elements precede the nodes").remedy("write the file again"));
         };
         for vertex in &mut gmsh[..order.len()] {
             let node = match self.version {
@@ -313,7 +316,7 @@ impl Reader {
             };
             *vertex = VertexId(nodes.place(node).ok_or_else(|| {
                 source
-                    .error(format!("element {tag} names node {}, which is not among the nodes", node as i64))
+                    .error(format!("element {tag} refers to node {}, which does not exist", node as i64))
                     .remedy("the file is damaged: write it again")
             })?);
         }
@@ -330,7 +333,7 @@ impl Reader {
         let Some(nodes) = &self.nodes else {
             return Err(source
                 .error("there is no section $Nodes")
-                .remedy("the file holds no mesh, or is cut off: get it again"));
+                .remedy("the file contains no mesh or is truncated: get a new copy"));
         };
         let mut mesh = Mesh::new(self.points, self.cells);
         if !self.node_entities.is_empty() {
@@ -369,7 +372,7 @@ fn tags2(source: &mut Source<'_>, n_tags: usize, notes: &Notes) -> Result<Entity
             0 => labels.physical = tag,
             1 => labels.geometrical = tag,
             3 => labels.partition = tag.saturating_abs(),
-            4 => notes.add("some elements are in several partitions: they keep the first of them"),
+            4 => notes.add("some elements are in several partitions: they keep the first"),
             _ => {}
         }
     }
@@ -379,9 +382,7 @@ fn tags2(source: &mut Source<'_>, n_tags: usize, notes: &Notes) -> Result<Entity
 fn find_type<'t>(types: &'t [ElementType], number: i32, source: &Source<'_>) -> Result<&'t ElementType> {
     types.iter().find(|t| t.number == number).ok_or_else(|| {
         source
-            .error(format!(
-                "elements of type {number} are not read: only those of first and second order are"
-            ))
+            .error(format!("element type {number} is not supported: only first and second order are"))
             .remedy("write the mesh with a lower order (gmsh -order 2)")
     })
 }

@@ -31,9 +31,7 @@ impl<'a> Source<'a> {
         let Some(word) = self.text.word() else { return Ok(None) };
         let name = word.strip_prefix(b"$").filter(|name| !name.starts_with(b"End"));
         let Some(name) = name.and_then(|name| std::str::from_utf8(name).ok()) else {
-            return Err(
-                self.error(format!("expected the beginning of a section ($...), found {}", quoted(word)))
-            );
+            return Err(self.error(format!("expected the start of a section ($...), found {}", quoted(word))));
         };
         self.text.line();
         Ok(Some(name.to_owned()))
@@ -44,9 +42,9 @@ impl<'a> Source<'a> {
         let end = format!("$End{name}");
         match self.text.word() {
             Some(word) if word == end.as_bytes() => Ok(()),
-            Some(word) => Err(self.error(format!("expected {end}, found {}", quoted(word))).remedy(
-                "the number at the head of the section is wrong, or the file is damaged: write it again",
-            )),
+            Some(word) => Err(self
+                .error(format!("expected {end}, found {}", quoted(word)))
+                .remedy("the count of the section is wrong, or the file is damaged: write it again")),
             None => Err(self.unexpected_end(&end)),
         }
     }
@@ -105,16 +103,16 @@ impl<'a> Source<'a> {
         Ok([self.double("coordinate x")?, self.double("coordinate y")?, self.double("coordinate z")?])
     }
 
-    /// Reads a number of items as a `size_t`; see [`Self::checked`].
+    /// Reads a number of items as a `size_t`; see [`Self::checked_count`].
     pub(super) fn count(&mut self, what: &str, numbers_each: usize) -> Result<usize> {
         let n = self.size(&format!("the number of {what}"))?;
         self.checked_count(n, what, numbers_each)
     }
 
-    /// Reads a number of items as an `int`; see [`Self::checked`].
+    /// Reads a number of items as an `int`; see [`Self::checked_count`].
     pub(super) fn int_count(&mut self, what: &str, numbers_each: usize) -> Result<usize> {
         let n = self.int(&format!("the number of {what}"))?;
-        let n = u64::try_from(n).map_err(|_| self.error(format!("{n} is no number of {what}")))?;
+        let n = u64::try_from(n).map_err(|_| self.error(format!("the number of {what} is negative: {n}")))?;
         self.checked_count(n, what, numbers_each)
     }
 
@@ -124,8 +122,8 @@ impl<'a> Source<'a> {
         let bytes_per_number = if self.form == Form::Ascii { 2 } else { 4 };
         let room = (self.text.rest().len() + 1) / (bytes_per_number * numbers_each).max(1);
         usize::try_from(n).ok().filter(|&n| n <= room).ok_or_else(|| {
-            self.error(format!("{n} {what} are announced, but what is left of the file holds at most {room}"))
-                .remedy("the file is cut off or damaged: get it again")
+            self.error(format!("{n} {what} declared, but the rest of the file can hold at most {room}"))
+                .remedy("the file is truncated or damaged: get a new copy")
         })
     }
 
@@ -138,8 +136,8 @@ impl<'a> Source<'a> {
     }
 
     fn unexpected_end(&self, what: &str) -> Error {
-        self.error(format!("the file ends where {what} should follow"))
-            .remedy("the file is cut off: get it again")
+        self.error(format!("expected {what}, found the end of the file"))
+            .remedy("the file is truncated: get a new copy")
     }
 
     fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N]> {

@@ -40,7 +40,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
         Some("2.2" | "2") => Some(Version::V2),
         Some(other) => {
             return Err(
-                Error::options(format!("MSH version {other} is not written")).remedy("ask for 4.1 or 2.2")
+                Error::options(format!("MSH version {other} cannot be written")).remedy("choose 4.1 or 2.2")
             );
         }
     };
@@ -76,7 +76,7 @@ impl CellTags {
         let given = mesh.cell_field("gmsh:geometrical").is_some();
         if given && entities != wanted {
             lost.push(
-                "gmsh:geometrical: entities without a number, or with cells of several labels, got new numbers".into(),
+                "gmsh:geometrical: entities without a number, or with cells of several labels, get new numbers".into(),
             );
         }
         Ok(Self { dims, physical, entities, partitions: int_column(mesh, "gmsh:partition") })
@@ -112,7 +112,7 @@ fn entities_of(dims: &[i32], wanted: &[i32], physical: &[i32]) -> Result<Vec<i32
             Some(&new) => new,
             None => {
                 let new = numbers.new_one(dim).ok_or_else(|| {
-                    Error::input("no number is left for a new entity").remedy("leave gmsh:geometrical out")
+                    Error::input("no entity number is left").remedy("remove the array gmsh:geometrical")
                 })?;
                 entity_of.insert((dim, entity, label), new);
                 new
@@ -378,10 +378,7 @@ fn data(sink: &mut Sink, mesh: &Mesh, tagged: &CellTags, version2: bool, lost: &
         .map(|f| f.name.as_str())
         .collect();
     if !other.is_empty() {
-        lost.push(format!(
-            "MSH has arrays in double precision only; as such come back: {}",
-            other.join(", ")
-        ));
+        lost.push(format!("arrays are converted to double precision: {}", other.join(", ")));
     }
     let names = |f: &&Field| !f.name.starts_with("point:") && !f.name.starts_with("curve:");
     lost.extend(lost_arrays("MSH", "field", mesh.field_data.iter().filter(names)));
@@ -404,7 +401,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_entity_has_one_label_and_none_is_below_one() {
+    fn an_entity_has_one_label_and_a_positive_number() {
         let dims = [3, 3, 3, 2, 2];
         let wanted = [7, 7, 0, 7, -1];
         let physical = [1, 2, 0, 3, 3];

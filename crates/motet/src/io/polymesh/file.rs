@@ -20,7 +20,7 @@ impl<'a> File<'a> {
         let mut file =
             Self { bytes, at: 0, is_binary: false, label_bytes: 4, scalar_bytes: 8, class: String::new() };
         if file.word()? != b"FoamFile" {
-            return Err(file.error("is no file of OpenFOAM: it does not begin with FoamFile"));
+            return Err(file.error("is not an OpenFOAM file: expected `FoamFile` at the start"));
         }
         file.expect(b"{")?;
         loop {
@@ -46,8 +46,8 @@ impl<'a> File<'a> {
             let bits = |of: &str| part.strip_prefix(of).and_then(|bits| bits.parse::<usize>().ok());
             if part == "MSB" {
                 return Err(self
-                    .error("binary numbers of the other byte order")
-                    .remedy("convert it to text by foamFormatConvert"));
+                    .error("big-endian binary numbers are not supported")
+                    .remedy("convert it to text with foamFormatConvert"));
             }
             if let Some(bits) = bits("label=") {
                 self.label_bytes = bits / 8;
@@ -58,7 +58,7 @@ impl<'a> File<'a> {
         }
         match (self.label_bytes, self.scalar_bytes) {
             (4 | 8, 4 | 8) => Ok(()),
-            _ => Err(self.error("numbers of neither 32 nor 64 bits")),
+            _ => Err(self.error("expected numbers of 32 or 64 bits")),
         }
     }
 
@@ -97,7 +97,9 @@ impl<'a> File<'a> {
     /// The next word; an error at the end of the file.
     pub(super) fn word(&mut self) -> Result<&'a [u8]> {
         match self.next() {
-            [] => Err(self.error("the file ends too early").remedy("the file is cut off: get it again")),
+            [] => {
+                Err(self.error("unexpected end of the file").remedy("the file is truncated: get a new copy"))
+            }
             word => Ok(word),
         }
     }
@@ -145,7 +147,7 @@ impl<'a> File<'a> {
     /// Reads a non-negative integer.
     pub(super) fn count(&mut self) -> Result<usize> {
         let n = self.int()?;
-        usize::try_from(n).map_err(|_| self.error(format!("{n} is no number of things")))
+        usize::try_from(n).map_err(|_| self.error(format!("expected a count, found {n}")))
     }
 
     /// Reads a number of entries of at least `bytes_each` bytes each, and checks it against the remaining
@@ -156,13 +158,11 @@ impl<'a> File<'a> {
         let room = (self.bytes.len() - self.at) / bytes_each + 1;
         if n > room && self.peek() != b"{" {
             return Err(self
-                .error(format!(
-                    "{n} entries are announced, but what is left of the file holds at most {room}"
-                ))
-                .remedy("the file is cut off or damaged: get it again"));
+                .error(format!("{n} entries declared, but the rest of the file can hold at most {room}"))
+                .remedy("the file is truncated or damaged: get a new copy"));
         }
         if n > VertexId::MAX_COUNT {
-            return Err(self.error(format!("{n} entries are more than a mesh can have")));
+            return Err(self.error(format!("{n} entries are more than a mesh can hold")));
         }
         Ok(n)
     }
@@ -210,12 +210,13 @@ impl<'a> File<'a> {
             let narrow = |list: Vec<i64>| list.into_iter().map(u32::try_from).collect::<Result<Vec<_>, _>>();
             let (offsets, points) = (narrow(offsets), narrow(points));
             let lists = offsets.ok().zip(points.ok()).and_then(|(offsets, points)| Csr::new(offsets, points));
-            return lists.ok_or_else(|| self.error("offsets of faces that do not rise, or a point below 0"));
+            return lists
+                .ok_or_else(|| self.error("face offsets do not ascend, or a point number is negative"));
         }
         if self.is_binary {
             return Err(self
-                .error("a binary list of faces of an old kind")
-                .remedy("convert it by foamFormatConvert"));
+                .error("binary face lists of this old type are not supported")
+                .remedy("convert it with foamFormatConvert"));
         }
         let n = self.checked_count(4)?;
         let mut faces = Csr::default();
@@ -223,7 +224,7 @@ impl<'a> File<'a> {
         for _ in 0..n {
             let points = self.labels()?;
             let points: Result<Vec<u32>, _> = points.into_iter().map(u32::try_from).collect();
-            faces.push(points.map_err(|_| self.error("a face with a point below 0"))?);
+            faces.push(points.map_err(|_| self.error("a face has a negative point number"))?);
         }
         self.expect(b")")?;
         Ok(faces)
@@ -257,7 +258,7 @@ impl<'a> File<'a> {
         self.expect(b"(")?;
         let bytes = self.bytes[self.at..].get(..n * size);
         let bytes = bytes.ok_or_else(|| {
-            self.error("the file ends within a list").remedy("the file is cut off: get it again")
+            self.error("the file ends inside a list").remedy("the file is truncated: get a new copy")
         })?;
         self.at += bytes.len();
         self.expect(b")").map(|()| bytes)

@@ -41,6 +41,6 @@ pub(super) fn load(folder: &Path, name: &str) -> Result<Option<(PathBuf, Vec<u8>
     if !gzip::is_gzip(&bytes) {
         return Ok(Some((path, bytes)));
     }
-    let unpacked = gzip::decompress(&bytes).map_err(|e| e.in_file(&path))?;
-    Ok(Some((path, unpacked)))
+    let decompressed = gzip::decompress(&bytes).map_err(|e| e.in_file(&path))?;
+    Ok(Some((path, decompressed)))
 }

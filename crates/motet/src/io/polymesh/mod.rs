@@ -28,7 +28,7 @@ pub(super) use folder::{is_case, is_polymesh_name};
 
 pub(super) const FORMAT: Format = Format {
     name: "OpenFOAM polyMesh",
-    endings: &["polymesh/", ".foam"],
+    extensions: &["polymesh/", ".foam"],
     read: Some(read::read),
     write: Some(write::write),
 };

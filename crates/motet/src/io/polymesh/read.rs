@@ -12,10 +12,10 @@ use crate::mesh::{CellKind, Cells, Field, Mesh};
 pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let folder = mesh_folder(input.path).ok_or_else(|| {
         Error::input(
-            "there is no polyMesh: neither here nor in constant/polyMesh are points, faces and owner",
+            "there is no polyMesh: points, faces and owner are neither here nor in constant/polyMesh",
         )
         .in_file(input.path)
-        .remedy("name the case, or its polyMesh folder")
+        .remedy("give the case, or its polyMesh folder")
     })?;
     let points = required(&folder, "points", |file| file.points())?;
     let faces = required(&folder, "faces", |file| file.faces())?;
@@ -31,7 +31,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
         let end = patch.start.checked_add(patch.n).filter(|&end| end <= faces.len());
         let end = end.ok_or_else(|| {
             in_folder(Error::input(format!(
-                "patch {} has faces beyond the {} that there are",
+                "patch {} extends beyond the {} faces of the mesh",
                 patch.name,
                 faces.len()
             )))
@@ -47,7 +47,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     for other in ["faceZones", "pointZones"] {
         let is_there = load(&folder, other)?.is_some_and(|(_, bytes)| !bytes.ends_with(b"0()"));
         if is_there && has_entries(&folder, other)? {
-            input.notes.add(format!("{other} are passed over"));
+            input.notes.add(format!("{other} are skipped"));
         }
     }
     Ok(mesh)
@@ -56,7 +56,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
 /// Reads a required file.
 fn required<T>(folder: &Path, name: &str, read: impl Fn(&mut File<'_>) -> Result<T>) -> Result<T> {
     optional(folder, name, read)?.ok_or_else(|| {
-        Error::input("is not there")
+        Error::input("is missing")
             .in_file(folder.join(name))
             .remedy("a polyMesh has points, faces, owner, neighbour and boundary")
     })
@@ -136,11 +136,13 @@ fn zones(folder: &Path, mesh: &mut Mesh, n_cells: usize, notes: &Notes) -> Resul
     for (label, (name, cells)) in (1..).zip(zones) {
         for cell in cells {
             let place = usize::try_from(cell).ok().filter(|&cell| cell < n_cells).ok_or_else(|| {
-                Error::input(format!("zone {name} names cell {cell} of {n_cells}"))
-                    .in_file(folder.join("cellZones"))
+                Error::input(format!(
+                    "zone {name} refers to cell {cell}, but there are {n_cells} cells, numbered from 0"
+                ))
+                .in_file(folder.join("cellZones"))
             })?;
             if regions[place] != 0 {
-                notes.add("of a cell in several zones the first counts");
+                notes.add("for cells in several zones, only the first is used");
             } else {
                 regions[place] = label;
             }
@@ -179,9 +181,8 @@ impl<'a> Sides<'a> {
         if let Some(i) =
             faces.iter().position(|face| face.len() < 3 || face.iter().any(|&v| v as usize >= n_points))
         {
-            return Err(
-                Error::input("has less than three points, or one that is not there").at(format!("face {i}"))
-            );
+            return Err(Error::input("has fewer than three points, or a point that does not exist")
+                .at(format!("face {i}")));
         }
         // A cell has at least four faces, so valid cell numbers are below the number of faces.
         let sides = owner.iter().enumerate().map(|(face, &cell)| (face, cell, true));
@@ -191,8 +192,10 @@ impl<'a> Sides<'a> {
         // In some versions of OpenFOAM every face has a neighbour, which is -1 at the boundary.
         for (face, cell, is_owner) in sides.filter(|&(_, cell, is_owner)| is_owner || cell >= 0) {
             let cell = usize::try_from(cell).ok().filter(|&cell| cell < most).ok_or_else(|| {
-                Error::input(format!("names cell {cell}, with {most} faces in all"))
-                    .at(format!("face {face}"))
+                Error::input(format!(
+                    "refers to cell {cell}, but cell numbers must be below the number of faces, {most}"
+                ))
+                .at(format!("face {face}"))
             })?;
             if of_cells.len() <= cell {
                 of_cells.resize_with(cell + 1, Vec::new);
@@ -200,7 +203,7 @@ impl<'a> Sides<'a> {
             of_cells[cell].push((face as u32, is_owner));
         }
         match of_cells.iter().position(|sides| sides.len() < 4) {
-            Some(cell) => Err(Error::input("has less than four faces").at(format!("cell {cell}"))),
+            Some(cell) => Err(Error::input("has fewer than four faces").at(format!("cell {cell}"))),
             None => Ok(Self { faces, of_cells }),
         }
     }

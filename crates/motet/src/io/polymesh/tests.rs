@@ -23,7 +23,7 @@ fn get(folder: &Path) -> Result<Mesh, Error> {
 }
 
 #[test]
-fn cells_of_every_kind_come_back_in_their_order() {
+fn cells_of_every_kind_round_trip_in_their_order() {
     for mesh in [mixed(2), sphere_in_box(2, 2)] {
         for encoding in [Encoding::Ascii, Encoding::Binary] {
             let folder = tempfile::tempdir().unwrap();
@@ -55,11 +55,11 @@ fn cells_of_every_kind_come_back_in_their_order() {
 }
 
 #[test]
-fn what_a_polymesh_cannot_hold_is_reported() {
+fn losses_are_reported() {
     let mut mesh = quadratic(&mixed(1));
     mesh.set_point_field(Field::scalars("u", vec![0.0; mesh.points.len()]));
     let written = written(&mesh, Encoding::Binary);
-    assert!(written.lost.iter().any(|lost| lost.contains("middles of edges")), "{:?}", written.lost);
+    assert!(written.lost.iter().any(|lost| lost.contains("middle nodes")), "{:?}", written.lost);
     assert!(written.lost.iter().any(|lost| lost.contains('u')), "{:?}", written.lost);
     let refused = |mesh: &Mesh| write::write(mesh, &WriteOptions::default()).unwrap_err().to_string();
     let triangle = Cells::uniform(CellKind::TRIANGLE, [0, 1, 2].map(VertexId).to_vec()).unwrap();
@@ -71,7 +71,7 @@ fn what_a_polymesh_cannot_hold_is_reported() {
 }
 
 #[test]
-fn names_are_made_words() {
+fn names_become_openfoam_words() {
     let mut mesh = sphere_in_box(2, 2);
     let names: Vec<String> = ["Wall (inner)/1", "3rd; patch"].map(str::to_owned).to_vec();
     mesh.label_names.patches = mesh.label_names.patches.keys().copied().zip(names).collect();
@@ -120,17 +120,17 @@ fn damage_is_refused_and_nothing_panics() {
         assert!(changed("boundary", "nFaces", "many").contains("no startFace or no nFaces"));
         if encoding == Encoding::Ascii {
             let n = mixed(1).points.len();
-            assert!(changed("points", &format!("\n{n}\n"), "\n900000000\n").contains("are announced"));
-            assert!(changed("owner", "(\n0\n", "(\n70000\n").contains("names cell 70000"));
-            assert!(changed("faces", "4(", "4(99").contains("one that is not there"));
-            assert!(changed("points", "label=32", "label=16").contains("neither 32 nor 64"));
+            assert!(changed("points", &format!("\n{n}\n"), "\n900000000\n").contains("entries declared"));
+            assert!(changed("owner", "(\n0\n", "(\n70000\n").contains("refers to cell 70000"));
+            assert!(changed("faces", "4(", "4(99").contains("a point that does not exist"));
+            assert!(changed("points", "label=32", "label=16").contains("expected numbers of 32 or 64 bits"));
         }
     }
-    assert_eq!(FORMAT.endings, ["polymesh/", ".foam"]);
+    assert_eq!(FORMAT.extensions, ["polymesh/", ".foam"]);
 }
 
 #[test]
-fn comments_and_lists_of_one_value_are_read() {
+fn comments_and_uniform_lists_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let head = |class: &str| {
         format!("/* C++ \\*/\nFoamFile {{ version 2; format ascii; class {class}; }}\n// * * * //\n")

@@ -52,7 +52,7 @@ fn cell_numbers(mesh: &Mesh) -> Result<Vec<u32>> {
             return Ok(NONE);
         }
         if facets.count(cell) == 0 {
-            return Err(Error::input(format!("cells of kind {} have no faces that are known", kind.label()))
+            return Err(Error::input(format!("the faces of cells of kind {} are unknown", kind.label()))
                 .at(format!("cell {cell}")));
         }
         next += 1;
@@ -60,7 +60,7 @@ fn cell_numbers(mesh: &Mesh) -> Result<Vec<u32>> {
     };
     let numbers = mesh.cells.iter().map(&mut number).collect::<Result<Vec<_>>>()?;
     match next {
-        0 => Err(Error::input("a polyMesh needs volume cells, and there are none")
+        0 => Err(Error::input("a polyMesh needs volume cells, but the mesh has none")
             .remedy("write a surface as .vtp")),
         _ => Ok(numbers),
     }
@@ -135,7 +135,7 @@ impl Sorted {
         let mut points = Vec::new();
         for (v, new) in new.iter_mut().enumerate().filter(|(_, new)| **new == 0) {
             if !is_finite(mesh.points[v]) {
-                return Err(Error::input("a coordinate that is no finite number").at(format!("point {v}")));
+                return Err(Error::input("a coordinate is not finite").at(format!("point {v}")));
             }
             *new = points.len() as u32;
             points.push(mesh.points[v]);
@@ -161,9 +161,9 @@ fn report_losses(mesh: &Mesh, sorted: &Sorted, n_points: usize, lost: &mut Vec<S
     let n_others = mesh.cells.kinds().iter().filter(|kind| kind.dim().is_none_or(|dim| dim < 2)).count();
     let unused = mesh.points.len() - n_points;
     for (n, what) in [
-        (sorted.n_not_boundary, "surface cells inside, which are no faces of the boundary, are left out"),
-        (n_others, "cells that are neither volume nor surface cells are left out"),
-        (unused, "points that are no corner of a volume cell are left out, middles of edges among them"),
+        (sorted.n_not_boundary, "surface cells are not written: they are not on the boundary"),
+        (n_others, "cells are not written: they are neither volume nor surface cells"),
+        (unused, "points are not written: they are not corners of volume cells (such as middle nodes)"),
     ] {
         if n > 0 {
             lost.push(format!("{n} {what}"));

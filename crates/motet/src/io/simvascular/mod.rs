@@ -11,7 +11,7 @@ use crate::io::format::Format;
 
 pub(super) const FORMAT: Format = Format {
     name: "SimVascular mesh-complete",
-    endings: &["/"],
+    extensions: &["/"],
     read: Some(read::read),
     write: Some(write::write),
 };

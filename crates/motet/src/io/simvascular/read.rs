@@ -44,13 +44,13 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     for (name, path) in &layout.faces {
         let face = read_file(&vtkxml::VTP, path, input.notes)?;
         if face.cells.dim() == Some(3) {
-            return Err(Error::input("has volume cells, which no face has")
+            return Err(Error::input("contains volume cells, but a face must be a surface")
                 .in_file(path)
-                .remedy("write the surface alone"));
+                .remedy("write only the surface"));
         }
         let vertices = match (&by_id, node_ids(&face)) {
-            (Some(tags), Some(ids)) => found_by_id(tags, &ids),
-            _ => point_index.find_subslice(&face),
+            (Some(tags), Some(ids)) => vertices_by_id(tags, &ids),
+            _ => point_index.vertices_of(&face),
         };
         let vertices = vertices.map_err(|e| e.in_file(path))?;
         faces.push((name, face, vertices));
@@ -74,7 +74,7 @@ impl Layout {
         if complete.is_file() {
             let faces = files(&folder.join(SURFACES), "vtp")?;
             if faces.is_empty() {
-                return Err(Error::input("there is no face (*.vtp)").in_file(folder.join(SURFACES)));
+                return Err(Error::input("there are no faces (*.vtp)").in_file(folder.join(SURFACES)));
             }
             return Ok(Self { volume: complete, faces });
         }
@@ -95,29 +95,29 @@ impl Layout {
         match &with_faces[..] {
             [(_, volume, faces)] => Ok(Self { volume: (*volume).clone(), faces: faces.clone() }),
             [] => Err(Error::input(
-                "is a folder that holds neither mesh-complete.mesh.vtu with mesh-surfaces/*.vtp nor NAME.vtu with NAME_*.vtp",
+                "is a folder that contains neither mesh-complete.mesh.vtu with mesh-surfaces/*.vtp nor NAME.vtu with NAME_*.vtp",
             )
             .in_file(folder)
-            .remedy("name one of the files in it")),
+            .remedy("give one of the files in it")),
             many => {
                 let names: Vec<&str> = many.iter().map(|v| v.0.as_str()).collect();
-                Err(Error::input(format!("holds {} volumes: {}", many.len(), names.join(", ")))
+                Err(Error::input(format!("contains {} volumes: {}", many.len(), names.join(", ")))
                     .in_file(folder)
-                    .remedy("give each a folder of its own, or name one of the files"))
+                    .remedy("put each into its own folder, or give one of the files"))
             }
         }
     }
 }
 
 /// Stem and path of the files with this extension, sorted by name; empty if the folder does not exist.
-fn files(folder: &Path, ending: &str) -> Result<Vec<(String, PathBuf)>> {
+fn files(folder: &Path, extension: &str) -> Result<Vec<(String, PathBuf)>> {
     if !folder.is_dir() {
         return Ok(Vec::new());
     }
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))? {
         let path = entry.map_err(|e| Error::io(folder, e))?.path();
-        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending))
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
             && let Some(stem) = path.file_stem()
         {
             found.push((stem.to_string_lossy().into_owned(), path.clone()));
@@ -132,14 +132,14 @@ pub(super) fn node_ids(mesh: &Mesh) -> Option<Vec<u64>> {
     ids.into_iter().map(|id| u64::try_from(id).ok()).collect()
 }
 
-fn found_by_id(tags: &Tags, ids: &[u64]) -> Result<Vec<VertexId>> {
+fn vertices_by_id(tags: &Tags, ids: &[u64]) -> Result<Vec<VertexId>> {
     let found: Vec<VertexId> = ids.iter().filter_map(|&id| tags.place(id).map(VertexId)).collect();
     if found.len() == ids.len() {
         return Ok(found);
     }
     let first = ids.iter().position(|&id| tags.place(id).is_none()).unwrap_or(0);
     Err(Error::input(format!(
-        "{} of {} points have a {NODE_ID} that the volume does not have, the first {}",
+        "{} of {} points have a {NODE_ID} that is not in the volume; the first is {}",
         ids.len() - found.len(),
         ids.len(),
         ids[first]
@@ -162,14 +162,14 @@ impl PointIndex {
         Self { places }
     }
 
-    fn find_subslice(&self, face: &Mesh) -> Result<Vec<VertexId>> {
+    fn vertices_of(&self, face: &Mesh) -> Result<Vec<VertexId>> {
         let find = |point| self.places.get(&key(point)).copied();
         let missing: Vec<usize> =
             (0..face.points.len()).filter(|&i| find(&face.points[i]).is_none()).collect();
         match missing.first() {
             None => Ok(face.points.iter().filter_map(find).collect()),
             Some(first) => Err(Error::input(format!(
-                "{} of {} points are not in the volume, the first at {:?}",
+                "{} of {} points are not in the volume; the first is at {:?}",
                 missing.len(),
                 face.points.len(),
                 face.points[*first]

@@ -21,12 +21,12 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     };
     let (volume_cells, surface_cells) = (of_dim(3), of_dim(2));
     if volume_cells.is_empty() {
-        return Err(Error::input("a mesh-complete folder needs volume cells, and there are none")
+        return Err(Error::input("a mesh-complete folder needs volume cells, but the mesh has none")
             .remedy("write a surface as .vtp"));
     }
     let (labels, mut faces) = faces(mesh, &surface_cells);
     if faces.is_empty() {
-        return Err(Error::input("a mesh-complete folder is made of faces, and no surface cell has a patch")
+        return Err(Error::input("a mesh-complete folder needs faces, but no surface cell has a patch")
             .remedy("give the mesh surface cells with the cell array \"patch\""));
     }
     let numbered = WithIds::new(mesh, &volume_cells);
@@ -54,12 +54,12 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     if others > 0 {
         written
             .lost
-            .push(format!("{others} cells that are neither volume cells nor of a patch are left out"));
+            .push(format!("{others} cells are not written: they are neither volume cells nor in a patch"));
     }
     if unknown > 0 {
-        written.lost.push(format!(
-            "{unknown} facets of patches are no facets of the boundary: their {ELEMENT_ID} is 0"
-        ));
+        written
+            .lost
+            .push(format!("{unknown} facets of patches are not on the boundary: their {ELEMENT_ID} is 0"));
     }
     written.lost.dedup();
     Ok(written)

@@ -12,8 +12,12 @@ mod write;
 use super::node_order::Nodes;
 use crate::io::Format;
 
-pub(super) const FORMAT: Format =
-    Format { name: "TetGen", endings: &[".node", ".ele"], read: Some(read::read), write: Some(write::write) };
+pub(super) const FORMAT: Format = Format {
+    name: "TetGen",
+    extensions: &[".node", ".ele"],
+    read: Some(read::read),
+    write: Some(write::write),
+};
 
 /// Nodes on the edges of a tetrahedron, determined by comparing the output of TetGen 1.6 with `-o2` with
 /// midpoints of edges.

@@ -11,24 +11,24 @@ use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 /// Maximum number of columns, more than any program writes.
 const MAX_COLUMNS: usize = 1 << 16;
 
-/// One of the files: a head of a few counts, then a line for each item.
+/// One of the files: a header of a few counts, then a line for each item.
 struct Table<'a> {
     text: Text<'a>,
     head: Vec<usize>,
 }
 
 impl<'a> Table<'a> {
-    /// Reads the head, which starts with the number of lines and is padded with zeros to `min_columns`
+    /// Reads the header, which starts with the number of lines and is padded with zeros to `min_columns`
     /// numbers.
     fn new(bytes: &'a [u8], what: &str, min_columns: usize) -> Result<Self> {
         let mut text = Text::with_comments(bytes, b'#');
-        text.peek().ok_or_else(|| text.unexpected_end(&format!("the head of the {what}")))?;
+        text.peek().ok_or_else(|| text.unexpected_end(&format!("the header of the {what}")))?;
         let mut head = Vec::new();
         let n = text.count(what, 1)?;
         head.push(n);
         while let Some(word) = text.word_in_line() {
             let count = parse_int(word).and_then(|n| usize::try_from(n).ok()).filter(|n| *n <= MAX_COLUMNS);
-            head.push(count.ok_or_else(|| text.unexpected("head of the file", "a count", word))?);
+            head.push(count.ok_or_else(|| text.unexpected("header", "a count", word))?);
         }
         if head.len() < min_columns {
             head.resize(min_columns, 0);
@@ -58,8 +58,8 @@ impl<'a> Table<'a> {
 
     fn too_few_columns(&self, n: usize, what: &str) -> Error {
         self.text
-            .error(format!("{what} is missing: the line needs {n} numbers"))
-            .remedy("the head of the file does not fit its lines, or the file is damaged")
+            .error(format!("{what} is missing: expected {n} numbers on the line"))
+            .remedy("the header does not match the lines, or the file is damaged")
     }
 }
 
@@ -80,9 +80,9 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let ele_path = if is_ele { path.to_owned() } else { path.with_extension("ele") };
     let (node_bytes, ele_bytes) = if is_ele {
         let bytes = read_if_exists(&node_path)?.ok_or_else(|| {
-            Error::input("there is no such file, which holds the points of the .ele file")
+            Error::input("the file with the points of the .ele file does not exist")
                 .in_file(&node_path)
-                .remedy("put the .node file of the same name beside it")
+                .remedy("put the .node file of the same name in the same folder")
         })?;
         (Some(bytes), None)
     } else {
@@ -93,10 +93,10 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let mut elements = Elements::default();
     match if is_ele { Some(input.bytes) } else { ele_bytes.as_deref() } {
         Some(bytes) => elements.read_ele(bytes, &nodes).map_err(|e| e.in_file(&ele_path))?,
-        None => input.notes.add("there is no .ele file of the same name: points without cells"),
+        None => input.notes.add("there is no .ele file of the same name: only points are read"),
     }
-    for (ending, kind, n) in [("face", CellKind::TRIANGLE, 3), ("edge", CellKind::LINE, 2)] {
-        let side_path = path.with_extension(ending);
+    for (extension, kind, n) in [("face", CellKind::TRIANGLE, 3), ("edge", CellKind::LINE, 2)] {
+        let side_path = path.with_extension(extension);
         if let Some(bytes) = read_if_exists(&side_path)? {
             elements.read_sides(&bytes, &nodes, kind, n).map_err(|e| e.in_file(&side_path))?;
         }
@@ -104,12 +104,13 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     Ok(elements.into_mesh(nodes))
 }
 
-/// Reads the node file, whose head is `number of points, dimension, number of attributes, number of markers`.
+/// Reads the node file, whose header is `number of points, dimension, number of attributes, number of
+/// markers`.
 fn read_nodes(bytes: &[u8]) -> Result<NodesFile> {
     let mut table = Table::new(bytes, "nodes", 4)?;
     let [n, dim, n_attributes, n_markers] = [table.head[0], table.head[1], table.head[2], table.head[3]];
     if !(2..=3).contains(&dim) {
-        return Err(table.text.error(format!("points of {dim} dimensions; 2 and 3 are read")));
+        return Err(table.text.error(format!("expected dimension 2 or 3, found {dim}")));
     }
     let mut attributes = vec![Vec::new(); n_attributes];
     let mut markers = vec![Vec::new(); n_markers.min(1)];
@@ -118,24 +119,24 @@ fn read_nodes(bytes: &[u8]) -> Result<NodesFile> {
     let mut base = 0;
     for i in 0..n {
         table.row("a node", &mut row)?;
-        let number = table.int(&row, 0, "number of a node")?;
+        let number = table.int(&row, 0, "node number")?;
         base = if i == 0 { number } else { base };
         if number.checked_sub(base) != Some(i as i64) {
             return Err(table
                 .text
-                .error(format!("node {number} stands where number {} should", base.saturating_add(i as i64)))
-                .remedy("number the nodes without gaps"));
+                .error(format!("expected node {}, found node {number}", base.saturating_add(i as i64)))
+                .remedy("number the nodes consecutively"));
         }
         let mut point = [0.0; 3];
         for (k, x) in point[..dim].iter_mut().enumerate() {
-            *x = table.float(&row, 1 + k, "coordinate of a node")?;
+            *x = table.float(&row, 1 + k, "node coordinate")?;
         }
         points.push(point);
         for (k, column) in attributes.iter_mut().enumerate() {
-            column.push(table.float(&row, 1 + dim + k, "attribute of a node")?);
+            column.push(table.float(&row, 1 + dim + k, "node attribute")?);
         }
         for column in &mut markers {
-            column.push(table.int(&row, 1 + dim + n_attributes, "marker of a node")?);
+            column.push(table.int(&row, 1 + dim + n_attributes, "node marker")?);
         }
     }
     let attribute = |(k, values)| Field::scalars(format!("tetgen:attr{}", k + 1), Values::F64(values));
@@ -160,7 +161,7 @@ struct Elements {
 }
 
 impl Elements {
-    /// Reads the element file, whose head is `number of tetrahedra, nodes in each, number of attributes`.
+    /// Reads the element file, whose header is `number of tetrahedra, nodes in each, number of attributes`.
     fn read_ele(&mut self, bytes: &[u8], nodes: &NodesFile) -> Result<()> {
         let mut table = Table::new(bytes, "elements", 3)?;
         let [n, n_nodes, n_attributes] = [table.head[0], table.head[1], table.head[2]];
@@ -170,7 +171,7 @@ impl Elements {
             (3, _) => CellKind::TRIANGLE,
             _ => {
                 return Err(table.text.error(format!(
-                    "elements of {n_nodes} nodes in {} dimensions; tetrahedra of 4 or 10 nodes are read",
+                    "expected tetrahedra with 4 or 10 nodes, found elements with {n_nodes} in {} dimensions",
                     nodes.dim
                 )));
             }
@@ -180,7 +181,7 @@ impl Elements {
         self.rows(&mut table, n, kind, &order, nodes)
     }
 
-    /// Reads a face or edge file, whose head is `number of triangles or edges, number of markers`.
+    /// Reads a face or edge file, whose header is `number of triangles or edges, number of markers`.
     fn read_sides(&mut self, bytes: &[u8], nodes: &NodesFile, kind: CellKind, n_nodes: usize) -> Result<()> {
         let mut table = Table::new(bytes, "sides", 2)?;
         let [n, n_markers] = [table.head[0], table.head[1]];
@@ -219,7 +220,7 @@ impl Elements {
             }
             self.cells.push(kind, order.iter().map(|&k| theirs[k]));
             for (k, column) in self.columns.iter_mut().enumerate() {
-                column.push(table.float(&row, 1 + order.len() + k, "attribute of an element")?);
+                column.push(table.float(&row, 1 + order.len() + k, "element attribute")?);
             }
         }
         Ok(())
@@ -245,7 +246,10 @@ impl NodesFile {
             let last = self.base + self.points.len() as i64 - 1;
             table
                 .text
-                .error(format!("an element names node {number}, but there are {} to {last}", self.base))
+                .error(format!(
+                    "an element refers to node {number}, but nodes are numbered from {} to {last}",
+                    self.base
+                ))
                 .remedy("the files do not belong together, or are damaged")
         })
     }

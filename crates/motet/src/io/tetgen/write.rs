@@ -24,7 +24,7 @@ pub(super) fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     lost.extend(lost_arrays("TetGen", "field", &mesh.field_data));
     let rank = |kind: &CellKind| [tetra, CellKind::TRIANGLE, CellKind::LINE].iter().position(|k| k == kind);
     if !mesh.cells.kinds().is_sorted_by_key(rank) {
-        lost.push("TetGen keeps cells by their kinds: their order differs from that in the mesh".into());
+        lost.push("the order of the cells is not kept: TetGen groups cells by kind".into());
     }
     let mut files = vec![(".node".to_owned(), node_file(&mesh, &mut lost))];
     files.push((".ele".to_owned(), ele_file(&mesh, tetra, &labels, &mut lost)));
@@ -118,7 +118,10 @@ fn places_of(mesh: &Mesh, kind: CellKind) -> Vec<usize> {
 fn renamed_arrays(what: &str, fields: &[&Field], keeps_name: impl Fn(&Field) -> bool) -> Option<String> {
     let names: Vec<&str> = fields.iter().filter(|f| !keeps_name(f)).map(|f| f.name.as_str()).collect();
     (!names.is_empty()).then(|| {
-        format!("{what} arrays are written as numbered attributes, TetGen has no names: {}", names.join(", "))
+        format!(
+            "{what} arrays are written as numbered attributes (TetGen has no array names): {}",
+            names.join(", ")
+        )
     })
 }
 

@@ -17,7 +17,7 @@ impl Steps {
     pub(super) fn of(root: &Group) -> Result<Option<Self>> {
         let Some(group) = root.group("Steps")? else { return Ok(None) };
         let values = group.required_array("Values")?;
-        let times = values.all()?.to_f64().ok_or_else(|| values.error("times are no numbers"))?;
+        let times = values.all()?.to_f64().ok_or_else(|| values.error("times are not numbers"))?;
         let declared = group.ints("NSteps").and_then(|n| n.first().copied());
         if declared.is_some_and(|n| usize::try_from(n) != Ok(times.len())) || times.is_empty() {
             let declared = declared.unwrap_or_default();
@@ -43,7 +43,7 @@ fn row(array: &Array, step: usize) -> Result<Vec<usize>> {
 }
 
 fn whole(array: &Array, n: i64) -> Result<usize> {
-    usize::try_from(n).map_err(|_| array.error(format!("{n} is no number of rows")))
+    usize::try_from(n).map_err(|_| array.error(format!("{n} is not a valid number of rows")))
 }
 
 /// The counts of an array for a range of parts.
@@ -75,7 +75,10 @@ impl<'a> Frame<'a> {
         let start = first("PartOffsets")?.unwrap_or(step * n);
         match start.checked_add(n).filter(|&end| end <= all.rows()) {
             Some(end) => Ok(Self { root, step: Some((steps, step)), parts: start..end }),
-            None => Err(all.error(format!("step {step} names parts from {start} on, {n} of them"))),
+            None => Err(all.error(format!(
+                "step {step} refers to {n} parts from part {start}, but there are {}",
+                all.rows()
+            ))),
         }
     }
 
@@ -105,11 +108,12 @@ impl<'a> Frame<'a> {
         self.start("PointOffsets", 0, || self.rows_before(self.root, "NumberOfPoints"))
     }
 
-    /// The first row of an array of `kind` (`PointData`, `CellData`); `usual` if the steps do not specify it.
-    pub(super) fn first_value(&self, kind: &str, name: &str, usual: usize) -> Result<usize> {
-        let Some((steps, step)) = self.step else { return Ok(usual) };
+    /// The first row of an array of `kind` (`PointData`, `CellData`); `default` if the steps do not specify
+    /// it.
+    pub(super) fn first_value(&self, kind: &str, name: &str, default: usize) -> Result<usize> {
+        let Some((steps, step)) = self.step else { return Ok(default) };
         let row = steps.row_within(&format!("{kind}Offsets"), name, step)?;
-        Ok(row.and_then(|row| row.first().copied()).unwrap_or(usual))
+        Ok(row.and_then(|row| row.first().copied()).unwrap_or(default))
     }
 
     /// The rows of a field data array, and the number of values in each.

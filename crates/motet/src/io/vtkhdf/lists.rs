@@ -36,19 +36,23 @@ impl Source<'_> {
             if all.len().saturating_add(part.n_ids) > VertexId::MAX_COUNT {
                 return Err(ids.error("more ids than a mesh can hold"));
             }
-            let rise = starts.is_sorted() && starts.first() == Some(&0);
-            if !rise || starts.last().is_none_or(|&end| usize::try_from(end) != Ok(part.n_ids)) {
-                return Err(offsets.error(format!("the offsets do not rise from 0 to {} ids", part.n_ids)));
+            let ascends = starts.is_sorted() && starts.first() == Some(&0);
+            if !ascends || starts.last().is_none_or(|&end| usize::try_from(end) != Ok(part.n_ids)) {
+                return Err(offsets.error(format!(
+                    "the offsets do not ascend from 0 to {}, the number of ids",
+                    part.n_ids
+                )));
             }
             ends.extend(starts[1..].iter().map(|&end| all.len() as u32 + end as u32));
             for id in ids.ints(at_id..next_id)? {
                 let known = usize::try_from(id).ok().filter(|&id| id < part.n_targets);
-                let id =
-                    known.ok_or_else(|| ids.error(format!("{id} is named, there are {}", part.n_targets)))?;
+                let id = known.ok_or_else(|| {
+                    ids.error(format!("id {id} is out of range: there are {}", part.n_targets))
+                })?;
                 all.push((shift + id) as u32);
             }
             (at_offset, at_id, shift) = (next_offset, next_id, shift + part.n_targets);
         }
-        Csr::new(ends, all).ok_or_else(|| offsets.error("the offsets do not rise"))
+        Csr::new(ends, all).ok_or_else(|| offsets.error("the offsets do not ascend"))
     }
 }

@@ -38,7 +38,7 @@ pub(super) use steps::Steps;
 /// Unstructured grids and polygonal data in HDF5.
 pub(super) const FORMAT: Format = Format {
     name: "VTKHDF",
-    endings: &[".vtkhdf", ".hdf"],
+    extensions: &[".vtkhdf", ".hdf"],
     read: Some(read::read),
     write: Some(write::write),
 };

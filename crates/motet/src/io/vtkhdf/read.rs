@@ -20,7 +20,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     if n > 1 {
         input
             .notes
-            .add(format!("the file has {n} steps: the first one was read (time {:?})", steps.times[0]));
+            .add(format!("the file has {n} steps: only the first is read (time {:?})", steps.times[0]));
     }
     mesh_of(&root, &Frame::of_step(&root, &steps, 0)?, input.notes)
 }
@@ -28,17 +28,18 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
 /// The root group of the data, after checks of its version and type.
 pub(super) fn root_of(file: &Group) -> Result<Group> {
     let root = file.group("VTKHDF")?.ok_or_else(|| {
-        Error::input("is an HDF5 file, but has no group VTKHDF").remedy("name the file after what it holds")
+        Error::input("is an HDF5 file without a group VTKHDF")
+            .remedy("give the file the extension of its format")
     })?;
     let version = root.ints("Version").unwrap_or_default();
     if !matches!(version.first(), Some(1 | 2)) {
-        return Err(Error::input(format!("is of VTKHDF version {version:?}; 1 and 2 are read")).at("/VTKHDF"));
+        return Err(Error::input(format!("expected VTKHDF version 1 or 2, found {version:?}")).at("/VTKHDF"));
     }
     let other = match root.text("Type") {
         Some("UnstructuredGrid" | "PolyData") => return Ok(root),
-        other => other.unwrap_or("data of no type").to_owned(),
+        other => other.unwrap_or("data without a type").to_owned(),
     };
-    Err(Error::input(format!("the file holds {other}, not a mesh of points and cells"))
+    Err(Error::input(format!("expected a mesh of points and cells, found {other}"))
         .at("/VTKHDF")
         .remedy(match other.as_str() {
             "PartitionedDataSetCollection" | "MultiBlockDataSet" => {
@@ -85,7 +86,7 @@ fn read_points(root: &Group, first: usize, counts: &[usize]) -> Result<Vec<Point
         return Err(array.error(format!("{n} points are more than a mesh can hold")));
     }
     if array.components() != 3 {
-        return Err(array.error(format!("points of {} coordinates", array.components())));
+        return Err(array.error(format!("expected 3 coordinates per point, found {}", array.components())));
     }
     match array.values(first..first.saturating_add(n))? {
         Values::F64(flat) => {
@@ -93,7 +94,7 @@ fn read_points(root: &Group, first: usize, counts: &[usize]) -> Result<Vec<Point
                 .unwrap_or_else(|(_, f)| f.as_chunks::<3>().0.to_vec()))
         }
         other => {
-            let flat = other.to_f64().ok_or_else(|| array.error("coordinates are no numbers"))?;
+            let flat = other.to_f64().ok_or_else(|| array.error("coordinates are not numbers"))?;
             Ok(flat.as_chunks::<3>().0.to_vec())
         }
     }
@@ -132,7 +133,7 @@ fn read_grid(root: &Group, frame: &Frame<'_>, n_points: &[usize], notes: &Notes)
     let types = root.required_array("Types")?;
     let numbers = types.ints(first..first.saturating_add(lists.len()))?;
     let kinds: Option<Vec<CellKind>> = numbers.iter().map(|&n| u8::try_from(n).ok().map(CellKind)).collect();
-    let kinds = kinds.ok_or_else(|| types.error("a cell type is not in 0 to 255"))?;
+    let kinds = kinds.ok_or_else(|| types.error("a cell type is not between 0 and 255"))?;
     let mut offsets = lists.offsets().to_vec();
     let mut vertices: Vec<VertexId> = lists.items().iter().map(|&v| VertexId(v)).collect();
     trim(&kinds, &mut offsets, &mut vertices, notes);
@@ -186,7 +187,7 @@ fn read_faces(
             // At most two polyhedra share a face; without this check the file would not bound the uses of a
             // face.
             budget = budget.checked_sub(corners.len()).ok_or_else(|| {
-                Error::input("polyhedra name faces more often than twice").at("/VTKHDF/PolyhedronToFaces")
+                Error::input("polyhedra refer to faces more than twice").at("/VTKHDF/PolyhedronToFaces")
             })?;
             faces.push(corners.iter().map(|&v| VertexId(v)));
         }
@@ -229,7 +230,7 @@ fn read_arrays(
     root: &Group,
     frame: &Frame<'_>,
     kind: &str,
-    usual: usize,
+    default: usize,
     n: usize,
     notes: &Notes,
 ) -> Result<Vec<Field>> {
@@ -238,10 +239,10 @@ fn read_arrays(
     for name in group.arrays() {
         let array = group.required_array(name)?;
         if !array.is_supported() {
-            notes.add(format!("{} holds neither numbers nor texts: passed over", array.path()));
+            notes.add(format!("{} contains neither numbers nor text: skipped", array.path()));
             continue;
         }
-        let first = frame.first_value(kind, name, usual)?;
+        let first = frame.first_value(kind, name, default)?;
         let values = array.values(first..first.saturating_add(n))?;
         fields.push(Field { name: name.clone(), components: array.components(), values });
     }
@@ -255,7 +256,7 @@ fn read_field_data(root: &Group, frame: &Frame<'_>, notes: &Notes) -> Result<Vec
     for name in group.arrays() {
         let array = group.required_array(name)?;
         if !array.is_supported() {
-            notes.add(format!("{} holds neither numbers nor texts: passed over", array.path()));
+            notes.add(format!("{} contains neither numbers nor text: skipped", array.path()));
             continue;
         }
         let (rows, components) = frame.field_rows(name, &array)?;

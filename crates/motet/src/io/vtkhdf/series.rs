@@ -36,7 +36,7 @@ impl StepPath {
 
 fn has_extension(name: &str) -> bool {
     let name = name.to_lowercase();
-    FORMAT.endings.iter().any(|ending| name.ends_with(ending))
+    FORMAT.extensions.iter().any(|extension| name.ends_with(extension))
 }
 
 /// Whether the file name has the extension of VTKHDF.
@@ -52,11 +52,9 @@ pub(in crate::io) fn is_transient(path: &Path) -> bool {
 /// The times of a file and the path of each step.
 pub(in crate::io) fn times(path: &Path) -> Result<Vec<(f64, PathBuf)>> {
     let steps = Steps::of(&root_of(&open_in_place(path)?)?)?;
-    let times = steps.ok_or_else(|| Error::input("holds one mesh, and no steps"))?.times;
+    let times = steps.ok_or_else(|| Error::input("contains a single mesh without steps"))?.times;
     if let Some(k) = times.iter().position(|t| !t.is_finite()) {
-        return Err(
-            Error::input(format!("the time of step {k} is no finite number")).at("/VTKHDF/Steps/Values")
-        );
+        return Err(Error::input(format!("the time of step {k} is not finite")).at("/VTKHDF/Steps/Values"));
     }
     let path_of = |step| StepPath { file: path.to_owned(), step }.path();
     Ok(times.into_iter().enumerate().map(|(step, time)| (time, path_of(step))).collect())
@@ -65,11 +63,11 @@ pub(in crate::io) fn times(path: &Path) -> Result<Vec<(f64, PathBuf)>> {
 /// Reads the mesh of a step, and no other part of the file.
 pub(in crate::io) fn read_step(path: &StepPath, notes: &Notes) -> Result<Mesh> {
     let root = root_of(&open_in_place(&path.file)?)?;
-    let steps = Steps::of(&root)?.ok_or_else(|| Error::input("holds one mesh, and no steps"))?;
+    let steps = Steps::of(&root)?.ok_or_else(|| Error::input("contains a single mesh without steps"))?;
     if path.step >= steps.times.len() {
         let n = steps.times.len();
         return Err(Error::input(format!("there is no step {}", path.step))
-            .remedy(format!("name one of 0 to {}", n - 1)));
+            .remedy(format!("give a step from 0 to {}", n - 1)));
     }
     mesh_of(&root, &Frame::of_step(&root, &steps, path.step)?, notes)
 }

@@ -54,10 +54,14 @@ impl Steps {
     /// Fails if the mesh has polyhedra, or the time does not follow the previous one.
     pub(in crate::io) fn add(&mut self, time: f64, mesh: &Mesh) -> Result<()> {
         if !mesh.cells.polyhedron_faces().is_empty() {
-            return Err(Error::input("polyhedra over time are not written to VTKHDF").remedy("write a .pvd"));
+            return Err(
+                Error::input("time series with polyhedra cannot be written as VTKHDF").remedy("write a .pvd")
+            );
         }
         if !time.is_finite() || self.times.last().is_some_and(|&last| last >= time) {
-            return Err(Error::input(format!("the time {time} does not come after those before it")));
+            return Err(Error::input(format!(
+                "time {time} is not finite, or not greater than the previous time"
+            )));
         }
         if self.last.as_ref() != Some(&mesh.cells)
             || self.cells.n_points.last() != Some(&(mesh.points.len() as i64))
@@ -103,7 +107,7 @@ impl Steps {
         let storage = storage(options)?;
         let n = self.times.len();
         if n == 0 {
-            return Err(Error::input("a series without a mesh"));
+            return Err(Error::input("the series contains no meshes"));
         }
         let mut lost = Vec::new();
         for (what, arrays) in [("point", &mut self.on_points), ("cell", &mut self.on_cells)] {
@@ -112,7 +116,7 @@ impl Steps {
             *arrays = kept;
             lost.extend(left.iter().map(|array| {
                 format!(
-                    "the {what} array {}, which not every step has, or not with the same numbers a row",
+                    "{what} array {} is not written: it must have the same type and number of components in every step",
                     array.field.name
                 )
             }));

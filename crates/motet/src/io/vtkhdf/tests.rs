@@ -59,7 +59,7 @@ fn grid() -> Mesh {
         Field { name: "m".into(), components: 2, values: Values::I64(vec![1, 2, 3, 4]) },
         Field::scalars("title", Values::Text(vec!["täst".into(), String::new()])),
     ];
-    mesh.label_names.regions.insert(7, "wall of it".into());
+    mesh.label_names.regions.insert(7, "outer wall".into());
     mesh.label_names.patches.insert(4, "inlet".into());
     mesh
 }
@@ -70,7 +70,7 @@ fn same(a: &Mesh, b: &Mesh) -> bool {
 }
 
 #[test]
-fn a_mesh_comes_back_bit_for_bit() {
+fn meshes_round_trip_bit_for_bit() {
     for compression in [Compression::None, Compression::Zlib] {
         let (bytes, lost) = print(&grid(), compression);
         assert_eq!(lost, [""; 0]);
@@ -84,7 +84,7 @@ fn a_mesh_comes_back_bit_for_bit() {
 }
 
 #[test]
-fn surfaces_are_polygonal_data_where_nothing_is_lost_by_it() {
+fn surfaces_are_polygonal_data_where_nothing_is_lost() {
     let mut cells = Cells::new();
     cells.push(CellKind::VERTEX, ids(&[1]));
     cells.push(CellKind::LINE, ids(&[0, 1]));
@@ -117,10 +117,10 @@ fn names_that_hdf5_cannot_hold_are_reported() {
 }
 
 #[test]
-fn files_cut_off_anywhere_are_refused() {
+fn truncated_files_are_refused() {
     let (bytes, _) = print(&grid(), Compression::Zlib);
     for n in 0..bytes.len() {
-        let error = parse(&bytes[..n]).expect_err("a file that is cut off");
+        let error = parse(&bytes[..n]).expect_err("a truncated file");
         assert!(error.remedy_text().is_some(), "{error}");
     }
 }
@@ -164,39 +164,39 @@ fn one_tet(change: impl FnOnce(&mut Vec<(&str, Vec<i64>)>)) -> Vec<u8> {
 }
 
 #[test]
-fn arrays_that_do_not_fit_are_reported_with_their_place() {
+fn inconsistent_arrays_are_reported_with_their_place() {
     assert_eq!(parse(&one_tet(|_| ())).unwrap().0.cells.counts(), [(CellKind::TETRA, 1)]);
     let with = |name: &'static str, values: &[i64]| {
         refused(&one_tet(|arrays| {
             arrays.iter_mut().filter(|a| a.0 == name).for_each(|a| a.1 = values.to_vec())
         }))
     };
-    for (name, values, said) in [
-        ("NumberOfPoints", &[-1][..], "/VTKHDF/NumberOfPoints: -1 is no number"),
-        ("NumberOfPoints", &[5], "/VTKHDF/Points: rows 0 to 5 are asked for, but there are 4"),
+    for (name, values, expected) in [
+        ("NumberOfPoints", &[-1][..], "/VTKHDF/NumberOfPoints: -1 is not a valid number"),
+        ("NumberOfPoints", &[5], "/VTKHDF/Points: rows 0 to 5 requested, but there are 4"),
         ("NumberOfPoints", &[i64::MAX], "more than a mesh can hold"),
         ("NumberOfPoints", &[i64::MAX, i64::MAX], "more than a mesh can hold"),
-        ("NumberOfPoints", &[3], "/VTKHDF/Connectivity: 3 is named, there are 3"),
+        ("NumberOfPoints", &[3], "/VTKHDF/Connectivity: id 3 is out of range: there are 3"),
         ("NumberOfCells", &[2], "/VTKHDF/Offsets: rows 0 to 3"),
         ("NumberOfCells", &[i64::MAX], "/VTKHDF/Offsets: rows 0 to"),
         ("NumberOfCells", &[], "/VTKHDF/NumberOfCells: rows 0 to 1"),
-        ("NumberOfConnectivityIds", &[5], "the offsets do not rise from 0 to 5 ids"),
-        ("Offsets", &[0, 3], "the offsets do not rise from 0 to 4 ids"),
-        ("Offsets", &[4, 0], "the offsets do not rise"),
-        ("Offsets", &[-4, 4], "the offsets do not rise"),
-        ("Connectivity", &[0, 1, 2, -1], "/VTKHDF/Connectivity: -1 is named"),
+        ("NumberOfConnectivityIds", &[5], "the offsets do not ascend from 0 to 5, the number of ids"),
+        ("Offsets", &[0, 3], "the offsets do not ascend from 0 to 4, the number of ids"),
+        ("Offsets", &[4, 0], "the offsets do not ascend"),
+        ("Offsets", &[-4, 4], "the offsets do not ascend"),
+        ("Connectivity", &[0, 1, 2, -1], "/VTKHDF/Connectivity: id -1 is out of range"),
         ("Connectivity", &[0, 1, 2], "/VTKHDF/Connectivity: rows 0 to 4"),
-        ("Types", &[300], "/VTKHDF/Types: a cell type is not in 0 to 255"),
+        ("Types", &[300], "/VTKHDF/Types: a cell type is not between 0 and 255"),
         ("Types", &[12], "a hexahedron has 8 vertices"),
         ("Types", &[42], "/VTKHDF: the array NumberOfFaces is missing"),
     ] {
         let error = with(name, values);
-        assert!(error.contains(said), "{name} {values:?}: {error}");
+        assert!(error.contains(expected), "{name} {values:?}: {error}");
     }
     let missing = refused(&one_tet(|arrays| arrays.retain(|a| a.0 != "Types")));
     assert!(missing.contains("/VTKHDF: the array Types is missing"), "{missing}");
-    assert!(refused(b"hello, this is text").contains("no HDF5 file"));
-    assert!(refused(&Node::new("").into_file().unwrap()).contains("no group VTKHDF"));
+    assert!(refused(b"hello, this is text").contains("not an HDF5 file"));
+    assert!(refused(&Node::new("").into_file().unwrap()).contains("without a group VTKHDF"));
 }
 
 /// Three steps of a moving tet, whose topology is stored once.
@@ -258,7 +258,7 @@ fn steps_are_read_one_by_one() {
     assert_eq!(first.points[0], [0.0, 1.0, 2.0]);
     assert!(notes[0].contains("3 steps"), "{notes:?}");
     let error = refused(&transient(&[1, 0, 0]));
-    assert!(error.contains("step 0 names parts from 1 on, 1 of them"), "{error}");
-    assert!(refused(&transient(&[-1, 0, 0])).contains("-1 is no number"));
-    assert!(refused(&transient(&[])).contains("rows 0 to 1 are asked for"));
+    assert!(error.contains("step 0 refers to 1 parts from part 1, but there are 1"), "{error}");
+    assert!(refused(&transient(&[-1, 0, 0])).contains("-1 is not a valid number"));
+    assert!(refused(&transient(&[])).contains("rows 0 to 1 requested"));
 }

@@ -51,10 +51,10 @@ pub(super) fn storage(options: &WriteOptions) -> Result<Storage> {
     match options.compression {
         Compression::None => Ok(Storage::Growing),
         Compression::Zlib => Ok(Storage::Zlib),
-        Compression::Lz4 | Compression::Lzma => {
-            Err(Error::options("VTKHDF is not packed by lz4 or lzma: readers would need a plugin of HDF5")
-                .remedy("choose zlib or none"))
-        }
+        Compression::Lz4 | Compression::Lzma => Err(Error::options(
+            "VTKHDF cannot be compressed with lz4 or lzma: readers would need an HDF5 plugin",
+        )
+        .remedy("choose zlib or none")),
     }
 }
 
@@ -141,10 +141,7 @@ fn arrays<'f>(
     for field in fields {
         let name = valid_name(&field.name, &taken);
         if name != field.name {
-            lost.push(format!(
-                "the name of the array `{}`, which HDF5 cannot hold: it is called `{name}`",
-                field.name
-            ));
+            lost.push(format!("array `{}` is written as `{name}`: HDF5 cannot hold its name", field.name));
         }
         let shape = [field.n_rows(), field.components];
         let shape = if field.components == 1 { &shape[..1] } else { &shape };

@@ -31,7 +31,7 @@ pub(super) fn by_vtk_name(name: &str) -> Result<Compression> {
         .into_iter()
         .find(|&c| vtk_name(c) == Some(name))
         .ok_or_else(|| {
-            Error::input(format!("the compressor {name} is not known")).at("VTKFile").remedy(
+            Error::input(format!("unknown compressor {name}")).at("VTKFile").remedy(
                 "write the file with vtkZLibDataCompressor, vtkLZ4DataCompressor or vtkLZMADataCompressor",
             )
         })
@@ -62,7 +62,7 @@ impl Decompressor {
     }
 
     /// Decompresses one block, which must fill `out` exactly. `Err` describes what is wrong with the block.
-    pub(super) fn unpack(&mut self, block: &[u8], out: &mut [u8]) -> Result<(), String> {
+    pub(super) fn decompress(&mut self, block: &[u8], out: &mut [u8]) -> Result<(), String> {
         let n = match (&mut self.zlib, self.compression) {
             (Some(zlib), _) => {
                 zlib.reset(true);
@@ -70,27 +70,27 @@ impl Decompressor {
                 match status.map_err(|e| e.to_string())? {
                     Status::StreamEnd => zlib.total_out() as usize,
                     _ if zlib.total_out() as usize == out.len() => {
-                        return Err("it holds more than it should".into());
+                        return Err("it contains more data than declared".into());
                     }
-                    _ => return Err("it ends too early".into()),
+                    _ => return Err("it is truncated".into()),
                 }
             }
             (None, Compression::Lz4) => {
                 lz4_flex::block::decompress_into(block, out).map_err(|e| e.to_string())?
             }
-            (None, Compression::Lzma) => unpack_xz(block, out)?,
+            (None, Compression::Lzma) => decompress_xz(block, out)?,
             (None, _) => return Err("the file is not compressed".into()),
         };
-        if n == out.len() { Ok(()) } else { Err(format!("it holds {n} bytes instead of {}", out.len())) }
+        if n == out.len() { Ok(()) } else { Err(format!("expected {} bytes, found {n}", out.len())) }
     }
 }
 
-fn unpack_xz(block: &[u8], out: &mut [u8]) -> Result<usize, String> {
+fn decompress_xz(block: &[u8], out: &mut [u8]) -> Result<usize, String> {
     let mut reader = XzReader::new_mem_limit(block, false, XZ_MEMORY_KIB);
     reader.read_exact(out).map_err(|e| e.to_string())?;
     match reader.read(&mut [0]) {
         Ok(0) => Ok(out.len()),
-        Ok(_) => Err("it holds more than it should".into()),
+        Ok(_) => Err("it contains more data than declared".into()),
         Err(e) => Err(e.to_string()),
     }
 }
@@ -109,9 +109,9 @@ impl Compressor {
     }
 
     /// Appends the compressed `block` to `out`.
-    pub(super) fn pack(&mut self, block: &[u8], out: &mut Vec<u8>) -> Result<()> {
+    pub(super) fn compress(&mut self, block: &[u8], out: &mut Vec<u8>) -> Result<()> {
         match (&mut self.zlib, self.compression) {
-            (Some(zlib), _) => pack_zlib(zlib, block, out),
+            (Some(zlib), _) => compress_zlib(zlib, block, out),
             (None, Compression::Lz4) => {
                 let start = out.len();
                 out.resize(start + lz4_flex::block::get_maximum_output_size(block.len()), 0);
@@ -119,7 +119,7 @@ impl Compressor {
                 out.truncate(start + n);
                 Ok(())
             }
-            (None, Compression::Lzma) => pack_xz(block, out),
+            (None, Compression::Lzma) => compress_xz(block, out),
             (None, Compression::None | Compression::Zlib) => {
                 out.extend_from_slice(block);
                 Ok(())
@@ -128,7 +128,7 @@ impl Compressor {
     }
 }
 
-fn pack_zlib(zlib: &mut Compress, block: &[u8], out: &mut Vec<u8>) -> Result<()> {
+fn compress_zlib(zlib: &mut Compress, block: &[u8], out: &mut Vec<u8>) -> Result<()> {
     zlib.reset();
     loop {
         // zlib's own bound for stored blocks is n + n/1000 + 12.
@@ -141,7 +141,7 @@ fn pack_zlib(zlib: &mut Compress, block: &[u8], out: &mut Vec<u8>) -> Result<()>
     }
 }
 
-fn pack_xz(block: &[u8], out: &mut Vec<u8>) -> Result<()> {
+fn compress_xz(block: &[u8], out: &mut Vec<u8>) -> Result<()> {
     let mut options = XzOptions::with_preset(XZ_PRESET);
     options.set_check_sum_type(CheckType::Crc32);
     // A dictionary larger than the block has no use.
@@ -161,21 +161,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_compression_gives_back_what_it_got_and_names_a_wrong_length() {
+    fn every_compression_round_trips_and_rejects_a_wrong_length() {
         let block: Vec<u8> = (0..5000u32).flat_map(|i| (i % 97).to_le_bytes()).collect();
         for compression in [Compression::Zlib, Compression::Lz4, Compression::Lzma] {
-            let mut packed = Vec::new();
+            let mut compressed = Vec::new();
             let mut compressor = Compressor::new(compression);
-            compressor.pack(&block, &mut packed).unwrap();
-            assert!(packed.len() < block.len());
-            assert!(max_output(compression, packed.len()) >= block.len());
+            compressor.compress(&block, &mut compressed).unwrap();
+            assert!(compressed.len() < block.len());
+            assert!(max_output(compression, compressed.len()) >= block.len());
             let mut decompressor = Decompressor::new(compression);
             let mut out = vec![0; block.len()];
-            decompressor.unpack(&packed, &mut out).unwrap();
+            decompressor.decompress(&compressed, &mut out).unwrap();
             assert_eq!(out, block);
-            assert!(decompressor.unpack(&packed, &mut out[1..]).is_err());
-            assert!(decompressor.unpack(&packed, &mut vec![0; block.len() + 1]).is_err());
-            assert!(decompressor.unpack(&packed[..packed.len() / 2], &mut out).is_err());
+            assert!(decompressor.decompress(&compressed, &mut out[1..]).is_err());
+            assert!(decompressor.decompress(&compressed, &mut vec![0; block.len() + 1]).is_err());
+            assert!(decompressor.decompress(&compressed[..compressed.len() / 2], &mut out).is_err());
         }
     }
 }

@@ -39,7 +39,7 @@ impl<'a> Element<'a> {
         let Some(text) = self.attribute(name) else { return Ok(None) };
         match text.parse::<usize>() {
             Ok(n) => Ok(Some(n)),
-            Err(_) => Err(Error::input(format!("{name}=\"{text}\" is no count")).at(self.place())),
+            Err(_) => Err(Error::input(format!("{name}=\"{text}\" is not a valid count")).at(self.place())),
         }
     }
 
@@ -107,7 +107,9 @@ impl<'a> Parser<'a> {
             let start = self.reader.buffer_position() as usize;
             match self.reader.read_event() {
                 Err(e) => return Err(self.error(e.to_string())),
-                Ok(Event::Eof) => return Err(self.error("the file ends before its last element does".into())),
+                Ok(Event::Eof) => {
+                    return Err(self.error("the file ends before all elements are closed".into()));
+                }
                 Ok(Event::Start(tag)) => {
                     let element = self.element(&tag, start)?;
                     if element.name == "AppendedData" {
@@ -115,7 +117,9 @@ impl<'a> Parser<'a> {
                         break;
                     }
                     if self.open.len() == MAX_DEPTH {
-                        return Err(self.error(format!("elements nest more than {MAX_DEPTH} deep")));
+                        return Err(
+                            self.error(format!("elements are nested more than {MAX_DEPTH} levels deep"))
+                        );
                     }
                     self.open.push(element);
                 }
@@ -136,7 +140,7 @@ impl<'a> Parser<'a> {
                 Ok(Event::End(_)) => {
                     // The parser has checked that the end tag matches the open element.
                     let Some(element) = self.open.pop() else {
-                        return Err(self.error("an end without a start".into()));
+                        return Err(self.error("an end tag without a start tag".into()));
                     };
                     match self.open.last_mut() {
                         Some(parent) => parent.children.push(element),
@@ -170,14 +174,14 @@ impl<'a> Parser<'a> {
             Some("base64") | None => true,
             Some("raw") => false,
             Some(other) => {
-                return Err(Error::input(format!("the encoding {other} is neither raw nor base64"))
+                return Err(Error::input(format!("expected encoding raw or base64, found {other}"))
                     .at(element.place()));
             }
         };
         let rest = self.bytes.get(self.reader.buffer_position() as usize..).unwrap_or_default();
         match rest.trim_ascii_start().strip_prefix(b"_") {
             Some(bytes) => Ok(Appended { base64, bytes }),
-            None => Err(Error::input("the data do not start with an underscore")
+            None => Err(Error::input("expected an underscore before the appended data")
                 .at(element.place())
                 .remedy("the file is damaged: write it again")),
         }
@@ -194,9 +198,9 @@ impl<'a> Parser<'a> {
 
     fn error(&mut self, what: String) -> Error {
         let line = self.line_at(self.reader.buffer_position() as usize);
-        Error::input(format!("the XML cannot be read: {what}"))
+        Error::input(format!("not well-formed XML: {what}"))
             .at(format!("line {line}"))
-            .remedy("the file is cut off or damaged: write it again")
+            .remedy("the file is truncated or damaged: write it again")
     }
 }
 

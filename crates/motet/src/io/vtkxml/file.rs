@@ -37,9 +37,9 @@ impl<'a> File<'a> {
         let document = Document::parse(bytes)?;
         let root = &document.root;
         if root.name != "VTKFile" {
-            return Err(Error::input(format!("the first element is {}, not VTKFile", root.name))
+            return Err(Error::input(format!("expected root element `VTKFile`, found `{}`", root.name))
                 .at(format!("line {}", root.line))
-                .remedy("this is no VTK file: give it the ending of its own format"));
+                .remedy("this is not a VTK file: give it the extension of its format"));
         }
         let layout = layout(root)?;
         let mut starts = Vec::new();
@@ -65,7 +65,7 @@ impl<'a> File<'a> {
         self.document.root.child(kind).ok_or_else(|| {
             Error::input(format!("the element {kind} is missing"))
                 .at(self.document.root.place())
-                .remedy("the file is cut off or damaged: write it again")
+                .remedy("the file is truncated or damaged: write it again")
         })
     }
 
@@ -119,9 +119,9 @@ impl<'a> File<'a> {
 
 fn layout(root: &Element<'_>) -> Result<Layout> {
     let unknown = |name: &str, value: &str, known: &str| {
-        Error::input(format!("{name}=\"{value}\" is not known"))
+        Error::input(format!("unknown value {name}=\"{value}\""))
             .at(root.place())
-            .remedy(format!("write {known}"))
+            .remedy(format!("use {known}"))
     };
     let order = match root.attribute("byte_order") {
         None | Some("LittleEndian") => ByteOrder::Little,
@@ -179,13 +179,13 @@ impl<'s, 'a> Array<'s, 'a> {
             "Bit" => Type::Bit,
             "String" => Type::Text,
             other => {
-                return Err(Error::input(format!("values of type {other} are not known"))
+                return Err(Error::input(format!("unknown value type {other}"))
                     .at(element.place())
-                    .remedy("known: Int8 to Int64, UInt8 to UInt64, Float32, Float64, Bit, String"));
+                    .remedy("supported: Int8 to Int64, UInt8 to UInt64, Float32, Float64, Bit, String"));
             }
         };
         match element.count("NumberOfComponents")?.unwrap_or(1) {
-            0 => Err(Error::input("has no component").at(element.place())),
+            0 => Err(Error::input("has no components").at(element.place())),
             components => Ok(Self { file, element, kind, components }),
         }
     }
@@ -237,7 +237,7 @@ impl<'s, 'a> Array<'s, 'a> {
 
     fn slow_ids(&self, n_rows: Option<usize>) -> Result<Vec<u32>> {
         to_ids(&self.values(n_rows)?).map_err(|bad| {
-            Error::input(format!("{bad} is no id"))
+            Error::input(format!("{bad} is not a valid id"))
                 .at(self.element.place())
                 .remedy("the file is damaged, or has more than 2^32 points")
         })
@@ -246,17 +246,20 @@ impl<'s, 'a> Array<'s, 'a> {
     /// The values as `n` points.
     pub(super) fn points(&self, n: usize) -> Result<Vec<Point>> {
         if self.components != 3 {
-            return Err(Error::input(format!("points have {} components, 3 are needed", self.components))
+            return Err(Error::input(format!("expected 3 components per point, found {}", self.components))
                 .at(self.element.place()));
         }
         to_points(self.values(Some(n))?)
-            .ok_or_else(|| Error::input("points are texts, not numbers").at(self.element.place()))
+            .ok_or_else(|| Error::input("point coordinates are text, not numbers").at(self.element.place()))
     }
 
     fn read(&self, n_rows: Option<usize>) -> Result<Values> {
         let expected = match n_rows {
             Some(n) => Some(n.checked_mul(self.components).ok_or_else(|| {
-                Error::input(format!("{n} rows of {} components are more than memory holds", self.components))
+                Error::input(format!(
+                    "{n} rows of {} components exceed the available memory",
+                    self.components
+                ))
             })?),
             None => None,
         };
@@ -304,31 +307,34 @@ impl<'s, 'a> Array<'s, 'a> {
         match self.element.attribute("format").unwrap_or("ascii") {
             "ascii" => std::str::from_utf8(self.element.text)
                 .map(Content::Ascii)
-                .map_err(|_| Error::input("the text is not made of numbers").remedy(WRITE_AGAIN)),
+                .map_err(|_| Error::input("the text does not consist of numbers").remedy(WRITE_AGAIN)),
             "binary" if self.element.text.is_empty() => {
-                Err(Error::input("holds no data").remedy(WRITE_AGAIN))
+                Err(Error::input("contains no data").remedy(WRITE_AGAIN))
             }
             "binary" => Payload::open_base64(self.element.text, self.file.layout).map(Content::Binary),
             "appended" => self.appended().map(Content::Binary),
-            other => Err(Error::input(format!("the format {other} is not known"))
-                .remedy("known: ascii, binary, appended")),
+            other => {
+                Err(Error::input(format!("unknown format {other}"))
+                    .remedy("supported: ascii, binary, appended"))
+            }
         }
     }
 
     fn appended(&self) -> Result<Payload<'s>> {
         let Some(appended) = &self.file.document.appended else {
-            return Err(Error::input("its data are appended, but there is no AppendedData")
-                .remedy("the file is cut off or damaged: write it again"));
+            return Err(Error::input("the data are declared as appended, but there is no AppendedData")
+                .remedy("the file is truncated or damaged: write it again"));
         };
         let Some(offset) = self.element.count("offset")? else {
-            return Err(Error::input("its data are appended, but the offset is missing").remedy(WRITE_AGAIN));
+            return Err(Error::input("the data are declared as appended, but the offset is missing")
+                .remedy(WRITE_AGAIN));
         };
         let len = self.file.tail.map_or(appended.bytes.len(), |tail| tail.len);
         if offset > len {
             return Err(Error::input(format!(
-                "its data start at byte {offset} of the appended data, which have {len}"
+                "the data start at byte {offset}, but the appended data have {len} bytes"
             ))
-            .remedy("the file is cut off or damaged: copy or write it again"));
+            .remedy("the file is truncated or damaged: copy or write it again"));
         }
         let starts = &self.file.starts;
         let next = starts.get(starts.partition_point(|&s| s <= offset)).map_or(len, |&s| s.min(len));
@@ -350,8 +356,8 @@ impl<'s, 'a> Array<'s, 'a> {
 const WRITE_AGAIN: &str = "the file is damaged: write it again";
 
 fn wrong_count(found: usize, expected: usize) -> Error {
-    Error::input(format!("holds {found} values, {expected} are needed"))
-        .remedy("the file is cut off or damaged: write it again")
+    Error::input(format!("expected {expected} values, found {found}"))
+        .remedy("the file is truncated or damaged: write it again")
 }
 
 fn read_binary(
@@ -371,8 +377,8 @@ fn read_ascii(text: &str, kind: Scalar, expected: Option<usize>) -> Result<Value
     let mut tokens = text.split_ascii_whitespace();
     let values = kind.parse(expected.unwrap_or(usize::MAX), &mut tokens).map_err(|bad| {
         let bad: String = bad.chars().take(30).collect();
-        let what = if kind.is_integer() { "whole number of its type" } else { "number" };
-        Error::input(format!("`{bad}` is no {what}")).remedy(WRITE_AGAIN)
+        let what = if kind.is_integer() { "whole number of the declared type" } else { "number" };
+        Error::input(format!("`{bad}` is not a {what}")).remedy(WRITE_AGAIN)
     })?;
     let found = values.len() + tokens.count();
     match expected {
@@ -398,7 +404,7 @@ fn ascii_characters(text: &str) -> Result<Vec<u8>> {
             let number = t.parse::<i16>().ok().filter(|n| (-128..256).contains(n));
             number
                 .map(|n| n as u8)
-                .ok_or_else(|| Error::input(format!("`{t}` is no character")).remedy(WRITE_AGAIN))
+                .ok_or_else(|| Error::input(format!("`{t}` is not a character code")).remedy(WRITE_AGAIN))
         })
         .collect()
 }

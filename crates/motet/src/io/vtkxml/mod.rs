@@ -40,19 +40,23 @@ pub(super) use vtu::{write as write_vtu, write_to};
 /// Unstructured grids: cells of any kind.
 pub(super) const VTU: Format = Format {
     name: "VTK XML unstructured grid",
-    endings: &[".vtu"],
+    extensions: &[".vtu"],
     read: Some(read),
     write: Some(write_vtu),
 };
 
 /// Polygonal data: vertices, lines, polygons, strips.
-pub(super) const VTP: Format =
-    Format { name: "VTK XML polygonal data", endings: &[".vtp"], read: Some(read), write: Some(write_vtp) };
+pub(super) const VTP: Format = Format {
+    name: "VTK XML polygonal data",
+    extensions: &[".vtp"],
+    read: Some(read),
+    write: Some(write_vtp),
+};
 
 /// Files that refer to others, which together form a mesh.
 pub(super) const PARTS: Format = Format {
     name: "VTK XML in several files",
-    endings: &[".pvtu", ".pvtp", ".vtm", ".vtmb", ".vtpd"],
+    extensions: &[".pvtu", ".pvtp", ".vtm", ".vtmb", ".vtpd"],
     read: Some(read),
     write: None,
 };
@@ -60,7 +64,7 @@ pub(super) const PARTS: Format = Format {
 /// Kinds of VTK XML files that are recognized only to reject them with advice.
 pub(super) const OTHERS: Format = Format {
     name: "VTK XML",
-    endings: &[".vti", ".vtr", ".vts", ".pvti", ".pvtr", ".pvts"],
+    extensions: &[".vti", ".vtr", ".vts", ".pvti", ".pvtr", ".pvts"],
     read: Some(read),
     write: None,
 };
@@ -80,7 +84,7 @@ fn read_file(file: &file::File<'_>) -> Result<Mesh> {
     match file.kind() {
         "UnstructuredGrid" => vtu::read(file),
         "PolyData" => vtp::read(file),
-        other => Err(Error::input(format!("the file holds {other}, not a mesh of points and cells"))
+        other => Err(Error::input(format!("expected a mesh of points and cells, found {other}"))
             .at("VTKFile")
             .remedy(remedy(other))),
     }
@@ -88,9 +92,9 @@ fn read_file(file: &file::File<'_>) -> Result<Mesh> {
 
 fn remedy(kind: &str) -> &'static str {
     match kind {
-        "Collection" => "it is a series: read the files that it names",
+        "Collection" => "it is a series: read the files that it lists",
         "ImageData" | "RectilinearGrid" | "StructuredGrid" => {
-            "in ParaView, apply `Append Datasets` (or vtkAppendFilter) to turn it into a .vtu"
+            "convert it to .vtu: in ParaView, apply `Append Datasets` (vtkAppendFilter)"
         }
         _ => "save it as .vtu or .vtp",
     }

@@ -68,7 +68,7 @@ pub(super) fn read(file: &File<'_>, input: &Input<'_>) -> Result<Mesh> {
 impl Reader<'_> {
     fn parts(&self, file: &File<'_>, path: &Path, depth: usize, parts: &mut Vec<Part>) -> Result<()> {
         if depth > MAX_DEPTH {
-            return Err(Error::input(format!("files name files more than {MAX_DEPTH} deep"))
+            return Err(Error::input(format!("files refer to files more than {MAX_DEPTH} levels deep"))
                 .in_file(path)
                 .remedy("write the data as one file"));
         }
@@ -86,7 +86,7 @@ impl Reader<'_> {
     fn part(&self, name: &str, path: &Path, depth: usize, parts: &mut Vec<Part>) -> Result<()> {
         let bytes = std::fs::read(path).map_err(|e| {
             Error::io(path, e)
-                .remedy(format!("{} names it: keep its files together", self.input.path.display()))
+                .remedy(format!("{} refers to it: keep its files together", self.input.path.display()))
         })?;
         self.budget.add_file(&path.to_string_lossy(), bytes.len() as u64);
         self.budget.take(bytes.len() as u64)?;
@@ -97,7 +97,7 @@ impl Reader<'_> {
             kind if refers_to_parts(kind) => return self.parts(&file, path, depth + 1, parts),
             other => {
                 self.input.notes.add(format!(
-                    "{}: {other} has no cells that motet knows, and is left out",
+                    "{}: {other} is skipped: it has no cells that motet supports",
                     path.display()
                 ));
                 return Ok(());

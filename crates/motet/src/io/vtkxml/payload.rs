@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! plain        [bytes] data
-//! compressed   [blocks][block size][size of the last, 0 = full][packed size]... block block ...
+//! compressed   [blocks][block size][size of the last, 0 = full][compressed size]... block block ...
 //! ```
 //! A number in brackets has the file's `header_type`. In base64, header and data may be padded separately.
 
@@ -53,7 +53,7 @@ pub(super) struct Payload<'a> {
     /// Where the data start after the header.
     start: usize,
     /// Compressed size of each block; a single block in a plain array.
-    packed: Vec<usize>,
+    compressed: Vec<usize>,
     block: usize,
     /// Decompressed size in bytes.
     len: usize,
@@ -93,13 +93,13 @@ impl<'a> Payload<'a> {
 
     fn plain(bytes: Source<'a>, len: usize, available: usize, layout: Layout) -> Result<Self> {
         if len > available {
-            return Err(cut_off(format!("its header promises {len} bytes, {available} are there")));
+            return Err(truncated(format!("the header declares {len} bytes, but {available} are available")));
         }
         Ok(Self {
             bytes,
             compression: Compression::None,
             start: layout.word,
-            packed: vec![len],
+            compressed: vec![len],
             block: len,
             len,
         })
@@ -113,38 +113,49 @@ impl<'a> Payload<'a> {
                 bytes: Source::Memory(bytes),
                 compression: layout.compression,
                 start: 0,
-                packed: Vec::new(),
+                compressed: Vec::new(),
                 block: 0,
                 len: 0,
             });
         }
         let start = n_blocks.checked_add(3).and_then(|n| n.checked_mul(layout.word));
         let Some(start) = start.filter(|&s| s <= bytes.len()) else {
-            return Err(cut_off(format!(
-                "its header promises {n_blocks} blocks, {} bytes are there",
+            return Err(truncated(format!(
+                "the header declares {n_blocks} blocks, but {} bytes are available",
                 bytes.len()
             )));
         };
         let (block, last) = (words.get(1)?, words.get(2)?);
         let last = if last == 0 { block } else { last };
-        let packed = (0..n_blocks).map(|i| words.get(3 + i)).collect::<Result<Vec<_>>>()?;
+        let compressed = (0..n_blocks).map(|i| words.get(3 + i)).collect::<Result<Vec<_>>>()?;
         let mut left = bytes.len() - start;
-        for (i, &size) in packed.iter().enumerate() {
-            let unpacked = if i + 1 == n_blocks { last } else { block };
+        for (i, &size) in compressed.iter().enumerate() {
+            let decompressed = if i + 1 == n_blocks { last } else { block };
             if size > left {
-                return Err(cut_off(format!("block {i} of {n_blocks} has {size} bytes, {left} are there")));
+                return Err(truncated(format!(
+                    "block {i} of {n_blocks} has {size} bytes, but {left} are available"
+                )));
             }
-            if unpacked > max_output(layout.compression, size) {
-                return Err(damaged(format!("block {i} of {n_blocks}: {size} bytes cannot hold {unpacked}")));
+            if decompressed > max_output(layout.compression, size) {
+                return Err(damaged(format!(
+                    "block {i} of {n_blocks}: {size} bytes cannot decompress to {decompressed}"
+                )));
             }
             left -= size;
         }
         // No overflow: the size of every block has just been checked.
         let len = (n_blocks - 1) * block + last;
         if last > block {
-            return Err(damaged(format!("its last block has {last} bytes, the others {block}")));
+            return Err(damaged(format!("the last block has {last} bytes, more than the others, {block}")));
         }
-        Ok(Self { bytes: Source::Memory(bytes), compression: layout.compression, start, packed, block, len })
+        Ok(Self {
+            bytes: Source::Memory(bytes),
+            compression: layout.compression,
+            start,
+            compressed,
+            block,
+            len,
+        })
     }
 
     /// Decompressed size of the array in bytes.
@@ -167,8 +178,8 @@ impl<'a> Payload<'a> {
         }
         let mut decompressor = Decompressor::new(self.compression);
         let mut from = 0;
-        for ((i, &size), out) in self.packed.iter().enumerate().zip(out.chunks_mut(self.block)) {
-            self.unpack(&mut decompressor, i, &data[from..from + size], out)?;
+        for ((i, &size), out) in self.compressed.iter().enumerate().zip(out.chunks_mut(self.block)) {
+            self.decompress(&mut decompressor, i, &data[from..from + size], out)?;
             from += size;
         }
         Ok(())
@@ -190,11 +201,11 @@ impl<'a> Payload<'a> {
             return Ok(());
         }
         let mut decompressor = Decompressor::new(self.compression);
-        let mut unpacked = vec![0; self.block.min(self.len)];
+        let mut decompressed = vec![0; self.block.min(self.len)];
         let (mut from, mut left) = (self.start, self.len);
-        for (i, &size) in self.packed.iter().enumerate() {
-            let out = &mut unpacked[..self.block.min(left)];
-            self.unpack(&mut decompressor, i, &bytes[from..from + size], out)?;
+        for (i, &size) in self.compressed.iter().enumerate() {
+            let out = &mut decompressed[..self.block.min(left)];
+            self.decompress(&mut decompressor, i, &bytes[from..from + size], out)?;
             each(out);
             from += size;
             left -= out.len();
@@ -202,9 +213,15 @@ impl<'a> Payload<'a> {
         Ok(())
     }
 
-    fn unpack(&self, decompressor: &mut Decompressor, i: usize, packed: &[u8], out: &mut [u8]) -> Result<()> {
-        let n = self.packed.len();
-        decompressor.unpack(packed, out).map_err(|what| damaged(format!("block {i} of {n}: {what}")))
+    fn decompress(
+        &self,
+        decompressor: &mut Decompressor,
+        i: usize,
+        compressed: &[u8],
+        out: &mut [u8],
+    ) -> Result<()> {
+        let n = self.compressed.len();
+        decompressor.decompress(compressed, out).map_err(|what| damaged(format!("block {i} of {n}: {what}")))
     }
 
     /// All bytes of the array.
@@ -238,7 +255,7 @@ impl Words<'_> {
     fn get(&self, i: usize) -> Result<usize> {
         let word = self.layout.word;
         let Some(bytes) = self.bytes.get(i * word..(i + 1) * word) else {
-            return Err(cut_off("the data end within their header".into()));
+            return Err(truncated("the data end inside their header".into()));
         };
         let mut wide = [0; 8];
         wide[..word].copy_from_slice(bytes);
@@ -246,7 +263,7 @@ impl Words<'_> {
             wide[..word].reverse();
         }
         usize::try_from(u64::from_le_bytes(wide))
-            .map_err(|_| damaged("a size beyond this machine's memory".into()))
+            .map_err(|_| damaged("a size exceeds the address space".into()))
     }
 }
 
@@ -262,16 +279,14 @@ pub(super) fn decode_base64(text: &[u8]) -> Result<Vec<u8>> {
         let end = rest.iter().position(|&b| b == b'=').unwrap_or(rest.len());
         let padding = rest[end..].iter().take_while(|&&b| b == b'=').count();
         let (part, next) = rest.split_at(end + padding);
-        BASE64
-            .decode_vec(part, &mut bytes)
-            .map_err(|e| damaged(format!("its base64 cannot be read: {e}")))?;
+        BASE64.decode_vec(part, &mut bytes).map_err(|e| damaged(format!("invalid base64: {e}")))?;
         rest = next;
     }
     Ok(bytes)
 }
 
-fn cut_off(what: String) -> Error {
-    Error::input(what).remedy("the file is cut off or damaged: copy or write it again")
+fn truncated(what: String) -> Error {
+    Error::input(what).remedy("the file is truncated or damaged: copy or write it again")
 }
 
 fn damaged(what: String) -> Error {
@@ -304,7 +319,7 @@ mod tests {
             // One block of 8 bytes that declares a size of 2^40.
             let bomb: Vec<u8> = [1u64, 1 << 40, 0, 8, 0].iter().flat_map(|w| w.to_le_bytes()).collect();
             let error = Payload::open(Cow::Borrowed(&bomb), layout).unwrap_err();
-            assert!(error.to_string().contains("cannot hold 1099511627776"), "{error}");
+            assert!(error.to_string().contains("cannot decompress to 1099511627776"), "{error}");
         }
     }
 }

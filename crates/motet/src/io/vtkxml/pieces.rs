@@ -75,19 +75,18 @@ pub(super) fn common_arrays<'m>(meshes: impl Iterator<Item = &'m mut Mesh>, note
         let kind = |f: &Field| (f.name.clone(), f.components, std::mem::discriminant(&f.values));
         let each: Vec<Vec<_>> = meshes.iter_mut().map(|mesh| of(mesh).iter().map(kind).collect()).collect();
         let is_common = |f: &Field| each.iter().all(|kinds| kinds.contains(&kind(f)));
-        let mut left_out: Vec<String> = Vec::new();
+        let mut skipped: Vec<String> = Vec::new();
         for mesh in &mut meshes {
             of(mesh).retain(|f| {
                 let is_common = is_common(f);
-                if !is_common && !left_out.contains(&f.name) {
-                    left_out.push(f.name.clone());
+                if !is_common && !skipped.contains(&f.name) {
+                    skipped.push(f.name.clone());
                 }
                 is_common
             });
         }
-        if !left_out.is_empty() {
-            notes
-                .add(format!("{what} arrays that not all blocks have are left out: {}", left_out.join(", ")));
+        if !skipped.is_empty() {
+            notes.add(format!("{what} arrays that not all blocks have are skipped: {}", skipped.join(", ")));
         }
     }
 }
@@ -104,7 +103,7 @@ fn join(mut whole: Mesh, piece: Mesh) -> Result<Mesh> {
     let shift = whole.points.len();
     if shift + piece.points.len() > VertexId::MAX_COUNT {
         return Err(
-            Error::input("all pieces together have too many points").remedy("read the pieces one by one")
+            Error::input("all pieces together have too many points").remedy("read the pieces one at a time")
         );
     }
     join_fields(&mut whole.point_data, piece.point_data, "point")?;
@@ -122,16 +121,16 @@ fn join(mut whole: Mesh, piece: Mesh) -> Result<Mesh> {
 }
 
 fn join_fields(whole: &mut [Field], piece: Vec<Field>, what: &str) -> Result<()> {
-    let unlike = || Error::input(format!("its {what} arrays are not those of the pieces before it"));
+    let unlike = || Error::input(format!("the {what} arrays differ from those of the previous pieces"));
     if whole.len() != piece.len() {
-        return Err(unlike().remedy("write the pieces with the same arrays, or read them one by one"));
+        return Err(unlike().remedy("write the pieces with the same arrays, or read them one at a time"));
     }
     for field in piece {
         let same = whole.iter_mut().find(|f| f.name == field.name && f.components == field.components);
         if !same.is_some_and(|f| append(&mut f.values, field.values)) {
             return Err(unlike()
                 .at(format!("array {}", field.name))
-                .remedy("write the pieces with the same arrays, or read them one by one"));
+                .remedy("write the pieces with the same arrays, or read them one at a time"));
         }
     }
     Ok(())
@@ -141,7 +140,7 @@ fn join_fields(whole: &mut [Field], piece: Vec<Field>, what: &str) -> Result<()>
 fn push_cells(cells: &mut Cells, more: &Cells, shift: u32) -> Result<()> {
     if cells.connectivity().items().len() + more.connectivity().items().len() > VertexId::MAX_COUNT {
         return Err(
-            Error::input("all pieces together have too many cells").remedy("read the pieces one by one")
+            Error::input("all pieces together have too many cells").remedy("read the pieces one at a time")
         );
     }
     let raised = |v: &VertexId| VertexId(v.0 + shift);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! old          faces                 n faces, then for each: n vertices, vertex, vertex, ...
-//!              faceoffsets           for each cell where its faces end, -1 where it is no polyhedron
+//!              faceoffsets           for each cell where its faces end, -1 for cells that are not polyhedra
 //! from 9.4 on  face_connectivity     vertices, face after face
 //!              face_offsets          where each face ends
 //!              polyhedron_to_faces   faces, cell after cell
@@ -66,7 +66,7 @@ fn list<'a>(ends: &[u32], items: &'a [u32], i: usize) -> Option<&'a [u32]> {
 }
 
 fn inconsistent_faces(cell: usize) -> Error {
-    Error::input("the arrays of faces do not fit together at this polyhedron")
+    Error::input("the face arrays are inconsistent for this polyhedron")
         .at(format!("cell {cell}"))
         .remedy("the file is damaged: write it again")
 }

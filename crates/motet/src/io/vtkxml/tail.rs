@@ -45,7 +45,7 @@ impl Tail {
         let mut file = &self.file;
         let place = (self.head.len() + at) as u64;
         let read = file.seek(SeekFrom::Start(place)).and_then(|_| file.read_exact(out));
-        read.map_err(|e| Error::input(format!("the file could not be read on: {e}")).remedy("read it again"))
+        read.map_err(|e| Error::input(format!("the file could not be read: {e}")).remedy("try again"))
     }
 }
 
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn raw_data_starts_behind_the_underscore() {
+    fn raw_data_start_after_the_underscore() {
         let head = b"<V><AppendedData encoding=\"raw\">\n _xyz";
         assert_eq!(appended_start(head).map(|start| &head[start..]), Some(b"xyz".as_slice()));
         assert_eq!(appended_start(b"<V><AppendedData encoding=\"base64\">\n _xyz"), None);
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_looks_like_raw_data_is_read_whole() {
+    fn files_that_only_seem_to_have_raw_data_are_read_whole() {
         // VTK's default encoding is base64.
         assert_eq!(appended_start(b"<V><AppendedData encod#ng=\"raw\">\n _xyz"), None);
         assert_eq!(appended_start(b"<V><AppendedData encoding=\"base64\" note=\"raw\">\n _xyz"), None);

@@ -38,7 +38,7 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>) -> Result<Cells> {
             continue;
         }
         let Some(element) = piece.child(name) else {
-            return Err(Error::input(format!("{n} {name} are promised, but the element is missing"))
+            return Err(Error::input(format!("{n} {name} declared, but the element is missing"))
                 .at(piece.place())
                 .remedy("the file is damaged: write it again"));
         };
@@ -50,7 +50,7 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>) -> Result<Cells> {
         }
         let vertices = bytemuck::allocation::cast_vec::<u32, VertexId>(ids);
         let lists = Csr::new(offsets, vertices).ok_or_else(|| {
-            Error::input(format!("the offsets do not rise from 0 to the {n_ids} ids of the connectivity"))
+            Error::input(format!("the offsets do not ascend from 0 to {n_ids}, the number of ids"))
                 .at(element.place())
                 .remedy("the file is damaged: write it again")
         })?;
@@ -59,7 +59,7 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>) -> Result<Cells> {
     Ok(cells)
 }
 
-/// The cells of a mesh by section, and what the sorting changes.
+/// The cells of a mesh by section, and what sorting them changes.
 struct Sections {
     lists: [Csr<VertexId>; 4],
     /// The cells in the order of the file; `None` if it is the order of the mesh.
@@ -70,21 +70,21 @@ struct Sections {
 impl Sections {
     fn of(cells: &Cells) -> Result<Self> {
         let mut sorted: [Vec<usize>; 4] = Default::default();
-        let mut left_out = Vec::new();
+        let mut unsupported = Vec::new();
         for (cell, kind, _) in cells.iter() {
             match section_of(kind) {
                 Some(section) => sorted[section].push(cell.index()),
-                None => left_out.push(kind),
+                None => unsupported.push(kind),
             }
         }
-        if left_out.len() == cells.len() && !cells.is_empty() {
+        if unsupported.len() == cells.len() && !cells.is_empty() {
             return Err(Error::input(format!(
-                "polygonal data hold no {} cells, and the mesh has no others",
-                left_out[0].label()
+                "polygonal data cannot hold cells of kind {}, and the mesh has no others",
+                unsupported[0].label()
             ))
-            .remedy("write a .vtu, or take the surface of the mesh first"));
+            .remedy("write a .vtu, or extract the surface of the mesh first"));
         }
-        let mut lost = left_out_by_kind(left_out);
+        let mut lost = lost_by_kind(unsupported);
         let lists = sorted.each_ref().map(|of_section| {
             let mut lists = Csr::default();
             of_section.iter().for_each(|&cell| lists.push(corners(cells, CellId::new(cell))));
@@ -94,7 +94,7 @@ impl Sections {
         let moved = order.windows(2).any(|w| w[0] > w[1]);
         if moved {
             lost.push(
-                "the order of the cells: polygonal data have vertices first, then lines, polygons, strips"
+                "the order of the cells is not kept: polygonal data store vertices, lines, polygons, then strips"
                     .into(),
             );
         }
@@ -120,11 +120,17 @@ fn corners(cells: &Cells, cell: CellId) -> impl Iterator<Item = VertexId> {
     (0..v.len()).map(move |i| if pixel { v[[0, 1, 3, 2][i]] } else { v[i] })
 }
 
-fn left_out_by_kind(mut kinds: Vec<CellKind>) -> Vec<String> {
+fn lost_by_kind(mut kinds: Vec<CellKind>) -> Vec<String> {
     kinds.sort_unstable();
     kinds
         .chunk_by(|a, b| a == b)
-        .map(|same| format!("{} {} cells, which polygonal data do not hold", same.len(), same[0].label()))
+        .map(|same| {
+            format!(
+                "{} cells of kind {} are not written: polygonal data have no such cells",
+                same.len(),
+                same[0].label()
+            )
+        })
         .collect()
 }
 

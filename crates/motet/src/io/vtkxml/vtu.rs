@@ -41,7 +41,7 @@ pub(super) fn read_points(file: &File<'_>, piece: &Element<'_>, n: usize) -> Res
     match arrays.next() {
         Some(array) => array?.points(n),
         None if n == 0 => Ok(Vec::new()),
-        None => Err(Error::input(format!("{n} points are promised, but there is no array of points"))
+        None => Err(Error::input(format!("{n} points declared, but there is no array of points"))
             .at(piece.place())
             .remedy("the file is damaged: write it again")),
     }
@@ -52,7 +52,7 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>, n: usize) -> Result<Cells> {
         return Ok(Cells::new());
     }
     let Some(element) = piece.child("Cells") else {
-        return Err(Error::input(format!("{n} cells are promised, but the element Cells is missing"))
+        return Err(Error::input(format!("{n} cells declared, but the element Cells is missing"))
             .at(piece.place())
             .remedy("the file is damaged: write it again"));
     };
@@ -75,7 +75,7 @@ fn read_kinds(file: &File<'_>, element: &Element<'_>, n: usize) -> Result<Vec<Ce
         other => other.to_i64().and_then(|wide| wide.into_iter().map(|k| u8::try_from(k).ok()).collect()),
     };
     let numbers =
-        numbers.ok_or_else(|| Error::input("a cell type is not in 0 to 255").at(element.place()))?;
+        numbers.ok_or_else(|| Error::input("a cell type is not between 0 and 255").at(element.place()))?;
     Ok(bytemuck::allocation::cast_vec(numbers))
 }
 

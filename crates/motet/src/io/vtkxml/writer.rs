@@ -261,7 +261,7 @@ impl<'a> Writer<'a> {
         if text.contains(illegal) {
             legal = Cow::Owned(text.replace(illegal, "?"));
             self.lost.push(format!(
-                "the name {text:?} has characters that XML forbids: they became question marks"
+                "the name {text:?} has characters that XML does not allow: they are replaced by question marks"
             ));
         }
         let escaped = quick_xml::escape::escape(&*legal);
@@ -271,7 +271,7 @@ impl<'a> Writer<'a> {
     fn note_zero_bytes(&mut self, name: &str, data: &Data<'_>) {
         if matches!(data, Data::Values(Values::Text(texts)) if texts.iter().any(|t| t.contains('\0'))) {
             self.lost
-                .push(format!("texts of the array {name} hold zero bytes, which end a text in VTK's files"));
+                .push(format!("texts of the array {name} contain zero bytes, which end a text in VTK files"));
         }
     }
 }
@@ -302,7 +302,7 @@ fn write_raw(
     let mut size_at = start + 3 * 8;
     data.blocks(|_, block| {
         let from = out.len();
-        compressor.pack(block, out)?;
+        compressor.compress(block, out)?;
         let size = (out.len() - from) as u64;
         out[size_at..size_at + 8].copy_from_slice(&size.to_ne_bytes());
         size_at += 8;

@@ -48,7 +48,7 @@ impl<I: Id> TryFrom<Parts<I>> for Rows<I> {
             )));
         }
         if let Some(w) = ids.windows(2).find(|w| w[0] >= w[1]) {
-            return Err(Error::input(format!("row {} follows row {}: ids must rise", w[1], w[0])));
+            return Err(Error::input(format!("row {} follows row {}: ids must ascend", w[1], w[0])));
         }
         Ok(Self { ids, from, shares, main })
     }
@@ -157,7 +157,7 @@ impl<I: Id> Row<'_, I> {
     fn fault(&self, n_old: usize, signs: Signs) -> Option<String> {
         let named = self.from.iter().chain([&self.main]);
         if let Some(beyond) = named.into_iter().find(|old| old.place() >= n_old) {
-            return Some(format!("names the old id {beyond}, but there were only {n_old}"));
+            return Some(format!("refers to the old id {beyond}, but there were only {n_old}"));
         }
         let sum: f64 = self.shares.iter().sum();
         let fits = |share: f64| share > 0.0 || signs == Signs::Any;

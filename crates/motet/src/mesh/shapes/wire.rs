@@ -135,11 +135,11 @@ fn check(points: &[Point], segments: &[[VertexId; 2]], radius: f64, around: usiz
     for (i, segment) in segments.iter().enumerate() {
         let refuse = |what: String| Err(Error::input(what).at(format!("segment {i}")).remedy("leave it out"));
         if let Some(v) = segment.iter().find(|v| v.index() >= points.len()) {
-            return refuse(format!("names point {v}, but there are {}", points.len()));
+            return refuse(format!("refers to point {v}, but there are {} points", points.len()));
         }
         let [a, b] = segment.map(|v| points[v.index()]);
         if !in_range(a) || !in_range(b) {
-            return refuse("has an end whose coordinates are not finite numbers".into());
+            return refuse("has an end whose coordinates are not finite".into());
         }
         if distance(a, b) == 0.0 {
             return refuse("has no length".into());

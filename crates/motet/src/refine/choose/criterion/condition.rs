@@ -106,9 +106,9 @@ impl Condition {
     pub fn check(&self) -> Result<()> {
         match self.value.is_finite() {
             true => Ok(()),
-            false => Err(Error::options(format!(
-                "`{self}` is not a valid condition: its value is no finite number"
-            ))),
+            false => {
+                Err(Error::options(format!("`{self}` is not a valid condition: its value is not finite")))
+            }
         }
     }
 
@@ -156,7 +156,7 @@ mod tests {
         }
         for text in ["p>nan", "p<inf"] {
             assert!(
-                text.parse::<Condition>().unwrap_err().to_string().contains("no finite number"),
+                text.parse::<Condition>().unwrap_err().to_string().contains("its value is not finite"),
                 "{text}"
             );
         }

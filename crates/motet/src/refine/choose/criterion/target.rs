@@ -29,11 +29,9 @@ impl Target {
         }
         let is_invalid = |v: &&VertexId| points.get(v.index()).is_none_or(|p| !in_range(*p));
         if let Some(v) = triangles.as_flattened().iter().find(is_invalid) {
-            return Err(Error::input(
-                "has an invalid position: a coordinate is missing or is no finite number",
-            )
-            .at(format!("point {v}"))
-            .remedy("remove the point and its cells, or correct its coordinates"));
+            return Err(Error::input("has an invalid position: a coordinate is missing or not finite")
+                .at(format!("point {v}"))
+                .remedy("remove the point and its cells, or correct its coordinates"));
         }
         let tree = NearestTriangle::new(&points, &triangles, threads);
         Ok(Self { points, triangles, tree })
