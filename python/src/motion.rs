@@ -225,7 +225,7 @@ pub(crate) fn choose<'py>(
     let all = || Ok(frames.iter().map(|frame| Ok(frame.clone())));
     let choice =
         watched(py, threads, progress, |threads| motion::choose(&mesh.0, &options, least, all, threads))?;
-    Ok((choice.method.name().to_owned(), choice.least, report(py, &choice.tried)?))
+    Ok((choice.method.name().to_string(), choice.least, report(py, &choice.tried)?))
 }
 
 /// Velocities by the difference of two positions.
