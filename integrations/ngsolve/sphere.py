@@ -140,8 +140,8 @@ class Run:
         divergence = self.flow.divergence()
         self.motion, changed = self.clocked("repair", self.motion.repaired)
         self.flow = self.clocked("transfer", carried, self.flow, changed.mesh, changed.history)
-        told = {"step": len(self.forces), "bad": changed.report.before.bad, "left": changed.report.after.bad, "kept": changed.report.kept_share}
-        self.repairs.append({**told, "divergence": self.flow.divergence() / divergence, "drag": np.nan})
+        summary = {"step": len(self.forces), "bad": changed.report.before.bad, "left": changed.report.after.bad, "kept": changed.report.kept_share}
+        self.repairs.append({**summary, "divergence": self.flow.divergence() / divergence, "drag": np.nan})
 
     def show(self, name):
         ms = {what: 1e3 * np.median(each) for what, each in self.seconds.items()}
@@ -174,11 +174,11 @@ def main():
     words.add_argument("--drift", type=float, default=4.0, help="along the channel in 100 steps, in radii")
     words.add_argument("--worn", type=float, default=0.15, help="the EAS of the worst tet below which motet repairs")
     words.add_argument("--save", help="where the last meshes go; {} is the motion's name")
-    asked = words.parse_args()
-    mesh = made(asked.size)
-    print(f"{mesh.n_points} vertices, {len(mesh.tets)} tets, {asked.steps} steps of {DT}")
+    options = words.parse_args()
+    mesh = made(options.size)
+    print(f"{mesh.n_points} vertices, {len(mesh.tets)} tets, {options.steps} steps of {DT}")
     motions = {
-        "motet": functools.partial(ByMotet, worn=asked.worn),
+        "motet": functools.partial(ByMotet, worn=options.worn),
         "unrepaired": ByMotet,
         "Laplace": functools.partial(BySystem, kind="Laplace"),
         "elasticity": functools.partial(BySystem, kind="elasticity"),
@@ -187,17 +187,17 @@ def main():
     with TaskManager():
         for name, motion_of in motions.items():
             run = runs[name] = Run(mesh, motion_of)
-            for k in range(1, asked.steps + 1):
-                shift, before = [path(DT * i, asked.drift, asked.swing) for i in (k, k - 1)]
+            for k in range(1, options.steps + 1):
+                shift, before = [path(DT * i, options.drift, options.swing) for i in (k, k - 1)]
                 if not run.step(k * DT, shift, (shift - before) / DT):
                     break
             run.show(name)
             if run is not runs["motet"]:
                 print(f"  beside motet, {compare(runs['motet'], run)}", flush=True)
-            if asked.save:
+            if options.save:
                 last = run.motion.mesh.copy()
                 last.points = run.flow.points()
-                last.save(asked.save.format(name))
+                last.save(options.save.format(name))
 
 
 if __name__ == "__main__":

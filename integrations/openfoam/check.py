@@ -66,13 +66,13 @@ def farthest(a, b):
 def compare(folder, library, program):
     serial = Case(folder / f"{program}_serial", library)
     start = serial.points("constant")
-    _, told = serial.run(program)
+    _, output = serial.run(program)
     parallel = Case(folder / f"{program}_parallel", library)
     parallel.run("decomposePar")
     parallel.run(program, processes=2)
     parallel.run("reconstructPar", "-latestTime")
     moved, apart = farthest(start, serial.points()), farthest(serial.points(), parallel.points())
-    nodes = re.search(r"delaunayGraph: (\d+) nodes", told)[1]
+    nodes = re.search(r"delaunayGraph: (\d+) nodes", output)[1]
     print(f"{program}: {nodes} nodes, points moved by {moved:.3g} at most; on 2 processes they are {apart:.1e} apart")
     assert moved > 0.1 and apart < 1e-12
 

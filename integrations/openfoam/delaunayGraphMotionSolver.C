@@ -16,7 +16,7 @@ namespace Foam
     );
 }
 
-static_assert(sizeof(Foam::scalar) == sizeof(double), "motet's arrays are of doubles: OpenFOAM has to be built with WM_PRECISION_OPTION=DP");
+static_assert(sizeof(Foam::scalar) == sizeof(double), "motet's arrays are of doubles: build OpenFOAM with WM_PRECISION_OPTION=DP");
 
 namespace
 {
@@ -26,7 +26,7 @@ const double* doubles(const Foam::UList<Foam::vector>& list)
     return reinterpret_cast<const double*>(list.cdata());
 }
 
-//- The lists of all processes, one after the other, on each of them
+//- The lists of all processes, one after the other; returned on every process
 Foam::pointField gathered(const Foam::pointField& own)
 {
     Foam::List<Foam::pointField> all(Foam::Pstream::nProcs());
@@ -110,7 +110,7 @@ void Foam::delaunayGraphMotionSolver::solve()
         setUp();
     }
 
-    // Patches with a value put it into the field.
+    // Patches with a value write it into the field.
     pointDisplacement_.correctBoundaryConditions();
 
     const pointField displacement(gathered(pointField(pointDisplacement_.primitiveField(), nodes_)));

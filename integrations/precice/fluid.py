@@ -2,7 +2,7 @@
 
     python fluid.py precice-config.xml vessel.vtu wall
 
-Where the flow is solved, `solve` stands: here it is nothing but a pressure that is the same everywhere, put on the wall's facets.
+`solve` stands in for a flow solver: a constant pressure on the facets of the wall.
 """
 import sys
 
@@ -21,7 +21,7 @@ def solve(points, velocity, mesh, wall):
 
 
 def couple(participant, mesh, wall, solve=solve):
-    """The loop. Gives the points at the end."""
+    """The loop. Returns the points at the end."""
     ids = participant.set_mesh_vertices("Fluid-Mesh", mesh.points[wall])
     mover = motet.Mover(mesh)
     at_wall = np.searchsorted(mover.boundary, wall)
@@ -29,7 +29,7 @@ def couple(participant, mesh, wall, solve=solve):
     points, before = mesh.points.copy(), mesh.points.copy()
     participant.initialize()
     while participant.is_coupling_ongoing():
-        # A step of motet depends on the displacement alone: of the mesh there is nothing to be kept for an iteration that is done again.
+        # A step of motet depends on the displacement only: nothing of the mesh is stored for an iteration that is repeated.
         if participant.requires_writing_checkpoint():
             before = points.copy()
         dt = participant.get_max_time_step_size()

@@ -1,9 +1,12 @@
-/* A user-defined function of Fluent, DEFINE_GRID_MOTION for a fluid zone: motet moves the nodes of its cells after those of its walls.
+/* A user-defined function of Fluent, DEFINE_GRID_MOTION for a fluid zone: motet moves the nodes of its cells with
+ * those of its walls.
  *
- * Hook it to the fluid cell zone. WALLS are the ids of the zones whose motion is known, `wall_displacement` says what it is: here a sphere that swings. The first call sets
- * the graph up, on the mesh as it is then. It was compiled against stand-in/udf.h, not run in Fluent.
+ * Hook it to the fluid cell zone. WALLS are the ids of the zones whose motion is prescribed by `wall_displacement`:
+ * here a sphere that swings. The first call sets up the graph for the current mesh. It was compiled with
+ * stand-in/udf.h, not run in Fluent.
  *
- * For a serial Fluent; in a parallel one each process has to get the wall nodes of all (PRF_GCOLLECT and the like) before motet_point_mover_new and each step.
+ * For a serial Fluent. In parallel each process must gather the wall nodes of all processes (PRF_GCOLLECT and the
+ * like) before motet_point_mover_new and before each step.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +17,7 @@
 static const int WALLS[] = {5, 6};
 enum { N_WALLS = sizeof WALLS / sizeof WALLS[0] };
 
-/* From the first place `x` of a node of a wall: where it is at a time. */
+/* The displacement at a time of a wall node whose first place is `x`. */
 static void wall_displacement(const real x[ND_ND], real time, real displacement[ND_ND])
 {
     const int is_sphere = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] < 1.01;
@@ -45,7 +48,7 @@ static void add(Places *places, Node *node)
     places->nodes[places->n++] = node;
 }
 
-/* Nodes come once for each face or cell that has them; twice in the lists does no harm. */
+/* A node is listed once for each face or cell that has it; duplicates do no harm. */
 static int set_up(Domain *domain, Thread *fluid)
 {
     motet_error *error = NULL;

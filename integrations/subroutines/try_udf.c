@@ -1,4 +1,5 @@
-/* Makes a fluid of one layer of tets with the stand-in of Fluent and calls the example twice: does the node in the middle follow? */
+/* Calls the example on a tiny fluid zone made with the stand-in for Fluent, and checks that the node in the middle
+ * follows. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,6 +34,6 @@ int main(void)
     cell_nodes[0] = &nodes[0], cell_nodes[1] = &nodes[6], cell_nodes[2] = &nodes[8], cell_nodes[3] = &nodes[12];
     for (i = 0; i < 13; i++) nodes[i].needs_update = 1;
     motet_motion(&domain, &dynamic, 0.25, 0.25);
-    printf("the body went to %.3f, the node between to %.3f, the wall is at %.3f\n", nodes[0].x[0], nodes[12].x[0], nodes[6].x[0]);
+    printf("the body is at %.3f, the node between at %.3f, the wall at %.3f\n", nodes[0].x[0], nodes[12].x[0], nodes[6].x[0]);
     return !(fabs(nodes[0].x[0] - 1.5) < 1e-6 && fabs(nodes[12].x[0] - 2.75) < 1e-6 && nodes[6].x[0] == 4 && fluid.deforms);
 }

@@ -1,8 +1,8 @@
-! A user's subroutine in Fortran, as solvers call it once a step: the coordinates of all nodes come in and go out, `on_walls` are
-! those on walls, from 1.
+! A user's subroutine in Fortran, as solvers call it once a step: `x` has the coordinates of all nodes, which are updated;
+! `on_walls` are the numbers of the nodes on walls, from 1.
 !
-! The motion of the walls is known: here a sphere at the origin swings. The first call sets the graph up. It was run in
-! stand-in/solver.f90, in no solver that is sold; names and lists of arguments are to be made those of yours.
+! The motion of the walls is prescribed: here a sphere at the origin swings. The first call sets up the graph. It was run
+! with stand-in/solver.f90, not in a commercial solver; adapt names and arguments to those of your solver.
 subroutine user_grid(n_points, x, n_walls, on_walls, time)
   use, intrinsic :: iso_c_binding
   use motet, only: point_mover

@@ -10,6 +10,7 @@ use motet::motion::{
 };
 use motet::{Error, Mesh, Result};
 
+use crate::constants;
 use crate::guard::{MotetError, guarded, or_default};
 use crate::memory::{
     check_no_overlap, copy_out, count, expect, fill_rows, free, handle, handle_mut, id, optional, out_handle,
@@ -76,7 +77,7 @@ impl MotetMoverOptions {
 
     fn method(&self, wall: Option<FacetSet>, bodies: Vec<FacetSet>) -> Result<Method> {
         let (residual, factor_gib) = (self.residual, self.factor_gib);
-        method(self.method, MethodWords { bodies, wall, residual, factor_gib })
+        Method::of_name(constants::method(self.method)?, MethodWords { bodies, wall, residual, factor_gib })
     }
 }
 
@@ -89,13 +90,6 @@ pub(crate) fn extent(distance: f64, cells: usize) -> Result<Option<Extent>> {
         (None, true) => Ok(Some(Extent::Cells(cells))),
         (None, false) => Ok(None),
     }
-}
-
-/// A method by its number in the header.
-pub(crate) fn method(number: i32, words: MethodWords) -> Result<Method> {
-    words.check()?;
-    let method = usize::try_from(number).ok().and_then(|k| Method::all(words).into_iter().nth(k));
-    method.ok_or_else(|| Error::options(format!("unknown method {number}")).remedy("MOTET_DELAUNAY is 0"))
 }
 
 #[unsafe(no_mangle)]

@@ -4,20 +4,21 @@ use std::ffi::c_char;
 use std::ptr;
 
 use motet::base::{Point, Threads};
-use motet::motion::{Limits, MethodWords, SlideTolerance, Strain};
+use motet::motion::{Limits, Method, MethodWords, SlideTolerance, Strain};
 use motet::moving::{GAP, Motion, MovingMesh, Options, Step, Watching};
 use motet::refine::{self, Criterion, Size, Target, Wanted};
 use motet::{Error, Mesh, Result, contact, io, remesh};
 use serde_json::json;
 
-use crate::changing::{MotetOutcome, surface_rule};
+use crate::changing::MotetOutcome;
+use crate::constants::{self, On};
 use crate::guard::{MotetError, guarded, or_default};
 use crate::memory::{
     copy_out, count, expect, fill_rows, free, handle, handle_mut, optional, out_handle, owned,
     read_versioned, rows, set_handle, text, threads, versioned,
 };
-use crate::mesh::{MotetMesh, field, on_points};
-use crate::motion::{extent, method};
+use crate::mesh::{MotetMesh, field};
+use crate::motion::extent;
 
 /// A moving mesh and the threads that it uses.
 pub(crate) struct MotetMoving {
@@ -69,7 +70,7 @@ versioned! {
 
 impl MotetMovingOptions {
     fn options(&self, mesh: &Mesh) -> Result<Options> {
-        let surface = surface_rule(self.surface, self.distance)?;
+        let surface = constants::surface_rule(self.surface, optional(self.distance))?;
         let held = remesh::Held::of_names(mesh, &owned(self.hold_names, self.n_hold_names, "hold_names")?)?;
         let repair = remesh::Options { min_eas: self.min_eas, surface, held, ..remesh::Options::default() };
         Ok(Options {
@@ -94,7 +95,7 @@ impl MotetMovingOptions {
         let extent = extent(self.rigid_layer, cells)?;
         let wall = labels(self.wall, self.n_wall, "wall")?;
         Ok(Motion {
-            method: method(self.method, MethodWords::default())?,
+            method: Method::of_name(constants::method(self.method)?, MethodWords::default())?,
             strain: if self.strain_in_band == 0 { Strain::Even } else { Strain::Band },
             bodies: labels(self.bodies, self.n_bodies, "bodies")?,
             within_walls: self.within_walls != 0,
@@ -236,9 +237,9 @@ pub(crate) unsafe extern "C" fn motet_moving_set_array(
     guarded(error, || {
         let MotetMoving { moving, .. } = handle_mut(moving, "moving")?;
         let field = field(text(name, "name")?, values, n, components)?;
-        match on_points(on)? {
-            true => moving.set_point_field(field),
-            false => moving.set_cell_field(field),
+        match constants::on(on)? {
+            On::Points => moving.set_point_field(field),
+            On::Cells => moving.set_cell_field(field),
         }
     })
 }

@@ -1,5 +1,5 @@
-! Stands in for a solver that calls a user's Fortran subroutine once a step with its own arrays, as CFX and CFD-ACE+ do: what
-! user_grid.f90 needs of one, and a tiny mesh to call it with. Not theirs.
+! Stands in for a solver that calls a user's Fortran subroutine once a step with its own arrays, as CFX and CFD-ACE+ do:
+! calls user_grid.f90 with a tiny mesh. It contains no code of these solvers.
 program solver
   use, intrinsic :: iso_c_binding
   implicit none

@@ -1,4 +1,5 @@
-/* Stands in for Fluent's udf.h: what fluent_udf.c uses of it, so that the example is known to compile. Not Fluent's, and of no use in it. */
+/* Stands in for Fluent's udf.h: declares what fluent_udf.c uses, to check that the example compiles. It contains no
+ * code of Fluent. */
 #ifndef STAND_IN_UDF_H
 #define STAND_IN_UDF_H
 
