@@ -1,9 +1,9 @@
 /* The small cases of testdata, by the C library: prints a name and a number a line.
  *
- *   cases repair MESH PATCH DX DY DZ SMOOTH     a patch is shifted, bad tets are repaired, x is carried along
+ *   cases repair MESH PATCH DX DY DZ SMOOTH     a patch is shifted, bad tets are repaired, x is transferred
  *   cases implant HOST DEVICE NAME
  *   cases contact SURFACE SURFACE
- *   cases loop MESH PATCH DX DY DZ STEPS        a patch goes away in steps and comes back, repaired on the way; saved and loaded where it turns
+ *   cases loop MESH PATCH DX DY DZ STEPS        a patch moves away in steps and returns; saved and loaded half way
  */
 #include <math.h>
 #include <stdio.h>
@@ -35,9 +35,9 @@ static motet_mesh *read_mesh(const char *path)
     return mesh;
 }
 
-static void told(const char *name, double value) { printf("%s %.17g\n", name, value); }
+static void report(const char *name, double value) { printf("%s %.17g\n", name, value); }
 
-static void tell_mesh(const motet_mesh *mesh)
+static void report_mesh(const motet_mesh *mesh)
 {
     int64_t n = motet_mesh_n_points(mesh), n_cells = motet_mesh_n_cells(mesh), i;
     double *points = memory(3 * n, sizeof *points), *eas = memory(n_cells, sizeof *eas), sum[3] = {0, 0, 0}, worst = 1;
@@ -46,10 +46,10 @@ static void tell_mesh(const motet_mesh *mesh)
     for (i = 0; i < 3 * n; i++) sum[i % 3] += points[i];
     for (i = 0; i < n_cells; i++)
         if (eas[i] < worst) worst = eas[i];
-    told("points", (double)n);
-    told("tets", (double)motet_mesh_n_of_kind(mesh, MOTET_TETRA));
-    told("sum_x", sum[0]), told("sum_y", sum[1]), told("sum_z", sum[2]);
-    told("worst_eas", worst);
+    report("points", (double)n);
+    report("tets", (double)motet_mesh_n_of_kind(mesh, MOTET_TETRA));
+    report("sum_x", sum[0]), report("sum_y", sum[1]), report("sum_z", sum[2]);
+    report("worst_eas", worst);
     free(points), free(eas);
 }
 
@@ -70,26 +70,26 @@ static void repair(char **words)
     n = motet_mover_n_boundary(mover);
     boundary = memory(n, sizeof *boundary), displacement = memory(3 * n, sizeof *displacement);
     ok(motet_mover_boundary(mover, boundary, n, &error));
-    for (i = 0; i < n; i++) { /* both lists rise */
+    for (i = 0; i < n; i++) { /* both lists are in ascending order */
         while (k < n_patch && patch[k] < boundary[i]) k++;
         if (k < n_patch && patch[k] == boundary[i])
             displacement[3 * i] = atof(words[2]), displacement[3 * i + 1] = atof(words[3]), displacement[3 * i + 2] = atof(words[4]);
     }
     motet_certificate_init(&certificate, sizeof certificate);
     ok(motet_mover_advance(mover, displacement, n, 3, points, n_points, 3, &certificate, &error));
-    told("complete", certificate.complete);
-    told("bad_after_motion", (double)certificate.bad);
-    told("worst_after_motion", certificate.worst_eas);
+    report("complete", certificate.complete);
+    report("bad_after_motion", (double)certificate.bad);
+    report("worst_after_motion", certificate.worst_eas);
     ok(motet_mesh_set_points(mesh, points, n_points, 3, &error));
     ok(motet_remesh(mesh, NULL, &outcome, &error));
-    told("repaired", motet_outcome_complete(outcome));
-    tell_mesh(motet_outcome_mesh(outcome));
+    report("repaired", motet_outcome_complete(outcome));
+    report_mesh(motet_outcome_mesh(outcome));
     for (i = 0; i < n_points; i++) x[i] = points[3 * i];
     n_new = motet_mesh_n_points(motet_outcome_mesh(outcome));
     new_x = memory(n_new, sizeof *new_x);
     ok(motet_outcome_transfer(outcome, MOTET_ON_POINTS, MOTET_RULE_MEAN, x, n_points, 1, new_x, n_new, &error));
     for (i = 0; i < n_new; i++) sum += new_x[i];
-    told("sum_carried", sum);
+    report("sum_carried", sum);
     free(patch), free(boundary), free(points), free(x), free(displacement), free(new_x);
     motet_outcome_free(outcome), motet_mover_free(mover), motet_mesh_free(mesh);
 }
@@ -103,9 +103,9 @@ static void implant(char **words)
     const motet_mesh *mesh;
     ok(motet_implant(host, devices, names, 1, NULL, &outcome, &error));
     mesh = motet_outcome_mesh(outcome);
-    told("complete", motet_outcome_complete(outcome));
-    told("region", motet_mesh_region(mesh, words[2]));
-    tell_mesh(mesh);
+    report("complete", motet_outcome_complete(outcome));
+    report("region", motet_mesh_region(mesh, words[2]));
+    report_mesh(mesh);
     motet_outcome_free(outcome), motet_mesh_free(host), motet_mesh_free(device);
 }
 
@@ -127,13 +127,13 @@ static void contact(char **words)
     ok(motet_contact_measure(contact, gaps, n[0] + n[1], &least, &error));
     for (i = 0; i < n[0] + n[1]; i++)
         if (isfinite(gaps[i])) sum += gaps[i];
-    told("least", least);
-    told("sum_of_gaps", sum);
+    report("least", least);
+    report("sum_of_gaps", sum);
     free(points), free(gaps), free(triangles);
     motet_contact_free(contact), motet_mesh_free(first), motet_mesh_free(second);
 }
 
-/* A patch goes away and comes back: each way in so many steps, the state saved and loaded where it turns. */
+/* A patch moves away in `n_steps` steps and returns in as many; the state is saved and loaded half way. */
 static void loop(char **words)
 {
     motet_mesh *mesh = read_mesh(words[0]);
@@ -151,7 +151,7 @@ static void loop(char **words)
     n = motet_moving_n_driven(moving);
     places = memory(3 * n, sizeof *places), shifts = memory(3 * n, sizeof *shifts), displacement = memory(3 * n, sizeof *displacement);
     ok(motet_moving_driven_places(moving, places, n, 3, &error));
-    for (i = 0, k = 0; i < n; i++) /* driven vertices and those of the patch both rise */
+    for (i = 0, k = 0; i < n; i++) /* driven vertices and those of the patch are in ascending order */
         if (k < n_patch && memcmp(places + 3 * i, points + 3 * patch[k], 3 * sizeof *places) == 0) {
             shifts[3 * i] = atof(words[2]), shifts[3 * i + 1] = atof(words[3]), shifts[3 * i + 2] = atof(words[4]);
             k++;
@@ -166,7 +166,7 @@ static void loop(char **words)
         ok(motet_moving_advance(moving, (double)k, displacement, n, 3, &step, &error));
         if (!step.complete || step.bad || step.inverted) exit(4);
         changes += step.changes;
-        ok(motet_moving_since(moving, k - 1, &outcome, &error)); /* an array of the caller's own follows */
+        ok(motet_moving_since(moving, k - 1, &outcome, &error)); /* an array of the caller is transferred */
         if (outcome != NULL) {
             int64_t n_new = step.points;
             double *new_x = memory(n_new, sizeof *new_x);
@@ -183,13 +183,13 @@ static void loop(char **words)
     }
     velocity = memory(3 * n_points, sizeof *velocity);
     ok(motet_moving_velocity(moving, velocity, n_points, 3, &error));
-    told("changes", (double)changes);
-    told("time", motet_moving_time(moving));
+    report("changes", (double)changes);
+    report("time", motet_moving_time(moving));
     for (i = 0; i < n_points; i++) sum += velocity[3 * i];
-    told("sum_velocity", sum);
+    report("sum_velocity", sum);
     for (i = 0, sum = 0; i < n_points; i++) sum += x[i];
-    told("sum_carried", sum);
-    tell_mesh(motet_moving_mesh(moving));
+    report("sum_carried", sum);
+    report_mesh(motet_moving_mesh(moving));
     free(patch), free(points), free(x), free(places), free(shifts), free(displacement), free(velocity), free(state);
     motet_moving_free(moving), motet_mesh_free(mesh);
 }

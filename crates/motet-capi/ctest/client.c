@@ -1,4 +1,4 @@
-/* What motet.h promises, as a program of C99 sees it. Prints one line, or the first thing that is not so. */
+/* Tests what motet.h promises, as a program of C99. Prints one line, or the first check that fails. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,12 +9,12 @@
 #define CHECK(so)                                                                    \
     do {                                                                             \
         if (!(so)) {                                                                 \
-            fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #so);         \
+            fprintf(stderr, "%s:%d: check failed: %s\n", __FILE__, __LINE__, #so);   \
             exit(1);                                                                 \
         }                                                                            \
     } while (0)
 
-/* A call that has to succeed. */
+/* A call that must succeed. */
 static void ok(motet_status status, motet_error **error, int line)
 {
     if (status != MOTET_OK) {
@@ -25,7 +25,7 @@ static void ok(motet_status status, motet_error **error, int line)
 }
 #define OK(call) ok((call), &error, __LINE__)
 
-/* A call that has to fail in this way, with these words. */
+/* A call that must fail with this status and these words. */
 static void refused(motet_status status, motet_error **error, motet_status expected, const char *words, int line)
 {
     if (status != expected || *error == NULL || strstr(motet_error_message(*error), words) == NULL) {
@@ -42,7 +42,7 @@ enum { N = 6, N_POINTS = (N + 1) * (N + 1) * (N + 1), N_TETS = 6 * N * N * N };
 
 static int corner(int i, int j, int k) { return (k * (N + 1) + j) * (N + 1) + i; }
 
-/* The unit cube: each cell of a grid cut into six tets round its diagonal. */
+/* The unit cube: each cell of a grid cut into six tets around its diagonal. */
 static motet_mesh *cube(void)
 {
     static const int paths[6][2][3] = {
@@ -143,7 +143,7 @@ static void meshes(void)
     REFUSED(motet_mesh_read(NULL, &none, &error), MOTET_ERROR_OPTIONS, "path is NULL");
     REFUSED(motet_mesh_array(copy, MOTET_ON_POINTS, "p", points, 1, &error), MOTET_ERROR_OPTIONS, "no array p");
     CHECK(none == NULL && motet_mesh_n_points(NULL) == 0 && motet_mesh_region(NULL, "x") == -1);
-    CHECK(motet_mesh_points(copy, points, 5, 3, NULL) == MOTET_ERROR_OPTIONS); /* nobody asked for the error */
+    CHECK(motet_mesh_points(copy, points, 5, 3, NULL) == MOTET_ERROR_OPTIONS); /* the error is not requested */
     CHECK(motet_error_message(NULL) == NULL && motet_error_status(NULL) == MOTET_OK);
     motet_mesh_free(NULL);
     motet_error_free(NULL);
@@ -170,7 +170,7 @@ static void motion(void)
     CHECK(options.size == sizeof options && options.substeps == 50 && options.residual == 1e-6);
     options.threads = 2;
     OK(motet_mover_new(mesh, &options, &mover, &error));
-    motet_mesh_free(mesh); /* not needed any longer */
+    motet_mesh_free(mesh); /* no longer needed */
     n = motet_mover_n_boundary(mover);
     CHECK(n == N_POINTS - (N - 1) * (N - 1) * (N - 1) && motet_mover_n_points(mover) == N_POINTS);
     boundary = malloc(sizeof(int32_t) * n), displacement = malloc(sizeof(double) * 3 * n), strided = malloc(sizeof(double) * 4 * n);
@@ -187,7 +187,7 @@ static void motion(void)
         const double *x = first + 3 * i, *y = points + 3 * i;
         CHECK(fabs(y[0] - x[0] - 0.1 * x[1]) < 1e-12 && fabs(y[1] - x[1] + 0.2 * x[0] - 0.5) < 1e-12 && fabs(y[2] - 1.3 * x[2]) < 1e-12);
     }
-    /* With strides the same, and nothing written between the rows. */
+    /* Strided rows give the same, and nothing is written between the rows. */
     for (i = 0; i < 5 * N_POINTS; i++) apart[i] = -7;
     OK(motet_mover_step(mover, strided, n, 4, apart, N_POINTS, 5, &error));
     for (i = 0; i < N_POINTS; i++)
@@ -197,7 +197,7 @@ static void motion(void)
     CHECK(certificate.complete == 1 && certificate.fraction == 1 && certificate.inverted == 0 && certificate.worst_eas > 0.2 && certificate.size == sizeof certificate);
     CHECK(certificate.worst_curved_cell == -1 && certificate.worst_curved_jacobian != certificate.worst_curved_jacobian && certificate.leaves_plane_vertex == -1);
     OK(motet_mover_advance(mover, displacement, n, 3, points, N_POINTS, 3, NULL, &error));
-    /* A program that knows the first members alone gets these alone. */
+    /* A program that knows only the first members gets only these. */
     memset(&certificate, 0x55, sizeof certificate);
     certificate.size = offsetof(motet_certificate, fraction);
     OK(motet_mover_advance(mover, displacement, n, 3, points, N_POINTS, 3, &certificate, &error));
@@ -212,7 +212,7 @@ static void motion(void)
     REFUSED(motet_mover_step(mover, displacement, n, 3, points, N_POINTS - 1, 3, &error), MOTET_ERROR_OPTIONS, "expected 343");
     REFUSED(motet_mover_step(NULL, displacement, n, 3, points, N_POINTS, 3, &error), MOTET_ERROR_OPTIONS, "mover is NULL");
     REFUSED(motet_mover_step(mover, displacement, n, 3, NULL, N_POINTS, 3, &error), MOTET_ERROR_OPTIONS, "points is NULL");
-    /* Rows that are read and written at once. */
+    /* Rows that are both read and written. */
     REFUSED(motet_mover_step(mover, points + 3, n, 3, points, N_POINTS, 3, &error), MOTET_ERROR_OPTIONS, "share memory");
     REFUSED(motet_mover_advance(mover, points, n, 3, points, N_POINTS, 3, NULL, &error), MOTET_ERROR_OPTIONS, "share memory");
     displacement[0] = NAN;
@@ -225,7 +225,8 @@ static void motion(void)
     CHECK(mover == NULL);
     motet_mover_options_init(&options, sizeof options);
     options.method = 99;
-    REFUSED(motet_mover_new(mesh, &options, &mover, &error), MOTET_ERROR_OPTIONS, "99");
+    REFUSED(motet_mover_new(mesh, &options, &mover, &error), MOTET_ERROR_OPTIONS, "unknown method 99");
+    REFUSED(motet_mover_new(mesh, &options, &mover, &error), MOTET_ERROR_OPTIONS, "MOTET_DELAUNAY (0), MOTET_BODIES (1)");
     memset(&options, 0, sizeof options);
     REFUSED(motet_mover_new(mesh, &options, &mover, &error), MOTET_ERROR_OPTIONS, "_init");
     for (i = MOTET_DELAUNAY; i <= MOTET_RBF; i++) {
@@ -242,7 +243,7 @@ static void motion(void)
     free(first), free(points), free(apart), free(boundary), free(displacement), free(strided);
 }
 
-/* Two processes, each with half of the points, get what one gets. */
+/* Two processes, each with a part of the points, get the results of one. */
 static void parts(void)
 {
     motet_error *error = NULL;
@@ -282,7 +283,7 @@ static void changing(void)
     int32_t *old;
     int64_t i, n;
     CHECK(points != NULL);
-    /* A cube whose middle vertex lies almost on its neighbour. */
+    /* A cube whose middle vertex is almost at its neighbour. */
     OK(motet_mesh_points(mesh, points, N_POINTS, 3, &error));
     points[3 * corner(3, 3, 3)] += 0.98 / N;
     OK(motet_mesh_set_points(mesh, points, N_POINTS, 3, &error));
@@ -347,7 +348,7 @@ static void changing(void)
     motet_mesh_free(device);
 }
 
-/* Numbers that mean nothing, in every option that is one, are refused by name of the option's kind: none is taken for "not given". */
+/* Invalid numbers in options are errors that name the kind of option: none counts as "not given". */
 static void numbers(void)
 {
     static const double wrong[2] = {NAN, -2};
@@ -378,7 +379,7 @@ static void numbers(void)
 #define SET(options, init) init(&options, sizeof options)
 #define MOVER(member) \
     (SET(mover, motet_mover_options_init), mover.method = MOTET_LAPLACE, mover.member = x, motet_mover_new(mesh, &mover, &no_mover, &error))
-#define REPAIR(member) (SET(repair, motet_remesh_options_init), repair.surface = 1, repair.member = x, motet_remesh(mesh, &repair, &outcome, &error))
+#define REPAIR(member) (SET(repair, motet_remesh_options_init), repair.surface = MOTET_SURFACE_ADAPT, repair.member = x, motet_remesh(mesh, &repair, &outcome, &error))
 #define IMPLANT(member) \
     (SET(implant, motet_implant_options_init), implant.conform = 1, implant.member = x, motet_implant(mesh, devices, names, 1, &implant, &outcome, &error))
 #define FILL(member)                                                                                                      \
@@ -386,7 +387,7 @@ static void numbers(void)
      motet_fill(devices, names, NULL, 1, &fill, &outcome, &error))
 #define CONTACT(member) \
     (SET(contact, motet_contact_options_init), contact.member = x, motet_contact_new(points[0], 6, 3, triangles[0], counts, NULL, 2, &contact, &none, &error))
-#define MOVING(member) (SET(moving, motet_moving_options_init), moving.surface = 1, moving.member = x, motet_moving_new(mesh, &moving, &no_moving, &error))
+#define MOVING(member) (SET(moving, motet_moving_options_init), moving.surface = MOTET_SURFACE_ADAPT, moving.member = x, motet_moving_new(mesh, &moving, &no_moving, &error))
         motet_contact *none = NULL;
         REFUSED(MOVER(rigid_layer), MOTET_ERROR_OPTIONS, "rigid layer");
         REFUSED(MOVER(residual), MOTET_ERROR_OPTIONS, "residual");
@@ -462,7 +463,7 @@ static void contact(void)
     motet_mesh *bodies[2];
     motet_contact *contact = NULL;
     double points[12][3], gaps[12], least, distance, places[6], time, velocity[12][3] = {{0}};
-    int32_t triangles[16][3], nearest[2];
+    int32_t triangles[16][3], nearest[2], rooms[2] = {MOTET_ROOM_FOUND, MOTET_ROOM_NO};
     int64_t counts[2] = {8, 8};
     int i, k;
     bodies[0] = octahedron(0, 0, 0, 1), bodies[1] = octahedron(2.5, 0, 0, 1);
@@ -487,6 +488,10 @@ static void contact(void)
     CHECK(fabs(gaps[0] - 0.25) < 1e-15);
     REFUSED(motet_contact_nearest(contact, 0, 5, &distance, NULL, NULL, &error), MOTET_ERROR_OPTIONS, "there are 2");
     motet_contact_free(contact);
+    OK(motet_contact_new(points[0], 12, 3, triangles[0], counts, rooms, 2, NULL, &contact, &error));
+    motet_contact_free(contact);
+    rooms[1] = 2;
+    REFUSED(motet_contact_new(points[0], 12, 3, triangles[0], counts, rooms, 2, NULL, &contact, &error), MOTET_ERROR_OPTIONS, "MOTET_ROOM_YES (1)");
     triangles[15][2] = 12;
     REFUSED(motet_contact_new(points[0], 12, 3, triangles[0], counts, NULL, 2, NULL, &contact, &error), MOTET_ERROR_INPUT, "triangle 15");
     counts[0] = -8;
@@ -543,7 +548,7 @@ static void loop(void)
     CHECK(places && displacement);
     OK(motet_moving_driven_places(moving, places, n, 4, &error));
 
-    /* The floor bulges until tets are bad, and repaired. */
+    /* The floor bulges until tets are bad and are repaired. */
     for (k = 1; k <= 4; k++) {
         for (i = 0; i < n; i++) {
             const double *at = places + 4 * i;
@@ -556,7 +561,7 @@ static void loop(void)
         changes += step.changes;
     }
     CHECK(changes > 0 && step.points == motet_mesh_n_points(motet_moving_mesh(moving)) && motet_moving_remembers(moving, 0) == 1);
-    CHECK(fabs(integral(motet_moving_mesh(moving), "density") / before - 1) < 1e-12); /* what is in it stays */
+    CHECK(fabs(integral(motet_moving_mesh(moving), "density") / before - 1) < 1e-12); /* contents are conserved */
     n_new = step.points;
     now = malloc(sizeof(double) * 3 * n_new);
     free(first), first = malloc(sizeof(double) * 3 * n_new);
@@ -612,6 +617,6 @@ int main(void)
     refinement();
     contact();
     loop();
-    printf("all is as motet.h says\n");
+    printf("all checks of motet.h passed\n");
     return 0;
 }

@@ -1,122 +1,413 @@
-! motet for Fortran 2018: arrays as they are, real64 of shape (3, n), ids from 0 as in the files and in C.
+! Written by fortran.py from motet.h and motet.in.f90. Change these, not this file.
+!
+! motet for Fortran 2018. Arrays are real64 of shape (3, n), used in place; ids start at 0, as in C.
 !
 ! Compile this with your program, and link libmotet:
 !   gfortran motet.f90 yours.f90 $(pkg-config --libs motet)
 !
-! motet.h is the reference for what each call does; here are its names without the prefix. Every call that can fail takes two
-! optional arguments at its end: `status`, one of MOTET_OK, MOTET_ERROR_.., and `message`, a text that is cut to its length.
-! Without `status` an error stops the program and says why. Handles free what they hold when they go out of scope, or by `free`;
-! they are not to be copied by assignment.
+! motet.h is the reference for what each call does; names here have no prefix. Every call that can fail has
+! two optional arguments at its end: `status`, MOTET_OK or one of MOTET_ERROR_.., and `message`, a text that is
+! cut to its length. Without `status` an error stops the program and prints the message. Objects are freed when
+! they go out of scope, or by `free`; they must not be copied by assignment.
+!
+! A list of names in options is a list of C: c_loc of an array of c_ptr to texts that end with c_null_char.
 module motet
   use, intrinsic :: iso_c_binding
   implicit none
   private
 
-  integer(c_int32_t), parameter, public :: MOTET_OK = 0, MOTET_ERROR_INTERNAL = 1, MOTET_ERROR_OPTIONS = 2, MOTET_ERROR_INPUT = 3, &
-      MOTET_ERROR_IO = 4
-  integer(c_int32_t), parameter, public :: MOTET_LINE = 3, MOTET_TRIANGLE = 5, MOTET_QUAD = 9, MOTET_TETRA = 10, &
-      MOTET_HEXAHEDRON = 12, MOTET_WEDGE = 13, MOTET_PYRAMID = 14
-  integer(c_int32_t), parameter, public :: MOTET_ON_POINTS = 0, MOTET_ON_CELLS = 1
-  integer(c_int32_t), parameter, public :: MOTET_RULE_MEAN = 0, MOTET_RULE_INHERIT = 1, MOTET_RULE_LINEAR = 2
-  integer(c_int32_t), parameter, public :: MOTET_DELAUNAY = 0, MOTET_BODIES = 1, MOTET_GUIDED = 2, MOTET_ELASTIC = 3, &
-      MOTET_LAPLACE = 4, MOTET_IDW = 5, MOTET_RBF = 6
+  public :: motet_version
+  public :: mover_options, certificate, remesh_options, implant_options, contact_options, moving_options
+  public :: moving_step
 
-  ! Options of a mover; members as in motet.h. Lists of patches are what C has: c_loc of an array of c_ptr to texts that end
-  ! with c_null_char.
-  type, bind(c), public :: mover_options
+  ! The version of the header.
+  integer(c_int32_t), parameter, public :: MOTET_VERSION_MAJOR = 0
+  integer(c_int32_t), parameter, public :: MOTET_VERSION_MINOR = 1
+  integer(c_int32_t), parameter, public :: MOTET_VERSION_PATCH = 0
+
+  ! Statuses of calls.
+  integer(c_int32_t), parameter, public :: MOTET_OK = 0
+  ! MOTET_ERROR_INTERNAL: a bug in motet; inputs are unchanged, free the handles that were to change
+  integer(c_int32_t), parameter, public :: MOTET_ERROR_INTERNAL = 1
+  ! MOTET_ERROR_OPTIONS: options without a meaning, a NULL, a count below 0
+  integer(c_int32_t), parameter, public :: MOTET_ERROR_OPTIONS = 2
+  ! MOTET_ERROR_INPUT: data that cannot be read, or that do not meet what the call requires
+  integer(c_int32_t), parameter, public :: MOTET_ERROR_INPUT = 3
+  ! MOTET_ERROR_IO: the operating system refused access to a file
+  integer(c_int32_t), parameter, public :: MOTET_ERROR_IO = 4
+
+  ! Kinds of cells: VTK's numbers, with VTK's order of vertices. VTK's other kinds are accepted as well.
+  integer(c_int32_t), parameter, public :: MOTET_VERTEX = 1
+  integer(c_int32_t), parameter, public :: MOTET_LINE = 3
+  integer(c_int32_t), parameter, public :: MOTET_TRIANGLE = 5
+  integer(c_int32_t), parameter, public :: MOTET_QUAD = 9
+  integer(c_int32_t), parameter, public :: MOTET_TETRA = 10
+  integer(c_int32_t), parameter, public :: MOTET_HEXAHEDRON = 12
+  integer(c_int32_t), parameter, public :: MOTET_WEDGE = 13
+  integer(c_int32_t), parameter, public :: MOTET_PYRAMID = 14
+  integer(c_int32_t), parameter, public :: MOTET_TETRA10 = 24
+
+  ! What the rows of an array belong to.
+  integer(c_int32_t), parameter, public :: MOTET_ON_POINTS = 0
+  integer(c_int32_t), parameter, public :: MOTET_ON_CELLS = 1
+
+  ! Methods of motion: `method` in options.
+  ! MOTET_DELAUNAY: weights in the Delaunay graph of the boundary (Liu, Qin, Xia 2006): the cheapest
+  integer(c_int32_t), parameter, public :: MOTET_DELAUNAY = 0
+  ! MOTET_BODIES: rigid bodies carry the vertices around them: for parts that turn or shift far
+  integer(c_int32_t), parameter, public :: MOTET_BODIES = 1
+  ! MOTET_GUIDED: a graph with inner nodes and rotations: for walls that bend
+  integer(c_int32_t), parameter, public :: MOTET_GUIDED = 2
+  ! MOTET_ELASTIC: linear elasticity; for comparison
+  integer(c_int32_t), parameter, public :: MOTET_ELASTIC = 3
+  ! MOTET_LAPLACE: a Laplace equation; for comparison
+  integer(c_int32_t), parameter, public :: MOTET_LAPLACE = 4
+  ! MOTET_IDW: inverse-distance weighting; for comparison
+  integer(c_int32_t), parameter, public :: MOTET_IDW = 5
+  ! MOTET_RBF: radial basis functions; for comparison
+  integer(c_int32_t), parameter, public :: MOTET_RBF = 6
+
+  ! How an array is transferred from the old mesh to the new one.
+  ! MOTET_RULE_MEAN: on points: interpolated; on cells: averaged by volume, so that integrals are kept
+  integer(c_int32_t), parameter, public :: MOTET_RULE_MEAN = 0
+  ! MOTET_RULE_INHERIT: the value of the old point or cell with the largest share
+  integer(c_int32_t), parameter, public :: MOTET_RULE_INHERIT = 1
+  ! MOTET_RULE_LINEAR: on points: linear in each old tet; on cells: as MOTET_RULE_MEAN
+  integer(c_int32_t), parameter, public :: MOTET_RULE_LINEAR = 2
+
+  ! What a repair may do to walls (boundary, interfaces, labelled facets): `surface` in options.
+  ! MOTET_SURFACE_KEEP: walls are kept to the bit
+  integer(c_int32_t), parameter, public :: MOTET_SURFACE_KEEP = 0
+  ! MOTET_SURFACE_ADAPT: walls change within a distance; features are kept
+  integer(c_int32_t), parameter, public :: MOTET_SURFACE_ADAPT = 1
+  ! MOTET_SURFACE_LOOSE: walls change within a distance; features change as well where nothing else helps
+  integer(c_int32_t), parameter, public :: MOTET_SURFACE_LOOSE = 2
+
+  ! What becomes of the space inside a device: `inside` in options.
+  ! MOTET_INSIDE_OWN: devices keep their tets; devices that are surfaces are filled
+  integer(c_int32_t), parameter, public :: MOTET_INSIDE_OWN = 0
+  ! MOTET_INSIDE_FILLED: all devices are filled with new tets
+  integer(c_int32_t), parameter, public :: MOTET_INSIDE_FILLED = 1
+  ! MOTET_INSIDE_HOLLOW: no tets: the surface of the device bounds the mesh
+  integer(c_int32_t), parameter, public :: MOTET_INSIDE_HOLLOW = 2
+
+  ! What of the host is refined before the implantation: `adapt` in options.
+  ! MOTET_ADAPT_NO: nothing
+  integer(c_int32_t), parameter, public :: MOTET_ADAPT_NO = 0
+  ! MOTET_ADAPT_WALLS: walls near the devices
+  integer(c_int32_t), parameter, public :: MOTET_ADAPT_WALLS = 1
+  ! MOTET_ADAPT_ALL: all tets near the devices
+  integer(c_int32_t), parameter, public :: MOTET_ADAPT_ALL = 2
+
+  ! Whether a body is the wall of a room that contains other bodies: is_room of motet_contact_new.
+  ! MOTET_ROOM_FOUND: a closed surface that encloses most of the area of another body is its room
+  integer(c_int32_t), parameter, public :: MOTET_ROOM_FOUND = -1
+  ! MOTET_ROOM_NO: a body, not a room
+  integer(c_int32_t), parameter, public :: MOTET_ROOM_NO = 0
+  ! MOTET_ROOM_YES: a room that contains the others
+  integer(c_int32_t), parameter, public :: MOTET_ROOM_YES = 1
+
+  ! Options of a mover.
+  type, bind(c) :: mover_options
     integer(c_size_t) :: size = 0
-    integer(c_int32_t) :: method = 0, within_walls = 0, smooth = 0, substeps = 50, threads = 1, rigid_layer_cells = 0
-    real(c_double) :: rigid_layer = 0, residual = 1e-6_c_double, factor_gib = 0
+    ! how vertices follow the boundary; default MOTET_DELAUNAY
+    integer(c_int32_t) :: method = MOTET_DELAUNAY
+    ! 1: no vertex follows the wall of another lumen or the far side of a flap; default 0
+    integer(c_int32_t) :: within_walls = 0
+    ! number of sweeps over the vertices of bad tets after each step; default 0
+    integer(c_int32_t) :: smooth = 0
+    ! largest number of sub-steps of an advance; default 50
+    integer(c_int32_t) :: substeps = 50
+    ! default 1
+    integer(c_int32_t) :: threads = 1
+    ! thickness of the rigid layer in cells: its vertices move rigidly with the wall; default 0: no layer
+    integer(c_int32_t) :: rigid_layer_cells = 0
+    ! thickness of the rigid layer as a distance; default 0: no layer
+    real(c_double) :: rigid_layer = 0
+    ! relative residual at which iterative solvers stop; default 1e-6
+    real(c_double) :: residual = 1e-6_c_double
+    ! gibibytes that a factor of the matrix may take to be kept; default 0
+    real(c_double) :: factor_gib = 0
+    ! names (or labels as text) of flat patches whose vertices slide in their plane; default none
     type(c_ptr) :: slide = c_null_ptr
     integer(c_int64_t) :: n_slide = 0
+    ! names of patches that are rigid bodies, for MOTET_BODIES; default none: every separate part of the moved
+    ! walls but the outer one
     type(c_ptr) :: bodies = c_null_ptr
     integer(c_int64_t) :: n_bodies = 0
+    ! names of patches that have the rigid layer; default none: all of the boundary that does not slide
     type(c_ptr) :: wall = c_null_ptr
     integer(c_int64_t) :: n_wall = 0
+    ! inner vertices that the caller moves as well; default none
     type(c_ptr) :: also_moved = c_null_ptr
     integer(c_int64_t) :: n_also_moved = 0
+    ! largest distance of a vertex of a sliding patch from the plane of the patch, as a fraction of the radius
+    ! of the patch; default 0.05
     real(c_double) :: slide_tolerance = 0.05_c_double
   end type
 
-  type, bind(c), public :: certificate
+  ! What an advance reached.
+  type, bind(c) :: certificate
     integer(c_size_t) :: size = 0
-    integer(c_int32_t) :: complete = 0, substeps = 0
+    ! 1: the whole motion was reached
+    integer(c_int32_t) :: complete = 0
+    ! number of sub-steps
+    integer(c_int32_t) :: substeps = 0
+    ! the fraction of the motion that was reached
     real(c_double) :: fraction = 0
-    integer(c_int64_t) :: inverted = 0, inverted_before = 0, bad = 0, worst_cell = -1
-    real(c_double) :: worst_eas = 0, worst_place(3) = 0, seconds = 0
+    ! number of inverted or flat volume cells
+    integer(c_int64_t) :: inverted = 0
+    ! number of inverted or flat volume cells of the mesh at first
+    integer(c_int64_t) :: inverted_before = 0
+    ! number of tets with an EAS below 0.2
+    integer(c_int64_t) :: bad = 0
+    ! the tet with the worst EAS; -1 where there is none
+    integer(c_int64_t) :: worst_cell = -1
+    ! the EAS of worst_cell
+    real(c_double) :: worst_eas = 0
+    ! the centroid of worst_cell
+    real(c_double) :: worst_place(3) = 0
+    ! duration of the call
+    real(c_double) :: seconds = 0
+    ! the quadratic cell with the worst scaled Jacobian; -1 where there is none
     integer(c_int64_t) :: worst_curved_cell = -1
+    ! a lower bound of the scaled Jacobian, 0 or less where the cell may be folded; NaN where there is none
     real(c_double) :: worst_curved_jacobian = 0
+    ! the vertex on the rim of a sliding patch that the motion takes farthest out of the plane of the patch;
+    ! -1 where none leaves it
     integer(c_int64_t) :: leaves_plane_vertex = -1
+    ! distance of that vertex from the plane, in the unit of the mesh
     real(c_double) :: leaves_plane_distance = 0
   end type
 
-  type, bind(c), public :: remesh_options
+  ! Options of a repair, which finds bad tets and repairs these only.
+  type, bind(c) :: remesh_options
     integer(c_size_t) :: size = 0
-    real(c_double) :: min_eas = 0.2_c_double, min_dihedral_deg = 0
-    integer(c_int32_t) :: best = 0, surface = 0
+    ! tets with a lower EAS are bad; default 0.2
+    real(c_double) :: min_eas = 0.2_c_double
+    ! tets with a smaller dihedral angle are bad as well, in degrees; default 0
+    real(c_double) :: min_dihedral_deg = 0
+    ! 1: all tets are improved, not the bad ones only; default 0
+    integer(c_int32_t) :: best = 0
+    ! what happens to walls; default MOTET_SURFACE_KEEP
+    integer(c_int32_t) :: surface = MOTET_SURFACE_KEEP
+    ! how far walls may stray; default 0: a thousandth of the largest extent
     real(c_double) :: distance = 0
-    integer(c_int32_t) :: repair_layers = 0, rounds = 20, threads = 0
+    ! 1: thin tets of boundary layers are repaired as others are; default 0
+    integer(c_int32_t) :: repair_layers = 0
+    ! largest number of rounds; default 20
+    integer(c_int32_t) :: rounds = 20
+    ! default 0
+    integer(c_int32_t) :: threads = 0
+    ! requested length of all edges; default 0: edges keep their lengths
     real(c_double) :: edge_length = 0
+    ! requested length of edges at each point; default NULL
     type(c_ptr) :: sizes = c_null_ptr
     integer(c_int64_t) :: n_sizes = 0
+    ! names (or labels as text) of regions and patches that are kept to the bit; default none
     type(c_ptr) :: hold = c_null_ptr
     integer(c_int64_t) :: n_hold = 0
   end type
 
-  type, bind(c), public :: implant_options
+  ! Options of an implantation, which puts devices into a mesh of tets.
+  type, bind(c) :: implant_options
     integer(c_size_t) :: size = 0
-    integer(c_int32_t) :: inside = 0, conform = 0
+    ! the space inside devices; default MOTET_INSIDE_OWN
+    integer(c_int32_t) :: inside = MOTET_INSIDE_OWN
+    ! 1: devices get a new surface near theirs, for surfaces that touch or cross themselves; default 0: every
+    ! triangle is kept
+    integer(c_int32_t) :: conform = 0
+    ! largest distance of the new surface from that of the device; default 0: a fifth of the radius of a wire
+    ! as thick as the device
     real(c_double) :: tolerance = 0
-    integer(c_int32_t) :: keep_outside = 0, adapt = 1
-    real(c_double) :: stray = -1, edge_length = 0, growth = 0.5_c_double, carve = 1, reach = 3, min_eas = 0.2_c_double
+    ! 1: the parts of devices outside of the host are kept; default 0: they are cut off
+    integer(c_int32_t) :: keep_outside = 0
+    ! what is refined first; default MOTET_ADAPT_WALLS
+    integer(c_int32_t) :: adapt = MOTET_ADAPT_WALLS
+    ! how far surfaces may stray where a device meets a wall; default -1: a twentieth of the edge length of
+    ! the device
+    real(c_double) :: stray = -1.0_c_double
+    ! length of edges beside the devices; default 0: as those of the devices
+    real(c_double) :: edge_length = 0
+    ! growth of lengths per unit of distance from the devices; default 0.5
+    real(c_double) :: growth = 0.5_c_double
+    ! tets nearer to a device than this number of edge lengths are replaced; default 1
+    real(c_double) :: carve = 1.0_c_double
+    ! tets farther than this number of edge lengths are kept to the bit; default 3
+    real(c_double) :: reach = 3.0_c_double
+    ! tets with a lower EAS are repaired; default 0.2
+    real(c_double) :: min_eas = 0.2_c_double
+    ! default 0
     integer(c_int32_t) :: threads = 0
   end type
 
-  type, bind(c), public :: contact_options
+  ! Options of filling, which makes tets inside closed surfaces.
+  type, bind(c) :: fill_options
     integer(c_size_t) :: size = 0
-    real(c_double) :: warn = 0, within = 0, fold = 3
-    integer(c_int32_t) :: own = 0, facing = 0, threads = 0
+    ! length of inner edges, the largest where sizes grow; default 0: only necessary points
+    real(c_double) :: edge_length = 0
+    ! 1: lengths are those of the surface and grow inwards; default 0
+    integer(c_int32_t) :: graded = 0
+    ! growth of lengths per unit of distance; default 0: 0.3
+    real(c_double) :: growth = 0
+    ! tets with a lower EAS are repaired; default 0: 0.2 with sizes, no repair without
+    real(c_double) :: min_eas = 0
+    ! number of thin layers on walls; default 0
+    integer(c_int32_t) :: layers = 0
+    ! thickness of the first layer
+    real(c_double) :: first_layer = 0
+    ! ratio of the thicknesses of a layer and the one before; default 1.2
+    real(c_double) :: layer_growth = 1.2_c_double
+    ! 1: layers are wedges and pyramids, not divided into tets; default 0
+    integer(c_int32_t) :: keep_prisms = 0
+    ! 1: T-junctions, coincident faces, duplicates, orientation and small holes are repaired first; default 0
+    integer(c_int32_t) :: repair = 0
+    ! default 0
+    integer(c_int32_t) :: threads = 0
+    ! 1: surfaces that cross are divided along their intersection; default 0
+    integer(c_int32_t) :: cut = 0
+    ! 1: spaces inside closed surfaces that are turned inward stay empty; default 0
+    integer(c_int32_t) :: voids = 0
   end type
 
-  ! Options of a moving mesh; members as in motet.h, lists of names as of mover_options.
-  type, bind(c), public :: moving_options
+  ! Options of contact.
+  type, bind(c) :: contact_options
     integer(c_size_t) :: size = 0
-    integer(c_int32_t) :: method = 0, within_walls = 0, smooth = 0, rigid_layer_cells = 0
+    ! vertices with a smaller gap warn; default 0: none
+    real(c_double) :: warn = 0
+    ! largest distance that is searched; default 0: no limit
+    real(c_double) :: within = 0
+    ! two places of one surface are neighbours, without a gap, if the way along the surface is shorter than
+    ! this many times the straight distance; default 3
+    real(c_double) :: fold = 3.0_c_double
+    ! 1: each surface is measured against itself as well; default 0
+    integer(c_int32_t) :: own = 0
+    ! 1: only surfaces that face each other through free space; default 0
+    integer(c_int32_t) :: facing = 0
+    ! default 0
+    integer(c_int32_t) :: threads = 0
+  end type
+
+  ! Options of a moving mesh.
+  type, bind(c) :: moving_options
+    integer(c_size_t) :: size = 0
+    ! how vertices follow the walls; default MOTET_DELAUNAY
+    integer(c_int32_t) :: method = MOTET_DELAUNAY
+    ! 1: no vertex follows the wall of another lumen or the far side of a flap; default 0
+    integer(c_int32_t) :: within_walls = 0
+    ! number of sweeps over the vertices of bad tets after each step; default 0
+    integer(c_int32_t) :: smooth = 0
+    ! thickness of the rigid layer in cells; default 0: no layer
+    integer(c_int32_t) :: rigid_layer_cells = 0
+    ! thickness of the rigid layer as a distance; default 0: no layer
     real(c_double) :: rigid_layer = 0
+    ! names (or labels as text) of patches inside the volume that are driven, such as a flap; default none
     type(c_ptr) :: inside = c_null_ptr
     integer(c_int64_t) :: n_inside = 0
+    ! names of flat patches whose vertices slide in their plane; default none
     type(c_ptr) :: slide = c_null_ptr
     integer(c_int64_t) :: n_slide = 0
+    ! names of patches that are rigid bodies, for MOTET_BODIES; default none: every separate part of the moved
+    ! walls but the outer one
     type(c_ptr) :: bodies = c_null_ptr
     integer(c_int64_t) :: n_bodies = 0
+    ! names of patches that have the rigid layer; default none: all of the boundary that does not slide
     type(c_ptr) :: wall = c_null_ptr
     integer(c_int64_t) :: n_wall = 0
-    integer(c_int32_t) :: no_repair = 0, surface = 0
-    real(c_double) :: distance = 0, min_eas = 0.2_c_double, margin = 0.05_c_double, floor = 0.05_c_double
+    ! 1: nothing is repaired, and a step stops before a cell is inverted; default 0
+    integer(c_int32_t) :: no_repair = 0
+    ! what a repair does to walls; default MOTET_SURFACE_KEEP
+    integer(c_int32_t) :: surface = MOTET_SURFACE_KEEP
+    ! how far walls may stray; default 0: a thousandth of the largest extent
+    real(c_double) :: distance = 0
+    ! tets with a lower EAS are bad; default 0.2
+    real(c_double) :: min_eas = 0.2_c_double
+    ! a repair aims at an EAS of min_eas plus this; default 0.05
+    real(c_double) :: margin = 0.05_c_double
+    ! no step takes a tet that can be repaired below this EAS; default 0.05
+    real(c_double) :: floor = 0.05_c_double
+    ! where a repair changes the mesh, tets with a lower EAS are improved as well and the number of vertices
+    ! is kept; 0: only bad tets change; default 0.75
     real(c_double) :: improve_below = 0.75_c_double
+    ! names of cell arrays that are densities of something that stays in its cell: their integrals are kept;
+    ! default none
     type(c_ptr) :: contents = c_null_ptr
     integer(c_int64_t) :: n_contents = 0
+    ! names of patches whose gaps are measured at each step; default none
     type(c_ptr) :: watch = c_null_ptr
     integer(c_int64_t) :: n_watch = 0
-    real(c_double) :: warn = 0, within = 0, horizon = 0, hold = 0
-    integer(c_int32_t) :: remembered = 64, threads = 0
+    ! vertices with a smaller gap warn; default 0: none
+    real(c_double) :: warn = 0
+    ! largest distance that is searched; default 0: no limit
+    real(c_double) :: within = 0
+    ! how far contact is predicted, in units of time; default 0: the duration of the last step
+    real(c_double) :: horizon = 0
+    ! walls stop at this distance from each other, whatever displacement is requested; each watched patch
+    ! gives way to those listed after it; default 0: they do not stop
+    real(c_double) :: hold = 0
+    ! number of changes that are kept for motet_moving_since; default 64
+    integer(c_int32_t) :: remembered = 64
+    ! default 0
+    integer(c_int32_t) :: threads = 0
+    ! names of regions and patches that a repair keeps to the bit; default none
     type(c_ptr) :: hold_names = c_null_ptr
     integer(c_int64_t) :: n_hold_names = 0
+    ! largest distance of a vertex of a sliding patch from the plane of the patch, as a fraction of the radius
+    ! of the patch; default 0.05
     real(c_double) :: slide_tolerance = 0.05_c_double
-    integer(c_int32_t) :: valid_at_start = 0, strain_in_band = 0, returns = 0
+    ! 1: new tets must have a volume also where their vertices were at the start of the step; a repair that
+    ! inserts others is repeated with the replaced tets held; default 0
+    integer(c_int32_t) :: valid_at_start = 0
+    ! 1: with MOTET_BODIES a band beside the bodies takes the strain, for bodies that go on in one direction;
+    ! default 0: the strain is spread over all of the volume
+    integer(c_int32_t) :: strain_in_band = 0
+    ! 1: the walls return to their first places again and again: tets are improved to be good there as well,
+    ! and a mesh that does not settle is replaced by the first mesh when the walls are back; default 0
+    integer(c_int32_t) :: returns = 0
   end type
 
-  ! What became of a step of a moving mesh.
-  type, bind(c), public :: moving_step
+  ! The result of a step.
+  type, bind(c) :: moving_step
     integer(c_size_t) :: size = 0
+    ! number of the step, from 1
     integer(c_int64_t) :: step = 0
+    ! the time that was reached
     real(c_double) :: time = 0
-    integer(c_int32_t) :: complete = 0, legs = 0
+    ! 1: the walls reached the requested displacement
+    integer(c_int32_t) :: complete = 0
+    ! number of parts in which the step was made
+    integer(c_int32_t) :: legs = 0
+    ! the fraction of the motion that was reached
     real(c_double) :: fraction = 0
-    integer(c_int64_t) :: changes = 0, points = 0, tets = 0, bad = 0, forced = 0, inverted = 0, worst_cell = -1
-    real(c_double) :: worst_eas = 0, worst_place(3) = 0, gap = 0
-    integer(c_int64_t) :: warned = 0, held = 0
-    real(c_double) :: touch_not_before = 0, seconds = 0
+    ! number of changes of connectivity; above 0, points and cells are numbered anew
+    integer(c_int64_t) :: changes = 0
+    ! number of points of the mesh
+    integer(c_int64_t) :: points = 0
+    ! number of tets of the mesh
+    integer(c_int64_t) :: tets = 0
+    ! number of tets with an EAS below the limit
+    integer(c_int64_t) :: bad = 0
+    ! number of bad tets that are as good as the walls at them allow
+    integer(c_int64_t) :: forced = 0
+    ! number of flat or inverted tets
+    integer(c_int64_t) :: inverted = 0
+    ! the tet with the worst EAS; -1 where there is none
+    integer(c_int64_t) :: worst_cell = -1
+    ! the EAS of worst_cell
+    real(c_double) :: worst_eas = 0
+    ! the centroid of worst_cell
+    real(c_double) :: worst_place(3) = 0
+    ! the least gap of the watched patches; infinite where nothing is within reach, or no patch is watched
+    real(c_double) :: gap = 0
+    ! number of vertices that warn
+    integer(c_int64_t) :: warned = 0
+    ! number of driven vertices that were stopped before another patch
+    integer(c_int64_t) :: held = 0
+    ! a time before which nothing touches at the velocities of this step; infinite where nothing touches
+    ! within the horizon
+    real(c_double) :: touch_not_before = 0
+    ! duration of the call
+    real(c_double) :: seconds = 0
   end type
 
   type, public :: mesh
@@ -156,7 +447,7 @@ module motet
     final :: mover_final
   end type
 
-  ! Points after nodes, without a mesh.
+  ! Moves points with nodes, without a mesh.
   type, public :: point_mover
     private
     type(c_ptr) :: handle = c_null_ptr
@@ -167,7 +458,7 @@ module motet
     final :: point_mover_final
   end type
 
-  ! What remesh and implant give: the new mesh by `mesh`, a copy.
+  ! The result of `remesh` and `implant`; `mesh` copies the new mesh.
   type, public :: outcome
     private
     type(c_ptr) :: handle = c_null_ptr
@@ -193,7 +484,7 @@ module motet
     final :: contact_final
   end type
 
-  ! A mesh that moves with its walls and stays good; the mesh as it is by `mesh`, a copy.
+  ! A mesh that moves with its walls and stays good; `mesh` copies the current mesh.
   type, public :: moving_mesh
     private
     type(c_ptr) :: handle = c_null_ptr
@@ -217,427 +508,843 @@ module motet
     final :: moving_final
   end type
 
-  public :: motet_version
-
   interface
-    function motet_version() bind(c)
+    ! The version of the linked library: major * 10000 + minor * 100 + patch.
+    function c_version() bind(c, name='motet_version')
       import
-      integer(c_int32_t) :: motet_version
+      integer(c_int32_t) :: c_version
     end function
+    ! The status of the call that returned the error; MOTET_OK for NULL.
+    function c_error_status(error) bind(c, name='motet_error_status')
+      import
+      type(c_ptr), value :: error
+      integer(c_int32_t) :: c_error_status
+    end function
+    ! The whole error in one sentence or two: the four parts below together.
     function c_error_message(error) bind(c, name='motet_error_message')
       import
       type(c_ptr), value :: error
       type(c_ptr) :: c_error_message
     end function
+    ! What was expected and what was found.
+    function c_error_what(error) bind(c, name='motet_error_what')
+      import
+      type(c_ptr), value :: error
+      type(c_ptr) :: c_error_what
+    end function
+    ! The file that the error is in; NULL for errors that are in no file.
+    function c_error_file(error) bind(c, name='motet_error_file')
+      import
+      type(c_ptr), value :: error
+      type(c_ptr) :: c_error_file
+    end function
+    ! The place in the file or in the mesh; NULL where there is none.
+    function c_error_place(error) bind(c, name='motet_error_place')
+      import
+      type(c_ptr), value :: error
+      type(c_ptr) :: c_error_place
+    end function
+    ! What can be done about the error; NULL where nothing is known.
+    function c_error_remedy(error) bind(c, name='motet_error_remedy')
+      import
+      type(c_ptr), value :: error
+      type(c_ptr) :: c_error_remedy
+    end function
     subroutine c_error_free(error) bind(c, name='motet_error_free')
       import
       type(c_ptr), value :: error
     end subroutine
-    function c_strlen(text) bind(c, name='strlen')
-      import
-      type(c_ptr), value :: text
-      integer(c_size_t) :: c_strlen
-    end function
+    ! Creates a mesh of n points and no cells.
     function c_mesh_new(points, n, stride, mesh, error) bind(c, name='motet_mesh_new')
       import
       real(c_double), intent(in) :: points(*)
       integer(c_int64_t), value :: n, stride
-      type(c_ptr) :: mesh, error
+      type(c_ptr), intent(inout) :: mesh, error
       integer(c_int32_t) :: c_mesh_new
     end function
+    ! Appends n cells of one kind; `vertices` lists the vertices of each cell, cell after cell. All ids are
+    ! checked: on an error no cell is appended.
     function c_mesh_add_cells(mesh, kind, vertices, n, error) bind(c, name='motet_mesh_add_cells')
       import
       type(c_ptr), value :: mesh
       integer(c_int32_t), value :: kind
       integer(c_int32_t), intent(in) :: vertices(*)
       integer(c_int64_t), value :: n
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mesh_add_cells
     end function
+    ! Sets the labels of all n cells, in their order: regions of volume cells, patches of surface cells; 0 for
+    ! none.
+    function c_mesh_set_labels(mesh, labels, n, error) bind(c, name='motet_mesh_set_labels')
+      import
+      type(c_ptr), value :: mesh
+      integer(c_int32_t), intent(in) :: labels(*)
+      integer(c_int64_t), value :: n
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_mesh_set_labels
+    end function
+    ! Names the region that has a label.
+    function c_mesh_name_region(mesh, label, name, error) bind(c, name='motet_mesh_name_region')
+      import
+      type(c_ptr), value :: mesh
+      integer(c_int32_t), value :: label
+      character(kind=c_char), intent(in) :: name(*)
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_mesh_name_region
+    end function
+    ! Names the patch that has a label.
+    function c_mesh_name_patch(mesh, label, name, error) bind(c, name='motet_mesh_name_patch')
+      import
+      type(c_ptr), value :: mesh
+      integer(c_int32_t), value :: label
+      character(kind=c_char), intent(in) :: name(*)
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_mesh_name_patch
+    end function
+    ! Sets an array of n rows with `components` contiguous values each, on points or on cells; replaces an
+    ! array of the same name.
+    function c_mesh_set_array(mesh, on, name, values, n, components, error) &
+        bind(c, name='motet_mesh_set_array')
+      import
+      type(c_ptr), value :: mesh
+      integer(c_int32_t), value :: on
+      character(kind=c_char), intent(in) :: name(*)
+      real(c_double), intent(in) :: values(*)
+      integer(c_int64_t), value :: n
+      integer(c_int32_t), value :: components
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_mesh_set_array
+    end function
+    ! Moves all n points.
     function c_mesh_set_points(mesh, points, n, stride, error) bind(c, name='motet_mesh_set_points')
       import
       type(c_ptr), value :: mesh
       real(c_double), intent(in) :: points(*)
       integer(c_int64_t), value :: n, stride
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mesh_set_points
     end function
+    ! Reads a file; its suffix states the format.
     function c_mesh_read(path, mesh, error) bind(c, name='motet_mesh_read')
       import
       character(kind=c_char), intent(in) :: path(*)
-      type(c_ptr) :: mesh, error
+      type(c_ptr), intent(inout) :: mesh, error
       integer(c_int32_t) :: c_mesh_read
     end function
+    ! Writes a file; its suffix states the format.
     function c_mesh_write(mesh, path, error) bind(c, name='motet_mesh_write')
       import
       type(c_ptr), value :: mesh
       character(kind=c_char), intent(in) :: path(*)
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mesh_write
     end function
+    ! Copies a mesh with its arrays and names.
     function c_mesh_copy(mesh, copy, error) bind(c, name='motet_mesh_copy')
       import
       type(c_ptr), value :: mesh
-      type(c_ptr) :: copy, error
+      type(c_ptr), intent(inout) :: copy, error
       integer(c_int32_t) :: c_mesh_copy
     end function
     subroutine c_mesh_free(mesh) bind(c, name='motet_mesh_free')
       import
       type(c_ptr), value :: mesh
     end subroutine
+    ! The number of points.
     function c_mesh_n_points(mesh) bind(c, name='motet_mesh_n_points')
       import
       type(c_ptr), value :: mesh
       integer(c_int64_t) :: c_mesh_n_points
     end function
+    ! The number of cells of all kinds.
     function c_mesh_n_cells(mesh) bind(c, name='motet_mesh_n_cells')
       import
       type(c_ptr), value :: mesh
       integer(c_int64_t) :: c_mesh_n_cells
     end function
+    ! The number of cells of one kind.
     function c_mesh_n_of_kind(mesh, kind) bind(c, name='motet_mesh_n_of_kind')
       import
       type(c_ptr), value :: mesh
       integer(c_int32_t), value :: kind
       integer(c_int64_t) :: c_mesh_n_of_kind
     end function
+    ! The sum of the numbers of vertices of all cells.
+    function c_mesh_n_vertices_of_cells(mesh) bind(c, name='motet_mesh_n_vertices_of_cells')
+      import
+      type(c_ptr), value :: mesh
+      integer(c_int64_t) :: c_mesh_n_vertices_of_cells
+    end function
+    ! Copies the coordinates of all n points.
     function c_mesh_points(mesh, points, n, stride, error) bind(c, name='motet_mesh_points')
       import
       type(c_ptr), value :: mesh
-      real(c_double), intent(out) :: points(*)
+      real(c_double), intent(inout) :: points(*)
       integer(c_int64_t), value :: n, stride
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mesh_points
     end function
+    ! Copies the vertices of all cells of one kind, cell after cell; n is the number of these cells times the
+    ! number of vertices of each.
     function c_mesh_of_kind(mesh, kind, vertices, n, error) bind(c, name='motet_mesh_of_kind')
       import
       type(c_ptr), value :: mesh
       integer(c_int32_t), value :: kind
-      integer(c_int32_t), intent(out) :: vertices(*)
+      integer(c_int32_t), intent(inout) :: vertices(*)
       integer(c_int64_t), value :: n
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mesh_of_kind
     end function
-    function c_mesh_eas(mesh, eas, n, error) bind(c, name='motet_mesh_eas')
+    ! Copies all cells in their order: the kind of each; where the vertices of each begin in `vertices`, and
+    ! the end of the last (n_cells + 1 offsets); the vertices of all cells.
+    function c_mesh_cells(mesh, kinds, n_cells, offsets, vertices, n_vertices, error) &
+        bind(c, name='motet_mesh_cells')
       import
       type(c_ptr), value :: mesh
-      real(c_double), intent(out) :: eas(*)
-      integer(c_int64_t), value :: n
-      type(c_ptr) :: error
-      integer(c_int32_t) :: c_mesh_eas
+      integer(c_int32_t), intent(inout) :: kinds(*)
+      integer(c_int64_t), value :: n_cells
+      integer(c_int64_t), intent(inout) :: offsets(*)
+      integer(c_int32_t), intent(inout) :: vertices(*)
+      integer(c_int64_t), value :: n_vertices
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_mesh_cells
     end function
+    ! Copies the labels of all n cells; 0 for cells without a label.
     function c_mesh_labels(mesh, labels, n, error) bind(c, name='motet_mesh_labels')
       import
       type(c_ptr), value :: mesh
-      integer(c_int32_t), intent(out) :: labels(*)
+      integer(c_int32_t), intent(inout) :: labels(*)
       integer(c_int64_t), value :: n
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mesh_labels
     end function
+    ! The label of a region by its name; -1 where no region has that name.
     function c_mesh_region(mesh, name) bind(c, name='motet_mesh_region')
       import
       type(c_ptr), value :: mesh
       character(kind=c_char), intent(in) :: name(*)
       integer(c_int32_t) :: c_mesh_region
     end function
+    ! The label of a patch by its name; -1 where no patch has that name.
     function c_mesh_patch(mesh, name) bind(c, name='motet_mesh_patch')
       import
       type(c_ptr), value :: mesh
       character(kind=c_char), intent(in) :: name(*)
       integer(c_int32_t) :: c_mesh_patch
     end function
+    ! The number of vertices of a patch, by its name or its label as text; -1 where there is no such patch.
     function c_mesh_n_patch_vertices(mesh, name) bind(c, name='motet_mesh_n_patch_vertices')
       import
       type(c_ptr), value :: mesh
       character(kind=c_char), intent(in) :: name(*)
       integer(c_int64_t) :: c_mesh_n_patch_vertices
     end function
+    ! Copies the n vertices of a patch in ascending order, by its name or its label as text.
     function c_mesh_patch_vertices(mesh, name, vertices, n, error) bind(c, name='motet_mesh_patch_vertices')
       import
       type(c_ptr), value :: mesh
       character(kind=c_char), intent(in) :: name(*)
-      integer(c_int32_t), intent(out) :: vertices(*)
+      integer(c_int32_t), intent(inout) :: vertices(*)
       integer(c_int64_t), value :: n
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mesh_patch_vertices
     end function
+    ! The number of components of an array; 0 where no array of numbers has that name.
+    function c_mesh_array_components(mesh, on, name) bind(c, name='motet_mesh_array_components')
+      import
+      type(c_ptr), value :: mesh
+      integer(c_int32_t), value :: on
+      character(kind=c_char), intent(in) :: name(*)
+      integer(c_int32_t) :: c_mesh_array_components
+    end function
+    ! Copies an array: n rows with all components, row after row.
+    function c_mesh_array(mesh, on, name, values, n, error) bind(c, name='motet_mesh_array')
+      import
+      type(c_ptr), value :: mesh
+      integer(c_int32_t), value :: on
+      character(kind=c_char), intent(in) :: name(*)
+      real(c_double), intent(inout) :: values(*)
+      integer(c_int64_t), value :: n
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_mesh_array
+    end function
+    ! Computes the equi-angle quality (EAS) of each of the n cells: 1 regular, 0 flat, negative inverted, bad
+    ! below 0.2; NaN for cells that are not tets.
+    function c_mesh_eas(mesh, eas, n, error) bind(c, name='motet_mesh_eas')
+      import
+      type(c_ptr), value :: mesh
+      real(c_double), intent(inout) :: eas(*)
+      integer(c_int64_t), value :: n
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_mesh_eas
+    end function
+    ! Writes counts, bounds, volumes, quality and defects as one JSON object, the one of `motet info --json`.
+    function c_mesh_summary(mesh, summary, error) bind(c, name='motet_mesh_summary')
+      import
+      type(c_ptr), value :: mesh
+      type(c_ptr), intent(inout) :: summary, error
+      integer(c_int32_t) :: c_mesh_summary
+    end function
+    ! The characters of a text, terminated by zero.
+    function c_text_get(text) bind(c, name='motet_text_get')
+      import
+      type(c_ptr), value :: text
+      type(c_ptr) :: c_text_get
+    end function
+    subroutine c_text_free(text) bind(c, name='motet_text_free')
+      import
+      type(c_ptr), value :: text
+    end subroutine
+    ! Sets all members to their defaults; `size` is sizeof(motet_mover_options).
+    subroutine c_mover_options_init(options, size) bind(c, name='motet_mover_options_init')
+      import
+      type(mover_options), intent(inout) :: options
+      integer(c_size_t), value :: size
+    end subroutine
+    ! Sets up the motion of a mesh; the mesh may be freed afterwards. NULL for options: the defaults.
     function c_mover_new(mesh, options, mover, error) bind(c, name='motet_mover_new')
       import
       type(c_ptr), value :: mesh
       type(mover_options), intent(in) :: options
-      type(c_ptr) :: mover, error
+      type(c_ptr), intent(inout) :: mover, error
       integer(c_int32_t) :: c_mover_new
     end function
     subroutine c_mover_free(mover) bind(c, name='motet_mover_free')
       import
       type(c_ptr), value :: mover
     end subroutine
+    ! The number of points of the mesh.
     function c_mover_n_points(mover) bind(c, name='motet_mover_n_points')
       import
       type(c_ptr), value :: mover
       integer(c_int64_t) :: c_mover_n_points
     end function
+    ! The number of vertices that the caller moves: those of the boundary, and also_moved.
     function c_mover_n_boundary(mover) bind(c, name='motet_mover_n_boundary')
       import
       type(c_ptr), value :: mover
       integer(c_int64_t) :: c_mover_n_boundary
     end function
+    ! Copies the n vertices that the caller moves, in ascending order.
     function c_mover_boundary(mover, vertices, n, error) bind(c, name='motet_mover_boundary')
       import
       type(c_ptr), value :: mover
-      integer(c_int32_t), intent(out) :: vertices(*)
+      integer(c_int32_t), intent(inout) :: vertices(*)
       integer(c_int64_t), value :: n
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mover_boundary
     end function
-    function c_mover_step(mover, displacement, n_boundary, displacement_stride, points, n_points, points_stride, error) &
-        bind(c, name='motet_mover_step')
+    ! Returns the four vertices that a vertex follows and their weights; is_hanging is 0, and both arrays
+    ! unchanged, for a vertex that follows something else.
+    function c_mover_weights(mover, vertex, vertices, weights, is_hanging, error) &
+        bind(c, name='motet_mover_weights')
+      import
+      type(c_ptr), value :: mover
+      integer(c_int32_t), value :: vertex
+      integer(c_int32_t), intent(inout) :: vertices(4)
+      real(c_double), intent(inout) :: weights(4)
+      integer(c_int32_t), intent(out) :: is_hanging
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_mover_weights
+    end function
+    ! Moves the mesh from its first place. `displacement` has a row for each moved vertex, `points` receives
+    ! the place of every vertex. Only the counts are checked, and that displacements are finite. The result
+    ! depends on the displacement only, not on earlier steps.
+    function c_mover_step(mover, displacement, n_boundary, displacement_stride, points, n_points, &
+        points_stride, error) bind(c, name='motet_mover_step')
       import
       type(c_ptr), value :: mover
       real(c_double), intent(in) :: displacement(*)
-      integer(c_int64_t), value :: n_boundary, displacement_stride, n_points, points_stride
+      integer(c_int64_t), value :: n_boundary, displacement_stride
       real(c_double), intent(inout) :: points(*)
-      type(c_ptr) :: error
+      integer(c_int64_t), value :: n_points, points_stride
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mover_step
     end function
+    ! Sets all members to those of an empty certificate; `size` is sizeof(motet_certificate).
+    subroutine c_certificate_init(certificate_, size) bind(c, name='motet_certificate_init')
+      import
+      type(certificate), intent(inout) :: certificate_
+      integer(c_size_t), value :: size
+    end subroutine
+    ! Moves the mesh from its first place, in sub-steps where necessary: no cell that was not inverted at
+    ! first is inverted at the end. `displacement` and `points` are as those of motet_mover_step. A motion
+    ! that is reached in part only is no error. `certificate` may be NULL.
     function c_mover_advance(mover, displacement, n_boundary, displacement_stride, points, n_points, &
-        points_stride, reached, error) bind(c, name='motet_mover_advance')
+        points_stride, certificate_, error) bind(c, name='motet_mover_advance')
       import
       type(c_ptr), value :: mover
       real(c_double), intent(in) :: displacement(*)
-      integer(c_int64_t), value :: n_boundary, displacement_stride, n_points, points_stride
+      integer(c_int64_t), value :: n_boundary, displacement_stride
       real(c_double), intent(inout) :: points(*)
-      type(certificate), intent(inout) :: reached
-      type(c_ptr) :: error
+      integer(c_int64_t), value :: n_points, points_stride
+      type(certificate), intent(inout) :: certificate_
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mover_advance
     end function
-    function c_point_mover_new(nodes, n_nodes, node_stride, points, n_points, point_stride, threads, mover, error) &
-        bind(c, name='motet_point_mover_new')
+    ! Sets up the motion of points with nodes.
+    function c_point_mover_new(nodes, n_nodes, node_stride, points, n_points, point_stride, threads, mover, &
+        error) bind(c, name='motet_point_mover_new')
       import
-      real(c_double), intent(in) :: nodes(*), points(*)
-      integer(c_int64_t), value :: n_nodes, node_stride, n_points, point_stride
+      real(c_double), intent(in) :: nodes(*)
+      integer(c_int64_t), value :: n_nodes, node_stride
+      real(c_double), intent(in) :: points(*)
+      integer(c_int64_t), value :: n_points, point_stride
       integer(c_int32_t), value :: threads
-      type(c_ptr) :: mover, error
+      type(c_ptr), intent(inout) :: mover, error
       integer(c_int32_t) :: c_point_mover_new
-    end function
-    function c_point_mover_step(mover, displacement, n_nodes, displacement_stride, points, n_points, points_stride, error) &
-        bind(c, name='motet_point_mover_step')
-      import
-      type(c_ptr), value :: mover
-      real(c_double), intent(in) :: displacement(*)
-      integer(c_int64_t), value :: n_nodes, displacement_stride, n_points, points_stride
-      real(c_double), intent(inout) :: points(*)
-      type(c_ptr) :: error
-      integer(c_int32_t) :: c_point_mover_step
     end function
     subroutine c_point_mover_free(mover) bind(c, name='motet_point_mover_free')
       import
       type(c_ptr), value :: mover
     end subroutine
-    function c_remesh(mesh, options, outcome, error) bind(c, name='motet_remesh')
+    ! Moves the points from their first places. `displacement` has a row for each node, `points` receives the
+    ! places. Of several nodes at one place, the displacement of the first counts.
+    function c_point_mover_step(mover, displacement, n_nodes, displacement_stride, points, n_points, &
+        points_stride, error) bind(c, name='motet_point_mover_step')
       import
-      type(c_ptr), value :: mesh
-      type(remesh_options), intent(in) :: options
-      type(c_ptr) :: outcome, error
-      integer(c_int32_t) :: c_remesh
+      type(c_ptr), value :: mover
+      real(c_double), intent(in) :: displacement(*)
+      integer(c_int64_t), value :: n_nodes, displacement_stride
+      real(c_double), intent(inout) :: points(*)
+      integer(c_int64_t), value :: n_points, points_stride
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_point_mover_step
     end function
-    function c_implant(host, devices, names, n_devices, options, outcome, error) bind(c, name='motet_implant')
-      import
-      type(c_ptr), value :: host
-      type(c_ptr), intent(in) :: devices(*), names(*)
-      integer(c_int64_t), value :: n_devices
-      type(implant_options), intent(in) :: options
-      type(c_ptr) :: outcome, error
-      integer(c_int32_t) :: c_implant
-    end function
+    ! 1: the requested result was reached.
     function c_outcome_complete(outcome) bind(c, name='motet_outcome_complete')
       import
       type(c_ptr), value :: outcome
       integer(c_int32_t) :: c_outcome_complete
     end function
+    ! The new mesh; belongs to the outcome.
     function c_outcome_mesh(outcome) bind(c, name='motet_outcome_mesh')
       import
       type(c_ptr), value :: outcome
       type(c_ptr) :: c_outcome_mesh
     end function
+    ! The report as one JSON object; belongs to the outcome.
+    function c_outcome_report(outcome) bind(c, name='motet_outcome_report')
+      import
+      type(c_ptr), value :: outcome
+      type(c_ptr) :: c_outcome_report
+    end function
+    ! Why the requested result was not reached; NULL where it was. Belongs to the outcome.
+    function c_outcome_not_reached(outcome) bind(c, name='motet_outcome_not_reached')
+      import
+      type(c_ptr), value :: outcome
+      type(c_ptr) :: c_outcome_not_reached
+    end function
+    ! For each of the n new points or cells: the old one that it equals to the bit; -1 for those that are new.
     function c_outcome_to_old(outcome, on, old, n, error) bind(c, name='motet_outcome_to_old')
       import
       type(c_ptr), value :: outcome
       integer(c_int32_t), value :: on
-      integer(c_int32_t), intent(out) :: old(*)
+      integer(c_int32_t), intent(inout) :: old(*)
       integer(c_int64_t), value :: n
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_outcome_to_old
     end function
-    function c_outcome_transfer(outcome, on, rule, values, n, components, out, n_out, error) bind(c, name='motet_outcome_transfer')
+    ! Transfers an array of the old mesh, n rows with `components` values each, to the n_out points or cells
+    ! of the new mesh.
+    function c_outcome_transfer(outcome, on, rule, values, n, components, out, n_out, error) &
+        bind(c, name='motet_outcome_transfer')
       import
       type(c_ptr), value :: outcome
-      integer(c_int32_t), value :: on, rule, components
+      integer(c_int32_t), value :: on, rule
       real(c_double), intent(in) :: values(*)
-      integer(c_int64_t), value :: n, n_out
-      real(c_double), intent(out) :: out(*)
-      type(c_ptr) :: error
+      integer(c_int64_t), value :: n
+      integer(c_int32_t), value :: components
+      real(c_double), intent(inout) :: out(*)
+      integer(c_int64_t), value :: n_out
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_outcome_transfer
     end function
     subroutine c_outcome_free(outcome) bind(c, name='motet_outcome_free')
       import
       type(c_ptr), value :: outcome
     end subroutine
-    function c_contact_new(points, n_points, stride, triangles, counts, is_room, n_bodies, options, contact, error) &
-        bind(c, name='motet_contact_new')
+    ! Sets all members to their defaults; `size` is sizeof(motet_remesh_options).
+    subroutine c_remesh_options_init(options, size) bind(c, name='motet_remesh_options_init')
+      import
+      type(remesh_options), intent(inout) :: options
+      integer(c_size_t), value :: size
+    end subroutine
+    ! Repairs the bad tets of a mesh. NULL for options: the defaults.
+    function c_remesh(mesh, options, outcome, error) bind(c, name='motet_remesh')
+      import
+      type(c_ptr), value :: mesh
+      type(remesh_options), intent(in) :: options
+      type(c_ptr), intent(inout) :: outcome, error
+      integer(c_int32_t) :: c_remesh
+    end function
+    ! Sets all members to their defaults; `size` is sizeof(motet_implant_options).
+    subroutine c_implant_options_init(options, size) bind(c, name='motet_implant_options_init')
+      import
+      type(implant_options), intent(inout) :: options
+      integer(c_size_t), value :: size
+    end subroutine
+    ! Puts devices into a host. `names` has a name for each device: that of its region and its patch. NULL for
+    ! options: the defaults.
+    function c_implant(host, devices, names, n_devices, options, outcome, error) &
+        bind(c, name='motet_implant')
+      import
+      type(c_ptr), value :: host
+      type(c_ptr), intent(in) :: devices(*), names(*)
+      integer(c_int64_t), value :: n_devices
+      type(implant_options), intent(in) :: options
+      type(c_ptr), intent(inout) :: outcome, error
+      integer(c_int32_t) :: c_implant
+    end function
+    ! Sets all members to their defaults; `size` is sizeof(motet_fill_options).
+    subroutine c_fill_options_init(options, size) bind(c, name='motet_fill_options_init')
+      import
+      type(fill_options), intent(inout) :: options
+      integer(c_size_t), value :: size
+    end subroutine
+    ! Fills closed surfaces with tets. `names` has a name for each surface; is_membrane has 1 for surfaces
+    ! that may end inside the others, NULL: there are none. NULL for options: the defaults. The outcome has no
+    ! history.
+    function c_fill(surfaces, names, is_membrane, n_surfaces, options, outcome, error) &
+        bind(c, name='motet_fill')
+      import
+      type(c_ptr), intent(in) :: surfaces(*), names(*)
+      type(c_ptr), value :: is_membrane
+      integer(c_int64_t), value :: n_surfaces
+      type(fill_options), intent(in) :: options
+      type(c_ptr), intent(inout) :: outcome, error
+      integer(c_int32_t) :: c_fill
+    end function
+    ! Sets up the refinement of a mesh; the mesh may be freed afterwards.
+    function c_refinement_new(mesh, threads, refinement, error) bind(c, name='motet_refinement_new')
+      import
+      type(c_ptr), value :: mesh
+      integer(c_int32_t), value :: threads
+      type(c_ptr), intent(inout) :: refinement, error
+      integer(c_int32_t) :: c_refinement_new
+    end function
+    subroutine c_refinement_free(refinement) bind(c, name='motet_refinement_free')
+      import
+      type(c_ptr), value :: refinement
+    end subroutine
+    ! The current mesh; belongs to the refinement and is valid until the next change.
+    function c_refinement_mesh(refinement) bind(c, name='motet_refinement_mesh')
+      import
+      type(c_ptr), value :: refinement
+      type(c_ptr) :: c_refinement_mesh
+    end function
+    ! Copies the number of divisions of each of the n cells; -1 for cells that are not tets.
+    function c_refinement_generations(refinement, generations, n, error) &
+        bind(c, name='motet_refinement_generations')
+      import
+      type(c_ptr), value :: refinement
+      integer(c_int32_t), intent(inout) :: generations(*)
+      integer(c_int64_t), value :: n
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_refinement_generations
+    end function
+    ! Divides the tets among the n cells whose mark is not 0, and further tets where conformity requires it.
+    ! The outcome has a copy of the mesh and the history; NULL where none is wanted.
+    function c_refinement_divide(refinement, marks, n, outcome, error) &
+        bind(c, name='motet_refinement_divide')
+      import
+      type(c_ptr), value :: refinement
+      integer(c_int32_t), intent(in) :: marks(*)
+      integer(c_int64_t), value :: n
+      type(c_ptr), intent(inout) :: outcome, error
+      integer(c_int32_t) :: c_refinement_divide
+    end function
+    ! Takes back the divisions of which all parts have a mark that is not 0. `marks` and `outcome` are as
+    ! those of motet_refinement_divide.
+    function c_refinement_coarsen(refinement, marks, n, outcome, error) &
+        bind(c, name='motet_refinement_coarsen')
+      import
+      type(c_ptr), value :: refinement
+      integer(c_int32_t), intent(in) :: marks(*)
+      integer(c_int64_t), value :: n
+      type(c_ptr), intent(inout) :: outcome, error
+      integer(c_int32_t) :: c_refinement_coarsen
+    end function
+    ! Divides tets until no edge is longer than `at` at a surface, and `growth` more per unit of distance from
+    ! it. The outcome is as that of motet_refinement_divide.
+    function c_refinement_near(refinement, surface, at, growth, outcome, error) &
+        bind(c, name='motet_refinement_near')
+      import
+      type(c_ptr), value :: refinement, surface
+      real(c_double), value :: at, growth
+      type(c_ptr), intent(inout) :: outcome, error
+      integer(c_int32_t) :: c_refinement_near
+    end function
+    ! Sets all members to their defaults; `size` is sizeof(motet_contact_options).
+    subroutine c_contact_options_init(options, size) bind(c, name='motet_contact_options_init')
+      import
+      type(contact_options), intent(inout) :: options
+      integer(c_size_t), value :: size
+    end subroutine
+    ! Sets up bodies over n_points points. `triangles` has three vertices for each triangle, body after body;
+    ! `counts` has the number of triangles of each body; is_room has a MOTET_ROOM_ constant for each body,
+    ! NULL: MOTET_ROOM_FOUND for all. NULL for options: the defaults.
+    function c_contact_new(points, n_points, stride, triangles, counts, is_room, n_bodies, options, contact, &
+        error) bind(c, name='motet_contact_new')
       import
       real(c_double), intent(in) :: points(*)
-      integer(c_int64_t), value :: n_points, stride, n_bodies
+      integer(c_int64_t), value :: n_points, stride
       integer(c_int32_t), intent(in) :: triangles(*)
       integer(c_int64_t), intent(in) :: counts(*)
       type(c_ptr), value :: is_room
+      integer(c_int64_t), value :: n_bodies
       type(contact_options), intent(in) :: options
-      type(c_ptr) :: contact, error
+      type(c_ptr), intent(inout) :: contact, error
       integer(c_int32_t) :: c_contact_new
-    end function
-    function c_contact_refit(contact, points, n_points, stride, error) bind(c, name='motet_contact_refit')
-      import
-      type(c_ptr), value :: contact
-      real(c_double), intent(in) :: points(*)
-      integer(c_int64_t), value :: n_points, stride
-      type(c_ptr) :: error
-      integer(c_int32_t) :: c_contact_refit
-    end function
-    function c_contact_measure(contact, gaps, n_points, least, error) bind(c, name='motet_contact_measure')
-      import
-      type(c_ptr), value :: contact
-      real(c_double), intent(out) :: gaps(*)
-      integer(c_int64_t), value :: n_points
-      real(c_double), intent(out) :: least
-      type(c_ptr) :: error
-      integer(c_int32_t) :: c_contact_measure
     end function
     subroutine c_contact_free(contact) bind(c, name='motet_contact_free')
       import
       type(c_ptr), value :: contact
     end subroutine
+    ! Moves all points.
+    function c_contact_refit(contact, points, n_points, stride, error) bind(c, name='motet_contact_refit')
+      import
+      type(c_ptr), value :: contact
+      real(c_double), intent(in) :: points(*)
+      integer(c_int64_t), value :: n_points, stride
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_contact_refit
+    end function
+    ! Measures the gap at each point: the least of the gaps of its bodies; infinite for points of no body and
+    ! where nothing is within reach; negative where a body is where it must not be. `least` receives the least
+    ! distance of any two triangles; it may be NULL.
+    function c_contact_measure(contact, gaps, n_points, least, error) bind(c, name='motet_contact_measure')
+      import
+      type(c_ptr), value :: contact
+      real(c_double), intent(inout) :: gaps(*)
+      integer(c_int64_t), value :: n_points
+      real(c_double), intent(out) :: least
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_contact_measure
+    end function
+    ! Finds the closest points of two bodies: their distance, infinite where nothing is within reach; the two
+    ! places; the triangle of each. `places` and `triangles` may be NULL.
+    function c_contact_nearest(contact, first, second, distance, places, triangles, error) &
+        bind(c, name='motet_contact_nearest')
+      import
+      type(c_ptr), value :: contact
+      integer(c_int32_t), value :: first, second
+      real(c_double), intent(out) :: distance
+      real(c_double), intent(inout) :: places(6)
+      integer(c_int32_t), intent(inout) :: triangles(2)
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_contact_nearest
+    end function
+    ! Computes a time before which nothing touches if points move straight on at their velocities, one row for
+    ! each point; infinite where nothing touches before the horizon (0: no horizon).
+    function c_contact_ahead(contact, velocity, n_points, stride, horizon, time, error) &
+        bind(c, name='motet_contact_ahead')
+      import
+      type(c_ptr), value :: contact
+      real(c_double), intent(in) :: velocity(*)
+      integer(c_int64_t), value :: n_points, stride
+      real(c_double), value :: horizon
+      real(c_double), intent(out) :: time
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_contact_ahead
+    end function
+    ! Sets all members to their defaults; `size` is sizeof(motet_moving_options).
+    subroutine c_moving_options_init(options, size) bind(c, name='motet_moving_options_init')
+      import
+      type(moving_options), intent(inout) :: options
+      integer(c_size_t), value :: size
+    end subroutine
+    ! Sets up the motion of a mesh with its arrays; the mesh may be freed afterwards. NULL for options: the
+    ! defaults.
     function c_moving_new(mesh, options, moving, error) bind(c, name='motet_moving_new')
       import
       type(c_ptr), value :: mesh
       type(moving_options), intent(in) :: options
-      type(c_ptr) :: moving, error
+      type(c_ptr), intent(inout) :: moving, error
       integer(c_int32_t) :: c_moving_new
     end function
-    function c_moving_load(path, options, moving, error) bind(c, name='motet_moving_load')
-      import
-      character(kind=c_char), intent(in) :: path(*)
-      type(moving_options), intent(in) :: options
-      type(c_ptr) :: moving, error
-      integer(c_int32_t) :: c_moving_load
-    end function
+    ! Writes all that later steps depend on to a .vtu file.
     function c_moving_save(moving, path, error) bind(c, name='motet_moving_save')
       import
       type(c_ptr), value :: moving
       character(kind=c_char), intent(in) :: path(*)
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_moving_save
+    end function
+    ! Continues from a file of motet_moving_save: with the same options, later steps are the same to the bit.
+    ! Earlier changes are not remembered.
+    function c_moving_load(path, options, moving, error) bind(c, name='motet_moving_load')
+      import
+      character(kind=c_char), intent(in) :: path(*)
+      type(moving_options), intent(in) :: options
+      type(c_ptr), intent(inout) :: moving, error
+      integer(c_int32_t) :: c_moving_load
     end function
     subroutine c_moving_free(moving) bind(c, name='motet_moving_free')
       import
       type(c_ptr), value :: moving
     end subroutine
+    ! The number of driven vertices: those of the boundary and of the patches `inside` of the first mesh.
     function c_moving_n_driven(moving) bind(c, name='motet_moving_n_driven')
       import
       type(c_ptr), value :: moving
       integer(c_int64_t) :: c_moving_n_driven
     end function
+    ! Copies the first places of the n driven vertices. Displacements have a row for each of these, in this
+    ! order.
+    function c_moving_driven_places(moving, places, n, stride, error) &
+        bind(c, name='motet_moving_driven_places')
+      import
+      type(c_ptr), value :: moving
+      real(c_double), intent(inout) :: places(*)
+      integer(c_int64_t), value :: n, stride
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_moving_driven_places
+    end function
+    ! The current time; 0 at first.
     function c_moving_time(moving) bind(c, name='motet_moving_time')
       import
       type(c_ptr), value :: moving
       real(c_double) :: c_moving_time
     end function
+    ! The number of steps so far.
+    function c_moving_step(moving) bind(c, name='motet_moving_step')
+      import
+      type(c_ptr), value :: moving
+      integer(c_int64_t) :: c_moving_step
+    end function
+    ! The current mesh with its arrays; belongs to the moving mesh and is valid until the next call that
+    ! changes it.
     function c_moving_mesh(moving) bind(c, name='motet_moving_mesh')
       import
       type(c_ptr), value :: moving
       type(c_ptr) :: c_moving_mesh
     end function
-    function c_moving_driven_places(moving, places, n, stride, error) bind(c, name='motet_moving_driven_places')
-      import
-      type(c_ptr), value :: moving
-      real(c_double), intent(inout) :: places(*)
-      integer(c_int64_t), value :: n, stride
-      type(c_ptr) :: error
-      integer(c_int32_t) :: c_moving_driven_places
-    end function
+    ! Computes the velocity of each of the n points of the current mesh in the last step.
     function c_moving_velocity(moving, velocity, n, stride, error) bind(c, name='motet_moving_velocity')
       import
       type(c_ptr), value :: moving
       real(c_double), intent(inout) :: velocity(*)
       integer(c_int64_t), value :: n, stride
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_moving_velocity
     end function
-    function c_moving_displacement(moving, displacement, n, stride, error) bind(c, name='motet_moving_displacement')
+    ! Computes the displacement of each of the n points of the current mesh from its first place.
+    function c_moving_displacement(moving, displacement, n, stride, error) &
+        bind(c, name='motet_moving_displacement')
       import
       type(c_ptr), value :: moving
       real(c_double), intent(inout) :: displacement(*)
       integer(c_int64_t), value :: n, stride
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_moving_displacement
     end function
-    function c_moving_set_array(moving, on, name, values, n, components, error) bind(c, name='motet_moving_set_array')
+    ! Sets an array of n rows with `components` contiguous values each; replaces an array of the same name.
+    ! The array is transferred where the mesh changes.
+    function c_moving_set_array(moving, on, name, values, n, components, error) &
+        bind(c, name='motet_moving_set_array')
       import
       type(c_ptr), value :: moving
-      integer(c_int32_t), value :: on, components
+      integer(c_int32_t), value :: on
       character(kind=c_char), intent(in) :: name(*)
       real(c_double), intent(in) :: values(*)
       integer(c_int64_t), value :: n
-      type(c_ptr) :: error
+      integer(c_int32_t), value :: components
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_moving_set_array
     end function
-    function c_moving_advance(moving, time, displacement, n_driven, stride, step, error) bind(c, name='motet_moving_advance')
+    ! Sets all members to those of an empty step; `size` is sizeof(motet_step).
+    subroutine c_step_init(step, size) bind(c, name='motet_step_init')
+      import
+      type(moving_step), intent(inout) :: step
+      integer(c_size_t), value :: size
+    end subroutine
+    ! Moves the walls to their displacements at a time after the current one, one row for each driven vertex;
+    ! the inside follows and is repaired on the way where necessary. A motion that is reached in part only is
+    ! no error: `complete` is 0. `step` may be NULL. On an error nothing is changed.
+    function c_moving_advance(moving, time, displacement, n_driven, stride, step, error) &
+        bind(c, name='motet_moving_advance')
       import
       type(c_ptr), value :: moving
       real(c_double), value :: time
       real(c_double), intent(in) :: displacement(*)
       integer(c_int64_t), value :: n_driven, stride
       type(moving_step), intent(inout) :: step
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_moving_advance
     end function
+    ! Repairs the bad tets of the current mesh, for a mesh that is bad at first or after refinement; a step
+    ! repairs by itself. `changes` receives the number of changes; it may be NULL.
     function c_moving_repair(moving, changes, error) bind(c, name='motet_moving_repair')
       import
       type(c_ptr), value :: moving
       integer(c_int64_t), intent(out) :: changes
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_moving_repair
     end function
-    function c_moving_refine_near(moving, surface, at, growth, coarsen, changes, error) bind(c, name='motet_moving_refine_near')
+    ! Divides tets until no edge is longer than `at` at a surface, and `growth` more per unit of distance from
+    ! it; `coarsen` 1: divisions that are not needed are taken back. `changes` receives the number of changes;
+    ! it may be NULL.
+    function c_moving_refine_near(moving, surface, at, growth, coarsen, changes, error) &
+        bind(c, name='motet_moving_refine_near')
       import
       type(c_ptr), value :: moving, surface
       real(c_double), value :: at, growth
       integer(c_int32_t), value :: coarsen
       integer(c_int64_t), intent(out) :: changes
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_moving_refine_near
     end function
-    function c_moving_refine_gaps(moving, smallest, coarsen, changes, error) bind(c, name='motet_moving_refine_gaps')
+    ! Divides tets until edges at watched patches are no longer than the gap between them or than `smallest`;
+    ! `coarsen` 1: divisions that are not needed are taken back. `changes` receives the number of changes; it
+    ! may be NULL.
+    function c_moving_refine_gaps(moving, smallest, coarsen, changes, error) &
+        bind(c, name='motet_moving_refine_gaps')
       import
       type(c_ptr), value :: moving
       real(c_double), value :: smallest
       integer(c_int32_t), value :: coarsen
       integer(c_int64_t), intent(out) :: changes
-      type(c_ptr) :: error
+      type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_moving_refine_gaps
     end function
+    ! 1 where all changes since a step are remembered (step 0: since the first mesh), otherwise 0.
+    function c_moving_remembers(moving, step) bind(c, name='motet_moving_remembers')
+      import
+      type(c_ptr), value :: moving
+      integer(c_int64_t), value :: step
+      integer(c_int32_t) :: c_moving_remembers
+    end function
+    ! The history from the mesh after a step to the current mesh: transfers any array of the caller, of any
+    ! time in between, by motet_outcome_transfer. The outcome is NULL where the mesh did not change, so that
+    ! arrays fit as they are.
     function c_moving_since(moving, step, outcome, error) bind(c, name='motet_moving_since')
       import
       type(c_ptr), value :: moving
       integer(c_int64_t), value :: step
-      type(c_ptr) :: outcome, error
+      type(c_ptr), intent(inout) :: outcome, error
       integer(c_int32_t) :: c_moving_since
+    end function
+  end interface
+
+  interface
+    function c_strlen(text) bind(c, name='strlen')
+      import
+      type(c_ptr), value :: text
+      integer(c_size_t) :: c_strlen
     end function
   end interface
 
 contains
 
-  ! Tells the caller how a call ended, or stops.
-  subroutine tell(code, error, status, message)
+  ! The version of the linked library: major * 10000 + minor * 100 + patch.
+  function motet_version() result(version)
+    integer(c_int32_t) :: version
+    version = c_version()
+  end function
+
+  ! Ends a call: stores its status and its message, or stops the program on an error if `status` is absent.
+  subroutine finish(code, error, status, message)
     integer(c_int32_t), intent(in) :: code
     type(c_ptr), intent(in) :: error
     integer(c_int32_t), intent(out), optional :: status
@@ -678,7 +1385,7 @@ contains
     integer(c_int32_t) :: code
     call self%free()
     code = c_mesh_new(points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), self%handle, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine mesh_read(self, path, status, message)
@@ -690,7 +1397,7 @@ contains
     integer(c_int32_t) :: code
     call self%free()
     code = c_mesh_read(trim(path)//c_null_char, self%handle, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine mesh_write(self, path, status, message)
@@ -701,10 +1408,10 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_mesh_write(self%handle, trim(path)//c_null_char, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! vertices has a column for each cell.
+  ! `vertices` has a column for each cell.
   subroutine mesh_add_cells(self, kind, vertices, status, message)
     class(mesh), intent(inout) :: self
     integer(c_int32_t), intent(in) :: kind
@@ -714,7 +1421,7 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_mesh_add_cells(self%handle, kind, vertices, size(vertices, 2, c_int64_t), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine mesh_set_points(self, points, status, message)
@@ -725,7 +1432,7 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_mesh_set_points(self%handle, points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   function mesh_n_points(self) result(n)
@@ -747,7 +1454,7 @@ contains
     n = c_mesh_n_of_kind(self%handle, kind)
   end function
 
-  ! Allocated here: (3, n_points).
+  ! Allocates points(3, n_points).
   subroutine mesh_points(self, points, status, message)
     class(mesh), intent(in) :: self
     real(c_double), allocatable, intent(out) :: points(:, :)
@@ -757,10 +1464,10 @@ contains
     integer(c_int32_t) :: code
     allocate(points(3, self%n_points()))
     code = c_mesh_points(self%handle, points, self%n_points(), 3_c_int64_t, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! Allocated here: a column of so many vertices for each cell of the kind.
+  ! Allocates vertices(of_each, n), a column for each cell of the kind, which has `of_each` vertices.
   subroutine mesh_of_kind(self, kind, of_each, vertices, status, message)
     class(mesh), intent(in) :: self
     integer(c_int32_t), intent(in) :: kind, of_each
@@ -771,7 +1478,7 @@ contains
     integer(c_int32_t) :: code
     allocate(vertices(of_each, self%n_of_kind(kind)))
     code = c_mesh_of_kind(self%handle, kind, vertices, size(vertices, kind=c_int64_t), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine mesh_eas(self, eas, status, message)
@@ -783,7 +1490,7 @@ contains
     integer(c_int32_t) :: code
     allocate(eas(self%n_cells()))
     code = c_mesh_eas(self%handle, eas, self%n_cells(), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine mesh_labels(self, labels, status, message)
@@ -795,7 +1502,7 @@ contains
     integer(c_int32_t) :: code
     allocate(labels(self%n_cells()))
     code = c_mesh_labels(self%handle, labels, self%n_cells(), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   function mesh_region(self, name) result(label)
@@ -812,7 +1519,7 @@ contains
     label = c_mesh_patch(self%handle, trim(name)//c_null_char)
   end function
 
-  ! Allocated here: the vertices of a patch, rising.
+  ! Allocates the vertices of a patch, in ascending order.
   subroutine mesh_patch_vertices(self, name, vertices, status, message)
     class(mesh), intent(in) :: self
     character(*), intent(in) :: name
@@ -823,7 +1530,7 @@ contains
     integer(c_int32_t) :: code
     allocate(vertices(max(0_c_int64_t, c_mesh_n_patch_vertices(self%handle, trim(name)//c_null_char))))
     code = c_mesh_patch_vertices(self%handle, trim(name)//c_null_char, vertices, size(vertices, kind=c_int64_t), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine mesh_free(self)
@@ -843,14 +1550,14 @@ contains
     type(mover_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(mover_options) :: asked
+    type(mover_options) :: used
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) asked = options
-    asked%size = c_sizeof(asked)
-    code = c_mover_new(of%handle, asked, self%handle, error)
-    call tell(code, error, status, message)
+    if (present(options)) used = options
+    used%size = c_sizeof(used)
+    code = c_mover_new(of%handle, used, self%handle, error)
+    call finish(code, error, status, message)
   end subroutine
 
   function mover_n_points(self) result(n)
@@ -874,10 +1581,10 @@ contains
     integer(c_int32_t) :: code
     allocate(vertices(self%n_boundary()))
     code = c_mover_boundary(self%handle, vertices, self%n_boundary(), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! displacement (3, n_boundary) and points (3, n_points) are read and written where they lie; more rows than three are strides.
+  ! displacement(3, n_boundary) and points(3, n_points) are used in place; both may have more than three rows.
   subroutine mover_step(self, displacement, points, status, message)
     class(mover), intent(in) :: self
     real(c_double), contiguous, intent(in) :: displacement(:, :)
@@ -888,7 +1595,7 @@ contains
     integer(c_int32_t) :: code
     code = c_mover_step(self%handle, displacement, size(displacement, 2, c_int64_t), size(displacement, 1, c_int64_t), &
         points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine mover_advance(self, displacement, points, reached, status, message)
@@ -903,7 +1610,7 @@ contains
     reached%size = c_sizeof(reached)
     code = c_mover_advance(self%handle, displacement, size(displacement, 2, c_int64_t), size(displacement, 1, c_int64_t), &
         points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), reached, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine mover_free(self)
@@ -917,7 +1624,7 @@ contains
     call self%free()
   end subroutine
 
-  ! nodes (3, n_nodes): those of the whole boundary, wherever it is; points (3, n_points): those that follow.
+  ! nodes(3, n_nodes) are those of the whole boundary, of all processes; points(3, n_points) follow them.
   subroutine point_mover_new(self, nodes, points, threads, status, message)
     class(point_mover), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: nodes(:, :), points(:, :)
@@ -931,7 +1638,7 @@ contains
     if (present(threads)) n = threads
     code = c_point_mover_new(nodes, size(nodes, 2, c_int64_t), size(nodes, 1, c_int64_t), points, size(points, 2, c_int64_t), &
         size(points, 1, c_int64_t), n, self%handle, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine point_mover_step(self, displacement, points, status, message)
@@ -944,7 +1651,7 @@ contains
     integer(c_int32_t) :: code
     code = c_point_mover_step(self%handle, displacement, size(displacement, 2, c_int64_t), size(displacement, 1, c_int64_t), &
         points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine point_mover_free(self)
@@ -964,17 +1671,17 @@ contains
     type(remesh_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(remesh_options) :: asked
+    type(remesh_options) :: used
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) asked = options
-    asked%size = c_sizeof(asked)
-    code = c_remesh(of%handle, asked, self%handle, error)
-    call tell(code, error, status, message)
+    if (present(options)) used = options
+    used%size = c_sizeof(used)
+    code = c_remesh(of%handle, used, self%handle, error)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! One device; what is in it and its surface get its name.
+  ! Puts one device into a host; the region and the patch of the device get its name.
   subroutine outcome_implant(self, host, device, name, options, status, message)
     class(outcome), intent(inout) :: self
     class(mesh), intent(in) :: host, device
@@ -982,21 +1689,21 @@ contains
     type(implant_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(implant_options) :: asked
+    type(implant_options) :: used
     character(kind=c_char), target :: letters(len_trim(name) + 1)
     type(c_ptr) :: devices(1), names(1), error
     integer(c_int32_t) :: code, i
     call self%free()
-    if (present(options)) asked = options
-    asked%size = c_sizeof(asked)
+    if (present(options)) used = options
+    used%size = c_sizeof(used)
     do i = 1, len_trim(name)
       letters(i) = name(i:i)
     end do
     letters(len_trim(name) + 1) = c_null_char
     devices(1) = device%handle
     names(1) = c_loc(letters)
-    code = c_implant(host%handle, devices, names, 1_c_int64_t, asked, self%handle, error)
-    call tell(code, error, status, message)
+    code = c_implant(host%handle, devices, names, 1_c_int64_t, used, self%handle, error)
+    call finish(code, error, status, message)
   end subroutine
 
   function outcome_complete(self) result(is_so)
@@ -1014,7 +1721,7 @@ contains
     integer(c_int32_t) :: code
     call new%free()
     code = c_mesh_copy(c_outcome_mesh(self%handle), new%handle, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine outcome_to_old(self, on, old, status, message)
@@ -1027,10 +1734,10 @@ contains
     integer(c_int32_t) :: code
     allocate(old(rows(self, on)))
     code = c_outcome_to_old(self%handle, on, old, size(old, kind=c_int64_t), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! values has a column for each old point or cell, new one for each new.
+  ! `values` has a column for each old point or cell, `new` a column for each new one.
   subroutine outcome_transfer(self, on, rule, values, new, status, message)
     class(outcome), intent(in) :: self
     integer(c_int32_t), intent(in) :: on, rule
@@ -1043,7 +1750,7 @@ contains
     allocate(new(size(values, 1), rows(self, on)))
     code = c_outcome_transfer(self%handle, on, rule, values, size(values, 2, c_int64_t), size(values, 1, c_int32_t), new, &
         size(new, 2, c_int64_t), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   function rows(of, on) result(n)
@@ -1068,7 +1775,7 @@ contains
     call self%free()
   end subroutine
 
-  ! triangles has a column for each triangle of all bodies, one body after the other; counts the number of each.
+  ! `triangles` has a column for each triangle, body after body; `counts` has the number of each body.
   subroutine contact_new(self, points, triangles, counts, options, status, message)
     class(contact), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: points(:, :)
@@ -1077,15 +1784,15 @@ contains
     type(contact_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(contact_options) :: asked
+    type(contact_options) :: used
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) asked = options
-    asked%size = c_sizeof(asked)
+    if (present(options)) used = options
+    used%size = c_sizeof(used)
     code = c_contact_new(points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), triangles, counts, c_null_ptr, &
-        size(counts, kind=c_int64_t), asked, self%handle, error)
-    call tell(code, error, status, message)
+        size(counts, kind=c_int64_t), used, self%handle, error)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine contact_refit(self, points, status, message)
@@ -1096,10 +1803,10 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_contact_refit(self%handle, points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! gaps has an entry for each point.
+  ! `gaps` has an entry for each point.
   subroutine contact_measure(self, gaps, least, status, message)
     class(contact), intent(inout) :: self
     real(c_double), contiguous, intent(out) :: gaps(:)
@@ -1109,7 +1816,7 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_contact_measure(self%handle, gaps, size(gaps, kind=c_int64_t), least, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine contact_free(self)
@@ -1129,14 +1836,14 @@ contains
     type(moving_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(moving_options) :: asked
+    type(moving_options) :: used
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) asked = options
-    asked%size = c_sizeof(asked)
-    code = c_moving_new(of%handle, asked, self%handle, error)
-    call tell(code, error, status, message)
+    if (present(options)) used = options
+    used%size = c_sizeof(used)
+    code = c_moving_new(of%handle, used, self%handle, error)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine moving_save(self, path, status, message)
@@ -1147,7 +1854,7 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_moving_save(self%handle, trim(path)//c_null_char, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine moving_load(self, path, options, status, message)
@@ -1156,14 +1863,14 @@ contains
     type(moving_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(moving_options) :: asked
+    type(moving_options) :: used
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) asked = options
-    asked%size = c_sizeof(asked)
-    code = c_moving_load(trim(path)//c_null_char, asked, self%handle, error)
-    call tell(code, error, status, message)
+    if (present(options)) used = options
+    used%size = c_sizeof(used)
+    code = c_moving_load(trim(path)//c_null_char, used, self%handle, error)
+    call finish(code, error, status, message)
   end subroutine
 
   function moving_n_driven(self) result(n)
@@ -1172,7 +1879,7 @@ contains
     n = c_moving_n_driven(self%handle)
   end function
 
-  ! Allocated here: (3, n_driven).
+  ! Allocates places(3, n_driven).
   subroutine moving_driven_places(self, places, status, message)
     class(moving_mesh), intent(in) :: self
     real(c_double), allocatable, intent(out) :: places(:, :)
@@ -1182,7 +1889,7 @@ contains
     integer(c_int32_t) :: code
     allocate(places(3, self%n_driven()))
     code = c_moving_driven_places(self%handle, places, self%n_driven(), 3_c_int64_t, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   function moving_time(self) result(time)
@@ -1200,10 +1907,10 @@ contains
     integer(c_int32_t) :: code
     call copy%free()
     code = c_mesh_copy(c_moving_mesh(self%handle), copy%handle, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! Allocated here, and those below: (3, n_points) of the mesh as it is.
+  ! Allocates velocity(3, n_points), a column for each point of the current mesh.
   subroutine moving_velocity(self, velocity, status, message)
     class(moving_mesh), intent(in) :: self
     real(c_double), allocatable, intent(out) :: velocity(:, :)
@@ -1215,9 +1922,10 @@ contains
     n = c_mesh_n_points(c_moving_mesh(self%handle))
     allocate(velocity(3, n))
     code = c_moving_velocity(self%handle, velocity, n, 3_c_int64_t, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
+  ! Allocates displacement(3, n_points), a column for each point of the current mesh.
   subroutine moving_displacement(self, displacement, status, message)
     class(moving_mesh), intent(in) :: self
     real(c_double), allocatable, intent(out) :: displacement(:, :)
@@ -1229,10 +1937,10 @@ contains
     n = c_mesh_n_points(c_moving_mesh(self%handle))
     allocate(displacement(3, n))
     code = c_moving_displacement(self%handle, displacement, n, 3_c_int64_t, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! values (components, n)
+  ! `values` has the shape (components, n).
   subroutine moving_set_array(self, on, name, values, status, message)
     class(moving_mesh), intent(inout) :: self
     integer(c_int32_t), intent(in) :: on
@@ -1244,10 +1952,10 @@ contains
     integer(c_int32_t) :: code
     code = c_moving_set_array(self%handle, on, trim(name)//c_null_char, values, size(values, 2, c_int64_t), &
         size(values, 1, c_int32_t), error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! displacement (3, n_driven); more rows than three are a stride.
+  ! displacement(3, n_driven) may have more than three rows.
   subroutine moving_advance(self, time, displacement, step, status, message)
     class(moving_mesh), intent(inout) :: self
     real(c_double), intent(in) :: time
@@ -1260,10 +1968,10 @@ contains
     step%size = c_sizeof(step)
     code = c_moving_advance(self%handle, time, displacement, size(displacement, 2, c_int64_t), size(displacement, 1, c_int64_t), &
         step, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! changes: how often connectivity was changed.
+  ! `changes` is the number of changes of connectivity.
   subroutine moving_repair(self, changes, status, message)
     class(moving_mesh), intent(inout) :: self
     integer(c_int64_t), intent(out) :: changes
@@ -1272,7 +1980,7 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_moving_repair(self%handle, changes, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine moving_refine_near(self, surface, at, growth, coarsen, changes, status, message)
@@ -1286,7 +1994,7 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_moving_refine_near(self%handle, surface%handle, at, growth, merge(1_c_int32_t, 0_c_int32_t, coarsen), changes, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine moving_refine_gaps(self, smallest, coarsen, changes, status, message)
@@ -1299,10 +2007,11 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_moving_refine_gaps(self%handle, smallest, merge(1_c_int32_t, 0_c_int32_t, coarsen), changes, error)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
-  ! From the mesh after a step to the mesh as it is; has_changed is false where arrays serve as they are, and `changes` is empty.
+  ! The history from the mesh after a step to the current mesh. Where the mesh did not change, has_changed is
+  ! false and `changes` is empty: arrays fit as they are.
   subroutine moving_since(self, step, changes, has_changed, status, message)
     class(moving_mesh), intent(in) :: self
     integer(c_int64_t), intent(in) :: step
@@ -1315,7 +2024,7 @@ contains
     call changes%free()
     code = c_moving_since(self%handle, step, changes%handle, error)
     has_changed = c_associated(changes%handle)
-    call tell(code, error, status, message)
+    call finish(code, error, status, message)
   end subroutine
 
   subroutine moving_free(self)

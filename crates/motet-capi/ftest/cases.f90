@@ -1,4 +1,4 @@
-! The small cases of testdata, by the Fortran module: prints a name and a number a line. Calls are as those of ctest/cases.c.
+! Runs the small cases of testdata by the Fortran module: prints a name and a number a line, as ctest/cases.c does.
 program cases
   use, intrinsic :: iso_c_binding
   use, intrinsic :: ieee_arithmetic
@@ -6,7 +6,7 @@ program cases
       MOTET_TRIANGLE, MOTET_TETRA, MOTET_ON_POINTS, MOTET_RULE_MEAN, MOTET_ERROR_IO
   implicit none
 
-  call errors_are_told()
+  call errors_are_reported()
   select case (word(1))
   case ('repair')
     call repair()
@@ -39,21 +39,21 @@ contains
     read (text, *) x
   end function
 
-  subroutine told(name, value)
+  subroutine report(name, value)
     character(*), intent(in) :: name
     real(c_double), intent(in) :: value
     write (*, '(a,1x,es25.17e3)') name, value
   end subroutine
 
-  subroutine errors_are_told()
+  subroutine errors_are_reported()
     type(mesh) :: none
     character(200) :: message
     integer(c_int32_t) :: status
     call none%read('/nowhere/mesh.vtu', status, message)
-    if (status /= MOTET_ERROR_IO .or. index(message, '/nowhere/mesh.vtu') == 0) error stop 'an error is not told'
+    if (status /= MOTET_ERROR_IO .or. index(message, '/nowhere/mesh.vtu') == 0) error stop 'an error is not reported'
   end subroutine
 
-  subroutine tell_mesh(of)
+  subroutine report_mesh(of)
     type(mesh), intent(in) :: of
     real(c_double), allocatable :: points(:, :), eas(:)
     real(c_double) :: sums(3)
@@ -64,12 +64,12 @@ contains
     do i = 1, size(points, 2)
       sums = sums + points(:, i)
     end do
-    call told('points', real(of%n_points(), c_double))
-    call told('tets', real(of%n_of_kind(MOTET_TETRA), c_double))
-    call told('sum_x', sums(1))
-    call told('sum_y', sums(2))
-    call told('sum_z', sums(3))
-    call told('worst_eas', min(1.0_c_double, minval(eas, mask=.not. ieee_is_nan(eas))))
+    call report('points', real(of%n_points(), c_double))
+    call report('tets', real(of%n_of_kind(MOTET_TETRA), c_double))
+    call report('sum_x', sums(1))
+    call report('sum_y', sums(2))
+    call report('sum_z', sums(3))
+    call report('worst_eas', min(1.0_c_double, minval(eas, mask=.not. ieee_is_nan(eas))))
   end subroutine
 
   subroutine repair()
@@ -93,20 +93,20 @@ contains
       if (any(patch == boundary(i))) displacement(:, i) = [number(4), number(5), number(6)]
     end do
     call mine%advance(displacement, points, reached)
-    call told('complete', real(reached%complete, c_double))
-    call told('bad_after_motion', real(reached%bad, c_double))
-    call told('worst_after_motion', reached%worst_eas)
+    call report('complete', real(reached%complete, c_double))
+    call report('bad_after_motion', real(reached%bad, c_double))
+    call report('worst_after_motion', reached%worst_eas)
     call moving%set_points(points)
     call done%remesh(moving)
-    call told('repaired', merge(1.0_c_double, 0.0_c_double, done%complete()))
+    call report('repaired', merge(1.0_c_double, 0.0_c_double, done%complete()))
     call done%mesh(repaired)
-    call tell_mesh(repaired)
+    call report_mesh(repaired)
     call done%transfer(MOTET_ON_POINTS, MOTET_RULE_MEAN, points(1:1, :), carried)
     total = 0
     do i = 1, size(carried, 2)
       total = total + carried(1, i)
     end do
-    call told('sum_carried', total)
+    call report('sum_carried', total)
   end subroutine
 
   subroutine put_in()
@@ -116,9 +116,9 @@ contains
     call device%read(word(3))
     call done%implant(host, device, word(4))
     call done%mesh(new)
-    call told('complete', merge(1.0_c_double, 0.0_c_double, done%complete()))
-    call told('region', real(new%region(word(4)), c_double))
-    call tell_mesh(new)
+    call report('complete', merge(1.0_c_double, 0.0_c_double, done%complete()))
+    call report('region', real(new%region(word(4)), c_double))
+    call report_mesh(new)
   end subroutine
 
   subroutine measure()
@@ -145,8 +145,8 @@ contains
     do i = 1, size(gaps)
       if (ieee_is_finite(gaps(i))) total = total + gaps(i)
     end do
-    call told('least', least)
-    call told('sum_of_gaps', total)
+    call report('least', least)
+    call report('sum_of_gaps', total)
   end subroutine
 
   subroutine there_and_back()
@@ -173,7 +173,7 @@ contains
     allocate(shifts, mold=places)
     shifts = 0
     next = 1
-    do i = 1, size(places, 2) ! driven vertices and those of the patch both rise
+    do i = 1, size(places, 2) ! driven vertices and those of the patch are in ascending order
       if (next > size(patch)) exit
       if (all(places(:, i) == points(:, patch(next) + 1))) then
         shifts(:, i) = [number(4), number(5), number(6)]
@@ -198,20 +198,20 @@ contains
       end if
     end do
     call moving%velocity(velocity)
-    call told('changes', real(n_changes, c_double))
-    call told('time', moving%time())
+    call report('changes', real(n_changes, c_double))
+    call report('time', moving%time())
     total = 0
     do i = 1, size(velocity, 2)
       total = total + velocity(1, i)
     end do
-    call told('sum_velocity', total)
+    call report('sum_velocity', total)
     total = 0
     do i = 1, size(x, 2)
       total = total + x(1, i)
     end do
-    call told('sum_carried', total)
+    call report('sum_carried', total)
     call moving%mesh(last)
-    call tell_mesh(last)
+    call report_mesh(last)
   end subroutine
 
 end program

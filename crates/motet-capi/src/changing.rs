@@ -3,21 +3,22 @@
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 
-use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Outside, implant};
-use motet::mesh::history::{History, Rule, Rules};
+use motet::implant::{Device, Implanted, Inside, Interface, Outside, implant};
+use motet::mesh::history::{History, Rules};
 use motet::meshing::layers::{Layers, Stack};
 use motet::meshing::{self, Surfaces, fill};
 use motet::preflight::{Repairs, Role};
-use motet::remesh::{Goal, MeshOutcome, SurfaceRule, remesh_mesh};
+use motet::remesh::{Goal, MeshOutcome, remesh_mesh};
 use motet::{Error, Mesh, Result, implant, remesh};
 use serde_json::json;
 
+use crate::constants::{self, On};
 use crate::guard::{MotetError, guarded, or_default};
 use crate::memory::{
     count, expect, free, handle, optional, out_handle, owned, read_versioned, set_handle, text, texts,
     threads, values, values_mut, versioned,
 };
-use crate::mesh::{MotetMesh, field, json, on_points};
+use crate::mesh::{MotetMesh, field, json};
 
 /// A new mesh, its history, and the report.
 pub(crate) struct MotetOutcome {
@@ -76,9 +77,9 @@ pub(crate) unsafe extern "C" fn motet_outcome_to_old(
 ) -> i32 {
     guarded(error, || {
         let history = handle(outcome, "outcome")?.history()?;
-        let kept: Vec<u32> = match on_points(on)? {
-            true => history.vertices.kept().iter().map(|v| v.0).collect(),
-            false => history.cells.kept().iter().map(|c| c.0).collect(),
+        let kept: Vec<u32> = match constants::on(on)? {
+            On::Points => history.vertices.kept().iter().map(|v| v.0).collect(),
+            On::Cells => history.cells.kept().iter().map(|c| c.0).collect(),
         };
         expect(n, kept.len(), "ids")?;
         let out = values_mut(old, kept.len(), "old")?;
@@ -102,17 +103,11 @@ pub(crate) unsafe extern "C" fn motet_outcome_transfer(
     guarded(error, || {
         let history = handle(outcome, "outcome")?.history()?;
         let field = field("values", values, n, components)?;
-        let is_on_points = on_points(on)?;
-        let rule = match (rule, is_on_points) {
-            (0, true) => Rule::Interpolate,
-            (0 | 2, false) => Rule::Conserve,
-            (2, true) => Rule::Linear,
-            (1, _) => Rule::Inherit,
-            _ => return Err(Error::options(format!("unknown rule {rule}"))),
-        };
-        let new = match is_on_points {
-            true => history.transfer_points_by(&field, rule)?,
-            false => history.transfer_cells_by(&field, rule)?,
+        let on = constants::on(on)?;
+        let rule = constants::transfer_rule(rule, on)?;
+        let new = match on {
+            On::Points => history.transfer_points_by(&field, rule)?,
+            On::Cells => history.transfer_cells_by(&field, rule)?,
         };
         let new = new.and_then(|field| field.values.to_f64()).unwrap_or_default();
         expect(n_out, new.len() / field.components, "rows")?;
@@ -145,24 +140,13 @@ versioned! {
     }
 }
 
-/// The surface rule of a number in the header.
-pub(crate) fn surface_rule(rule: i32, distance: f64) -> Result<SurfaceRule> {
-    let distance = optional(distance);
-    match rule {
-        0 => Ok(SurfaceRule::Keep),
-        1 => Ok(SurfaceRule::Adapt { distance }),
-        2 => Ok(SurfaceRule::Loose { distance }),
-        other => Err(Error::options(format!("unknown surface rule {other}"))),
-    }
-}
-
 impl MotetRemeshOptions {
     fn options(&self, mesh: &Mesh) -> Result<remesh::Options> {
         Ok(remesh::Options {
             min_eas: self.min_eas,
             min_dihedral_deg: self.min_dihedral_deg,
             goal: if self.best != 0 { Goal::Best } else { Goal::Repair },
-            surface: surface_rule(self.surface, self.distance)?,
+            surface: constants::surface_rule(self.surface, optional(self.distance))?,
             keep_layers: self.repair_layers == 0,
             held: remesh::Held::of_names(mesh, &owned(self.hold, self.n_hold, "hold")?)?,
             sizes: match (self.sizes.is_null(), optional(self.edge_length)) {
@@ -225,12 +209,7 @@ impl MotetImplantOptions {
             stray: (self.stray != -1.0).then_some(self.stray),
             size: optional(self.edge_length),
             growth: self.growth,
-            adapt: match self.adapt {
-                0 => Adapt::No,
-                1 => Adapt::Walls,
-                2 => Adapt::All,
-                other => return Err(Error::options(format!("adapt is {other}, expected 0, 1 or 2"))),
-            },
+            adapt: constants::adapt(self.adapt)?,
             carve: self.carve,
             reach: self.reach,
             starts: BTreeMap::new(),
@@ -240,11 +219,10 @@ impl MotetImplantOptions {
 
     fn device(&self, mesh: &Mesh, name: &str) -> Result<Device> {
         let device = Device::new(mesh.clone(), name);
-        let inside = match self.inside {
-            0 => device.inside,
-            1 => Inside::Filled,
-            2 => Inside::Hollow,
-            other => return Err(Error::options(format!("inside is {other}, expected 0, 1 or 2"))),
+        let inside = match constants::inside(self.inside)? {
+            // Surfaces have no tets to keep.
+            Inside::Own => device.inside,
+            inside => inside,
         };
         Ok(Device { inside, ..device })
     }

@@ -4,6 +4,7 @@ use motet::base::{Threads, VertexId};
 use motet::contact::{Body, Contact, Options, Room};
 use motet::{Error, Result};
 
+use crate::constants;
 use crate::guard::{MotetError, guarded};
 use crate::memory::{
     count, expect, free, handle, handle_mut, id, optional, out_handle, read_versioned, rows, set_handle,
@@ -46,7 +47,7 @@ pub(crate) unsafe extern "C" fn motet_contact_new(
         let given = read_versioned(options)?;
         let threads = threads(given.threads)?;
         let points = rows(points, n_points, stride, "points")?.into_owned();
-        let bodies = bodies(points.len(), triangles, counts, is_room, n_bodies)?;
+        let bodies = BodyArrays { triangles, counts, is_room, n_bodies }.bodies(points.len())?;
         let options = Options {
             warn: optional(given.warn),
             own: given.own != 0,
@@ -60,34 +61,45 @@ pub(crate) unsafe extern "C" fn motet_contact_new(
     })
 }
 
-fn bodies(
-    n_points: usize,
+/// Bodies as C passes them.
+struct BodyArrays {
+    /// Three vertices for each triangle, body after body.
     triangles: *const i32,
+    /// The number of triangles of each body.
     counts: *const i64,
+    /// Whether each body is a room; NULL: found for all.
     is_room: *const i32,
     n_bodies: i64,
-) -> Result<Vec<Body>> {
-    let n = count(n_bodies, "bodies")?;
-    let counts = values(counts, n, "counts")?.iter().map(|&k| count(k, "triangles"));
-    let counts: Vec<usize> = counts.collect::<Result<_>>()?;
-    let rooms = if is_room.is_null() { vec![-1; n] } else { values(is_room, n, "is_room")?.to_vec() };
-    let all = counts.iter().try_fold(0usize, |sum, &k| sum.checked_add(k)).and_then(|k| k.checked_mul(3));
-    let all = values(triangles, all.ok_or_else(|| Error::options("more triangles than ids"))?, "triangles")?;
-    let mut rest = all.as_chunks::<3>().0.iter().enumerate();
-    let body = |(i, (&k, &is_room)): (usize, (&usize, &i32))| {
-        let triangle = |(t, corners): (usize, &[i32; 3])| {
-            let [a, b, c] = corners.map(|v| vertex(v, n_points, &format!("triangle {t}")));
-            Ok([a?, b?, c?])
-        };
-        let triangles: Vec<[VertexId; 3]> = rest.by_ref().take(k).map(triangle).collect::<Result<_>>()?;
-        let room = match is_room {
-            0 => Room::No,
-            1.. => Room::Yes,
-            _ => Room::Found,
-        };
-        Ok(Body { name: format!("body {i}"), triangles, room })
-    };
-    counts.iter().zip(&rooms).enumerate().map(body).collect()
+}
+
+impl BodyArrays {
+    fn bodies(&self, n_points: usize) -> Result<Vec<Body>> {
+        let n = count(self.n_bodies, "bodies")?;
+        let counts = values(self.counts, n, "counts")?.iter().map(|&k| count(k, "triangles"));
+        let counts: Vec<usize> = counts.collect::<Result<_>>()?;
+        let rooms = self.rooms(n)?;
+        let n_ids =
+            counts.iter().try_fold(0usize, |sum, &k| sum.checked_add(k)).and_then(|k| k.checked_mul(3));
+        let n_ids = n_ids.ok_or_else(|| Error::options("more triangles than ids"))?;
+        let mut rest = values(self.triangles, n_ids, "triangles")?.as_chunks::<3>().0.iter().enumerate();
+        let mut bodies = Vec::with_capacity(n);
+        for (room, k) in rooms.into_iter().zip(counts) {
+            let triangle = |(t, corners): (usize, &[i32; 3])| {
+                let [a, b, c] = corners.map(|v| vertex(v, n_points, &format!("triangle {t}")));
+                Ok([a?, b?, c?])
+            };
+            let triangles: Vec<[VertexId; 3]> = rest.by_ref().take(k).map(triangle).collect::<Result<_>>()?;
+            bodies.push(Body { name: format!("body {}", bodies.len()), triangles, room });
+        }
+        Ok(bodies)
+    }
+
+    fn rooms(&self, n: usize) -> Result<Vec<Room>> {
+        if self.is_room.is_null() {
+            return Ok(vec![Room::Found; n]);
+        }
+        values(self.is_room, n, "is_room")?.iter().map(|&number| constants::room(number)).collect()
+    }
 }
 
 #[unsafe(no_mangle)]

@@ -7,11 +7,7 @@ use std::ptr;
 
 use motet::{Error, ErrorKind, Result};
 
-const OK: i32 = 0;
-const INTERNAL: i32 = 1;
-const OPTIONS: i32 = 2;
-const INPUT: i32 = 3;
-const IO: i32 = 4;
+use crate::constants::{INPUT, INTERNAL, IO, OK, OPTIONS};
 
 /// An error, its parts as C strings.
 pub(crate) struct MotetError {

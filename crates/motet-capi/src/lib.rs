@@ -2,6 +2,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
+//! | `constants` | the constants of the header |
 //! | `guard` | statuses and errors; a panic stops here |
 //! | `memory` | data passed by pointer: arrays with strides, texts, handles, structs with a size |
 //! | `mesh`, `motion`, `changing`, `refinement`, `contact`, `moving` | the calls, in the order of the header |
@@ -11,8 +12,11 @@
 #![allow(clippy::too_many_arguments, reason = "C passes arrays as pointer, count and stride")]
 
 mod changing;
+mod constants;
 mod contact;
 mod guard;
+#[cfg(test)]
+mod header;
 mod memory;
 mod mesh;
 mod motion;

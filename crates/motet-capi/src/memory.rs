@@ -167,6 +167,22 @@ pub(crate) fn free<T>(handle: *mut T) {
 pub(crate) unsafe trait Versioned: Copy {
     /// The default values of the members.
     const DEFAULT: Self;
+    /// The function of the header that sets the defaults: the name of the struct and `_init`.
+    #[cfg(test)]
+    const INIT: &'static str;
+    /// The members behind the size, in their order.
+    #[cfg(test)]
+    fn members() -> Vec<Member>;
+}
+
+/// A member of a struct of the header, as this library declares it.
+#[cfg(test)]
+pub(crate) struct Member {
+    pub(crate) name: &'static str,
+    /// Its type in Rust.
+    pub(crate) kind: &'static str,
+    /// Its default value, as `Debug` writes it.
+    pub(crate) default: String,
 }
 
 /// Defines a struct of the header: its members with their defaults, and the function that sets all of them to
@@ -184,6 +200,16 @@ macro_rules! versioned {
         // SAFETY: the header declares numbers and pointers, in this order.
         unsafe impl crate::memory::Versioned for $name {
             const DEFAULT: Self = Self { size: size_of::<Self>(), $($member: $default,)* };
+            #[cfg(test)]
+            const INIT: &'static str = stringify!($init);
+            #[cfg(test)]
+            fn members() -> Vec<crate::memory::Member> {
+                vec![$(crate::memory::Member {
+                    name: stringify!($member),
+                    kind: stringify!($type),
+                    default: format!("{:?}", Self::DEFAULT.$member),
+                },)*]
+            }
         }
 
         #[unsafe(no_mangle)]

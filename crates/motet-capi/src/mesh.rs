@@ -9,6 +9,7 @@ use motet::mesh::{CellKind, Cells, Field, Summary, Values};
 use motet::motion::FacetSet;
 use motet::{Error, Mesh, Result};
 
+use crate::constants::{self, On};
 use crate::guard::{MotetError, guarded, or_default, text as c_text};
 use crate::memory::{
     count, expect, fill_rows, free, handle, handle_mut, id, out_handle, rows, set_handle, text, values,
@@ -140,15 +141,6 @@ pub(crate) unsafe extern "C" fn motet_mesh_name_patch(
     })
 }
 
-/// Whether rows belong to points; `false` for cells.
-pub(crate) fn on_points(on: i32) -> Result<bool> {
-    match on {
-        0 => Ok(true),
-        1 => Ok(false),
-        _ => Err(Error::options(format!("on is {on}, expected MOTET_ON_POINTS or MOTET_ON_CELLS"))),
-    }
-}
-
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_mesh_set_array(
     mesh: *mut MotetMesh,
@@ -161,12 +153,17 @@ pub(crate) unsafe extern "C" fn motet_mesh_set_array(
 ) -> i32 {
     guarded(error, || {
         let mesh = &mut handle_mut(mesh, "mesh")?.0;
-        let is_on_points = on_points(on)?;
+        let on = constants::on(on)?;
         let field = field(text(name, "name")?, values, n, components)?;
-        expect(n, if is_on_points { mesh.points.len() } else { mesh.cells.len() }, "rows")?;
-        match is_on_points {
-            true => mesh.set_point_field(field),
-            false => mesh.set_cell_field(field),
+        match on {
+            On::Points => {
+                expect(n, mesh.points.len(), "rows")?;
+                mesh.set_point_field(field);
+            }
+            On::Cells => {
+                expect(n, mesh.cells.len(), "rows")?;
+                mesh.set_cell_field(field);
+            }
         }
         Ok(())
     })
@@ -389,7 +386,10 @@ pub(crate) unsafe extern "C" fn motet_mesh_patch_vertices(
 
 /// An array of numbers by its name; `None` where there is none.
 fn array<'a>(mesh: &'a Mesh, on: i32, name: &str) -> Result<Option<&'a Field>> {
-    let found = if on_points(on)? { mesh.point_field(name) } else { mesh.cell_field(name) };
+    let found = match constants::on(on)? {
+        On::Points => mesh.point_field(name),
+        On::Cells => mesh.cell_field(name),
+    };
     Ok(found.filter(|field| !matches!(field.values, Values::Text(_))))
 }
 

@@ -5,11 +5,11 @@ use std::ptr;
 
 use motet::base::Threads;
 use motet::motion::{
-    Certificate, Extent, FacetSet, Limits, Method, MethodWords, Mover, Options, PointMover, RigidLayer,
-    SlideTolerance,
+    Certificate, Extent, FacetSet, Motion, Mover, Options, PointMover, RigidLayer, SlideTolerance,
 };
 use motet::{Error, Mesh, Result};
 
+use crate::constants;
 use crate::guard::{MotetError, guarded, or_default};
 use crate::memory::{
     check_no_overlap, copy_out, count, expect, fill_rows, free, handle, handle_mut, id, optional, out_handle,
@@ -56,27 +56,29 @@ impl MotetMoverOptions {
                 .collect::<Result<Vec<_>>>()
         };
         let natural = |n: i32, what: &str| count(n.into(), what);
-        let wall = FacetSet::joined(find(self.wall, self.n_wall, "wall")?);
         let cells = natural(self.rigid_layer_cells, "cells of the rigid layer")?;
-        let extent = extent(self.rigid_layer, cells)?;
+        let motion = Motion {
+            method: constants::method(self.method)?,
+            within_walls: self.within_walls != 0,
+            smooth: natural(self.smooth, "sweeps")?,
+            rigid_layer: extent(self.rigid_layer, cells)?,
+            slide_tolerance: self.slide_tolerance,
+            residual: self.residual,
+            factor_gib: self.factor_gib,
+            substeps: natural(self.substeps, "sub-steps")?,
+            ..Motion::default()
+        };
+        let wall = FacetSet::joined(find(self.wall, self.n_wall, "wall")?);
         let moved = values(self.also_moved, count(self.n_also_moved, "also_moved")?, "also_moved")?;
         let moved = moved.iter().map(|&v| vertex(v, mesh.points.len(), "also_moved"));
+        let options = motion.options(mesh)?;
         Ok(Options {
-            method: self.method(wall.clone(), find(self.bodies, self.n_bodies, "bodies")?)?,
-            within_walls: self.within_walls != 0,
-            smoothing: natural(self.smooth, "sweeps")?,
+            method: motion.method(find(self.bodies, self.n_bodies, "bodies")?, wall.clone())?,
             also_moved: moved.collect::<Result<_>>()?,
-            rigid_layer: extent.map(|extent| RigidLayer { extent, wall }),
+            rigid_layer: options.rigid_layer.map(|layer| RigidLayer { wall, ..layer }),
             sliding: find(self.slide, self.n_slide, "slide")?,
-            slide_tolerance: SlideTolerance(self.slide_tolerance),
-            limits: Limits { substeps: natural(self.substeps, "sub-steps")?, ..Limits::default() },
-            ..Options::default()
+            ..options
         })
-    }
-
-    fn method(&self, wall: Option<FacetSet>, bodies: Vec<FacetSet>) -> Result<Method> {
-        let (residual, factor_gib) = (self.residual, self.factor_gib);
-        method(self.method, MethodWords { bodies, wall, residual, factor_gib })
     }
 }
 
@@ -89,13 +91,6 @@ pub(crate) fn extent(distance: f64, cells: usize) -> Result<Option<Extent>> {
         (None, true) => Ok(Some(Extent::Cells(cells))),
         (None, false) => Ok(None),
     }
-}
-
-/// A method by its number in the header.
-pub(crate) fn method(number: i32, words: MethodWords) -> Result<Method> {
-    words.check()?;
-    let method = usize::try_from(number).ok().and_then(|k| Method::all(words).into_iter().nth(k));
-    method.ok_or_else(|| Error::options(format!("unknown method {number}")).remedy("MOTET_DELAUNAY is 0"))
 }
 
 #[unsafe(no_mangle)]

@@ -4,20 +4,21 @@ use std::ffi::c_char;
 use std::ptr;
 
 use motet::base::{Point, Threads};
-use motet::motion::{Limits, MethodWords, SlideTolerance, Strain};
-use motet::moving::{GAP, Motion, MovingMesh, Options, Step, Watching};
+use motet::motion::{Motion, SlideTolerance, Strain};
+use motet::moving::{ContactWords, GAP, MovingMesh, Options, RepairWords, Step};
 use motet::refine::{self, Criterion, Size, Target, Wanted};
-use motet::{Error, Mesh, Result, contact, io, remesh};
+use motet::{Error, Mesh, Result, io};
 use serde_json::json;
 
-use crate::changing::{MotetOutcome, surface_rule};
+use crate::changing::MotetOutcome;
+use crate::constants::{self, On};
 use crate::guard::{MotetError, guarded, or_default};
 use crate::memory::{
     copy_out, count, expect, fill_rows, free, handle, handle_mut, optional, out_handle, owned,
     read_versioned, rows, set_handle, text, threads, versioned,
 };
-use crate::mesh::{MotetMesh, field, on_points};
-use crate::motion::{extent, method};
+use crate::mesh::{MotetMesh, field};
+use crate::motion::extent;
 
 /// A moving mesh and the threads that it uses.
 pub(crate) struct MotetMoving {
@@ -69,54 +70,55 @@ versioned! {
 
 impl MotetMovingOptions {
     fn options(&self, mesh: &Mesh) -> Result<Options> {
-        let surface = surface_rule(self.surface, self.distance)?;
-        let held = remesh::Held::of_names(mesh, &owned(self.hold_names, self.n_hold_names, "hold_names")?)?;
-        let repair = remesh::Options { min_eas: self.min_eas, surface, held, ..remesh::Options::default() };
-        Ok(Options {
-            motion: self.motion(mesh)?,
-            repair: (self.no_repair == 0).then_some(repair),
+        let repair = RepairWords {
+            off: self.no_repair != 0,
+            min_eas: self.min_eas,
+            hold: owned(self.hold_names, self.n_hold_names, "hold_names")?,
             margin: self.margin,
             floor: self.floor,
             improve_below: self.improve_below,
-            returns: self.returns != 0,
             valid_at_start: self.valid_at_start != 0,
+            ..RepairWords::default()
+        };
+        let contact = ContactWords {
+            patches: owned(self.watch, self.n_watch, "watch")?,
+            warn: optional(self.warn),
+            within: optional(self.within),
+            horizon: optional(self.horizon),
+            hold: optional(self.hold),
+            ..ContactWords::default()
+        };
+        let mut options = Options {
+            motion: self.motion()?,
+            returns: self.returns != 0,
             contents: owned(self.contents, self.n_contents, "contents")?,
-            watch: self.watching()?,
+            watch: contact.watching(mesh)?,
             remembered: count(self.remembered.into(), "changes to be remembered")?,
-            ..Options::default()
-        })
+            ..repair.options(mesh)?
+        };
+        let surface = constants::surface_rule(self.surface, optional(self.distance))?;
+        if let Some(repair) = &mut options.repair {
+            repair.surface = surface;
+        }
+        Ok(options)
     }
 
-    fn motion(&self, mesh: &Mesh) -> Result<Motion> {
-        let labels = |names, n, what: &str| mesh.find_patches(&owned(names, n, what)?);
+    fn motion(&self) -> Result<Motion> {
         let natural = |n: i32, what: &str| count(n.into(), what);
         let cells = natural(self.rigid_layer_cells, "cells of the rigid layer")?;
-        let extent = extent(self.rigid_layer, cells)?;
-        let wall = labels(self.wall, self.n_wall, "wall")?;
         Ok(Motion {
-            method: method(self.method, MethodWords::default())?,
-            strain: if self.strain_in_band == 0 { Strain::Even } else { Strain::Band },
-            bodies: labels(self.bodies, self.n_bodies, "bodies")?,
+            method: constants::method(self.method)?,
+            bodies: owned(self.bodies, self.n_bodies, "bodies")?,
+            strain: (self.strain_in_band != 0).then_some(Strain::Band),
+            smooth: natural(self.smooth, "sweeps")?,
+            rigid_layer: extent(self.rigid_layer, cells)?,
+            rigid_layer_at: owned(self.wall, self.n_wall, "wall")?,
             within_walls: self.within_walls != 0,
-            smoothing: natural(self.smooth, "sweeps")?,
-            inside: labels(self.inside, self.n_inside, "inside")?,
-            sliding: labels(self.slide, self.n_slide, "slide")?,
-            slide_tolerance: SlideTolerance(self.slide_tolerance),
-            rigid_layer: extent.map(|extent| (extent, wall)),
-            limits: Limits::default(),
+            slide: owned(self.slide, self.n_slide, "slide")?,
+            slide_tolerance: self.slide_tolerance,
+            inside: owned(self.inside, self.n_inside, "inside")?,
+            ..Motion::default()
         })
-    }
-
-    fn watching(&self) -> Result<Option<Watching>> {
-        let patches = owned(self.watch, self.n_watch, "watch")?;
-        let options = contact::Options {
-            warn: optional(self.warn),
-            within: optional(self.within).unwrap_or(f64::INFINITY),
-            ..contact::Options::default()
-        };
-        let watching =
-            Watching { patches, options, horizon: optional(self.horizon), hold: optional(self.hold) };
-        Ok((!watching.patches.is_empty()).then_some(watching))
     }
 }
 
@@ -236,9 +238,9 @@ pub(crate) unsafe extern "C" fn motet_moving_set_array(
     guarded(error, || {
         let MotetMoving { moving, .. } = handle_mut(moving, "moving")?;
         let field = field(text(name, "name")?, values, n, components)?;
-        match on_points(on)? {
-            true => moving.set_point_field(field),
-            false => moving.set_cell_field(field),
+        match constants::on(on)? {
+            On::Points => moving.set_point_field(field),
+            On::Cells => moving.set_cell_field(field),
         }
     })
 }

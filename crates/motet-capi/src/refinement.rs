@@ -83,11 +83,17 @@ fn store_outcome(
     Ok(())
 }
 
+/// What is done to marked tets.
+enum Change {
+    Divide,
+    Coarsen,
+}
+
 fn change(
     refinement: *mut MotetRefinement,
     marks: *const i32,
     n: i64,
-    is_back: bool,
+    change: Change,
     outcome: *mut *mut MotetOutcome,
 ) -> Result<()> {
     if !outcome.is_null() {
@@ -100,9 +106,9 @@ fn change(
     let marked: Vec<TetId> =
         (0..cells.len()).filter(|&t| marks[cells[t].index()] != 0).map(TetId::new).collect();
     let rules = Rules::default();
-    let (summary, history) = match is_back {
-        false => refinement.refine(&marked, &rules, threads)?,
-        true => refinement.coarsen(&marked, &rules, threads)?,
+    let (summary, history) = match change {
+        Change::Divide => refinement.refine(&marked, &rules, threads)?,
+        Change::Coarsen => refinement.coarsen(&marked, &rules, threads)?,
     };
     let held = (summary.n_held > 0).then(|| format!("{} marked tets could not be changed", summary.n_held));
     store_outcome(refinement, history, held, outcome)
@@ -116,7 +122,7 @@ pub(crate) unsafe extern "C" fn motet_refinement_divide(
     outcome: *mut *mut MotetOutcome,
     error: *mut *mut MotetError,
 ) -> i32 {
-    guarded(error, || change(refinement, marks, n, false, outcome))
+    guarded(error, || change(refinement, marks, n, Change::Divide, outcome))
 }
 
 #[unsafe(no_mangle)]
@@ -127,7 +133,7 @@ pub(crate) unsafe extern "C" fn motet_refinement_coarsen(
     outcome: *mut *mut MotetOutcome,
     error: *mut *mut MotetError,
 ) -> i32 {
-    guarded(error, || change(refinement, marks, n, true, outcome))
+    guarded(error, || change(refinement, marks, n, Change::Coarsen, outcome))
 }
 
 #[unsafe(no_mangle)]
