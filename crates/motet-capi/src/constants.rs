@@ -64,8 +64,10 @@ pub(crate) const RULES: &[Constant<TransferRule>] = &[
     constant("MOTET_RULE_LINEAR", 2, TransferRule { on_points: Rule::Linear, on_cells: Rule::Conserve }),
 ];
 
-/// Surface rules, for a distance that walls may stray.
-pub(crate) const SURFACE_RULES: &[Constant<fn(Option<f64>) -> SurfaceRule>] = &[
+/// The surface rule for a distance that walls may stray.
+type RuleOfDistance = fn(Option<f64>) -> SurfaceRule;
+
+pub(crate) const SURFACE_RULES: &[Constant<RuleOfDistance>] = &[
     constant("MOTET_SURFACE_KEEP", 0, |_| SurfaceRule::Keep),
     constant("MOTET_SURFACE_ADAPT", 1, |distance| SurfaceRule::Adapt { distance }),
     constant("MOTET_SURFACE_LOOSE", 2, |distance| SurfaceRule::Loose { distance }),

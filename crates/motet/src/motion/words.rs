@@ -82,7 +82,7 @@ impl Motion {
     /// # Errors
     /// When there are words that the method does not use, or the memory for a factor is negative.
     pub fn method(&self, bodies: Vec<FacetSet>, wall: Option<FacetSet>) -> Result<Method> {
-        if !(self.factor_gib >= 0.0) {
+        if self.factor_gib < 0.0 || self.factor_gib.is_nan() {
             return Err(Error::options(format!(
                 "the memory for a factor must be 0 or more GiB; got {}",
                 self.factor_gib
