@@ -28,7 +28,7 @@ fuzz_target!(|bytes: &[u8]| {
         (0..n_cells).map(|i| 1.0 + (i % 7) as f64).collect::<Vec<_>>(),
     ));
     let mut options = Options { contents: vec!["dye".into()], ..Options::default() };
-    options.motion.smoothing = numbers.below(3);
+    options.motion.smooth = numbers.below(3);
     let threads = Threads::single();
     let Ok(mut moving) = MovingMesh::new(&mesh, options.clone(), &threads) else { return };
     let content = integral(moving.mesh());

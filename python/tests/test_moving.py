@@ -47,7 +47,7 @@ def test_a_loaded_mesh_continues_with_the_same_results(tmp_path):
     assert not broken.remembers(0)
     with pytest.raises(motet.OptionsError, match="since step 0"):
         broken.history_since(0)
-    with pytest.raises(motet.OptionsError, match="motion.smoothing was 2 and is 0"):
+    with pytest.raises(motet.OptionsError, match="motion.smooth was 2 and is 0"):
         motet.MovingMesh.load(tmp_path / "state.vtu")
 
 

@@ -10,11 +10,11 @@ use motet::{Error, Result};
 
 /// A constant of the header.
 pub(crate) struct Constant<T> {
-    /// Its name in the header.
+    /// The name in the header.
     pub(crate) name: &'static str,
-    /// Its number in the header.
+    /// The number in the header.
     pub(crate) number: i32,
-    /// What it stands for in the library.
+    /// What the constant stands for in the library.
     pub(crate) meaning: T,
 }
 

@@ -179,9 +179,9 @@ pub(crate) unsafe trait Versioned: Copy {
 #[cfg(test)]
 pub(crate) struct Member {
     pub(crate) name: &'static str,
-    /// Its type in Rust.
+    /// The type in Rust.
     pub(crate) kind: &'static str,
-    /// Its default value, as `Debug` writes it.
+    /// The default value, as `Debug` writes it.
     pub(crate) default: String,
 }
 

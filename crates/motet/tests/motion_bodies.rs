@@ -25,7 +25,7 @@ fn step(mover: &Mover, map: impl Fn(Point) -> Point, threads: &Threads) -> Vec<P
         assert_eq!(
             out[v.index()],
             add(mover.reference()[v.index()], *d),
-            "the boundary is where it is told to be"
+            "the boundary is where it is requested to be"
         );
     }
     out

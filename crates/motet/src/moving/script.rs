@@ -177,7 +177,7 @@ impl Script {
     }
 
     /// Vertices that the last part names but that follow an earlier one which moves them differently during a
-    /// period, by more than rounding. Vertices that were told to stay are not included.
+    /// period, by more than rounding. Vertices that stay by request are not included.
     pub fn contradicted(&self) -> Vec<VertexId> {
         let Some((last, part)) = self.parts.len().checked_sub(1).map(|last| (last, &self.parts[last])) else {
             return Vec::new();

@@ -74,9 +74,9 @@ words! {
     pub(super) struct Device {
         /// The file of the device, a closed surface or a mesh of tets. Required.
         file: PathBuf = PathBuf::new(),
-        /// Its surface bounds the mesh: the flow goes around it.
+        /// The surface of the device bounds the mesh: the flow goes around it.
         hollow: bool = false,
-        /// It is filled with tets of its own.
+        /// The device is filled with new tets.
         fill: bool = false,
         /// The largest distance of a new surface from the device's, in the unit of the mesh. By default the
         /// triangles of the device are kept.
