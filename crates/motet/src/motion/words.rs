@@ -16,12 +16,12 @@ words! {
     /// How the inside of a mesh follows its walls. Patches are given by name or number: ids of cells do not
     /// outlast a change of the mesh.
     pub struct Motion {
-        /// How vertices inside follow the walls: `delaunay`, `bodies`, `guided`, `elastic`, `laplace`, `idw` or
-        /// `rbf`.
+        /// How vertices inside follow the walls: `delaunay`, `bodies`, `guided`, `elastic`, `laplace`, `idw`
+        /// or `rbf`.
         method: MethodName = MethodName::Delaunay,
         /// Patches that each move as a rigid body, with the method `bodies`; a patch inside, such as that
-        /// between fluid and solid, carries what it encloses. Without any, each connected part of the walls is
-        /// a body, except the outer one.
+        /// between fluid and solid, carries what it encloses. Without any, each connected part of the walls
+        /// is a body, except the outer one.
         bodies: Vec<String> = Vec::new(),
         /// Where `bodies` put the strain: `band`, beside them, or `even`, over all that lies between them and
         /// walls that stay. By default `even`; in a run, `band` where a body moves on or far.
@@ -29,8 +29,8 @@ words! {
         /// Sweeps of smoothing after each step: vertices of bad tets, and no others, move to where their tets
         /// are better. 2 are enough.
         smooth: usize = 0,
-        /// All that is nearer to the wall than this moves rigidly with it: a distance in the unit of the mesh,
-        /// or layers of cells such as `3layers`.
+        /// All that is nearer to the wall than this moves rigidly with it: a distance in the unit of the
+        /// mesh, or layers of cells such as `3layers`.
         rigid_layer: Option<Extent> = None,
         /// Patches that have the rigid layer. Without any, all that do not slide.
         rigid_layer_at: Vec<String> = Vec::new(),

@@ -102,14 +102,15 @@ impl<'de> Deserialize<'de> for MotionTable {
 words! {
     /// How the walls move.
     pub(super) struct Walls {
-        /// Whether walls come back to their first position: then tets are kept good there, too. By default they
-        /// do, except where one moves on or far.
+        /// Whether walls come back to their first position: then tets are kept good there, too. By default
+        /// they do, except where one moves on or far.
         returns: Option<bool> = None,
         /// Patches that stay in place, even where they meet one that moves.
         fixed: Vec<String> = Vec::new(),
         /// A series of measured walls, one per step of a period.
         surfaces: Option<PathBuf> = None,
-        /// How the points of `surfaces` are found in the mesh: `id`, `position`, or `nearest` (of another mesh).
+        /// How the points of `surfaces` are found in the mesh: `id`, `position`, or `nearest` (of another
+        /// mesh).
         matching as "match": Match = Match::Id,
         /// The patch that follows `surfaces`, with `nearest`.
         patch: Option<String> = None,

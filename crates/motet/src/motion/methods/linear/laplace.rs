@@ -1,5 +1,5 @@
-//! A Laplace equation for each coordinate of the displacement, with a diffusivity that falls with the distance
-//! from the wall (Jasak and Tukovic 2006).
+//! A Laplace equation for each coordinate of the displacement, with a diffusivity that falls with the
+//! distance from the wall (Jasak and Tukovic 2006).
 
 use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::tet::centroid;
