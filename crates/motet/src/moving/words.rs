@@ -48,7 +48,7 @@ impl RepairWords {
             ("improve_below", self.improve_below),
         ] {
             if !(0.0..1.0).contains(&value) {
-                return Err(Error::options(format!("{word} must be in [0, 1); got {value}"))
+                return Err(Error::options(format!("{word} must be an EAS in [0, 1); got {value}"))
                     .remedy("leave it out, or give a number such as 0.2"));
             }
         }
