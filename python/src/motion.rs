@@ -4,7 +4,7 @@ use motet::Mesh;
 use motet::base::{Point, Threads, VertexId, Watch};
 use motet::mesh::Boundary;
 use motet::motion::{
-    self, BoundaryMotion, Extent, FacetSet, Interface, MethodName, Options, Prescribed, RigidLayer,
+    self, BoundaryMotion, Extent, FacetSet, Interface, MethodName, MotionParts, Options, Prescribed,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -40,7 +40,6 @@ impl Request<'_> {
             Some(array) => vertices(array, mesh.points.len())?,
             None => Vec::new(),
         };
-        let wall = FacetSet::joined(all_facets(mesh, &self.rigid_layer_at)?);
         let motion = motion::Motion {
             method: MethodName::of(&self.method).or_raise()?,
             within_walls: self.within_walls,
@@ -52,14 +51,13 @@ impl Request<'_> {
             substeps: self.substeps,
             ..motion::Motion::default()
         };
-        let options = motion.options(mesh).or_raise()?;
-        Ok(Options {
-            method: motion.method(all_facets(mesh, &self.bodies)?, wall.clone()).or_raise()?,
-            also_moved,
-            rigid_layer: options.rigid_layer.map(|layer| RigidLayer { wall, ..layer }),
+        let parts = MotionParts {
+            bodies: all_facets(mesh, &self.bodies)?,
+            wall: FacetSet::joined(all_facets(mesh, &self.rigid_layer_at)?),
             sliding: all_facets(mesh, &self.slide)?,
-            ..options
-        })
+            also_moved,
+        };
+        motion.options_on(parts).or_raise()
     }
 }
 

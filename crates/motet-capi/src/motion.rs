@@ -5,7 +5,7 @@ use std::ptr;
 
 use motet::base::Threads;
 use motet::motion::{
-    Certificate, Extent, FacetSet, Motion, Mover, Options, PointMover, RigidLayer, SlideTolerance,
+    Certificate, Extent, FacetSet, Motion, MotionParts, Mover, Options, PointMover, SlideTolerance,
 };
 use motet::{Error, Mesh, Result};
 
@@ -68,16 +68,13 @@ impl MotetMoverOptions {
             substeps: natural(self.substeps, "sub-steps")?,
             ..Motion::default()
         };
-        let wall = FacetSet::joined(find(self.wall, self.n_wall, "wall")?);
         let moved = values(self.also_moved, count(self.n_also_moved, "also_moved")?, "also_moved")?;
         let moved = moved.iter().map(|&v| vertex(v, mesh.points.len(), "also_moved"));
-        let options = motion.options(mesh)?;
-        Ok(Options {
-            method: motion.method(find(self.bodies, self.n_bodies, "bodies")?, wall.clone())?,
-            also_moved: moved.collect::<Result<_>>()?,
-            rigid_layer: options.rigid_layer.map(|layer| RigidLayer { wall, ..layer }),
+        motion.options_on(MotionParts {
+            bodies: find(self.bodies, self.n_bodies, "bodies")?,
+            wall: FacetSet::joined(find(self.wall, self.n_wall, "wall")?),
             sliding: find(self.slide, self.n_slide, "slide")?,
-            ..options
+            also_moved: moved.collect::<Result<_>>()?,
         })
     }
 }

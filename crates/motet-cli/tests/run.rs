@@ -320,8 +320,8 @@ fn what_is_wrong_with_a_job_is_reported_with_its_line() {
     refused("in_time = \"swing\"", "in_time = [[0, 1], [0, 2]]", &["rising"]);
     refused("fixed = [\"box\"]", "fixed = [\"box\", \"sphere\"]", &["no vertex of patch sphere"]);
     refused("contents = [\"dye\"]", "contents = [\"ink\"]", &["ink", "dye"]);
-    refused("warn = 1.5", "warn = -1.5", &["[contact]", "warn must be above 0"]);
-    refused("warn = 1.5", "hold = 0", &["[contact]", "hold must be above 0"]);
+    refused("warn = 1.5", "warn = -1.5", &["[contact]", "warning distance"]);
+    refused("warn = 1.5", "hold = -1", &["[contact]", "kept apart must be 0 or more"]);
     refused("smooth = 2", "method = \"magic\"", &["magic", "guided"]);
     refused("smooth = 2", "smoot = 2", &["line 12", "did you mean `smooth`?"]);
     refused("smooth = 2", "method = \"guded\"", &["line 12", "did you mean `guided`?"]);

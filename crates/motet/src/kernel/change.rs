@@ -1,9 +1,9 @@
 //! What an operation proposes: tets to remove, tets to insert, and one vertex to insert, move or remove.
 
-use crate::base::{Point, TetId, VertexId};
+use crate::base::{Point, TetId, VertexId, sorted_ids};
 use crate::geometry::tet::FACETS;
 use crate::kernel::complex::Complex;
-use crate::kernel::exempt::{Side, sorted};
+use crate::kernel::exempt::Side;
 use crate::kernel::hold::Hold;
 
 /// A tet to be inserted.
@@ -93,9 +93,11 @@ impl Change {
     #[inline]
     pub fn judge(&self, complex: &Complex, vertices: [VertexId; 4], corners: [Point; 4]) -> f64 {
         complex.judge(corners, |i| {
-            let facet = sorted(FACETS[i].map(|corner| vertices[corner]));
+            let facet = sorted_ids(FACETS[i].map(|corner| vertices[corner]));
             match complex.side_of(&self.cavity, facet) {
-                Side::Inside if self.walls.iter().any(|wall| sorted(wall.vertices) == facet) => Side::Wall,
+                Side::Inside if self.walls.iter().any(|wall| sorted_ids(wall.vertices) == facet) => {
+                    Side::Wall
+                }
                 side => side,
             }
         })

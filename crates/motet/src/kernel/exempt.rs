@@ -6,7 +6,7 @@
 //! its id. A tet that replaces exempt ones is judged anew, by the walls it will have. The quality alone
 //! exempts nothing: another tet elsewhere can have the same value and need repair.
 
-use crate::base::{Point, TetId, VertexId};
+use crate::base::{Point, TetId, VertexId, sorted_ids};
 use crate::geometry::quality::dihedral;
 use crate::geometry::tet::{EDGES, FACETS};
 use crate::geometry::triangle;
@@ -96,7 +96,7 @@ impl Complex {
     pub fn side_of(&self, tets: &[TetId], vertices: [VertexId; 3]) -> Side {
         let facets = tets.iter().flat_map(|&tet| (0..4).map(move |i| (tet, i)));
         let same = facets.filter(|&(tet, i)| {
-            self.is_wall(tet, i) && sorted(self.facet(HalfFacet::new(tet, i))) == vertices
+            self.is_wall(tet, i) && sorted_ids(self.facet(HalfFacet::new(tet, i))) == vertices
         });
         same.map(|(tet, i)| self.side(tet, i)).max().unwrap_or(Side::Inside)
     }
@@ -117,10 +117,4 @@ fn is_forced(corners: [Point; 4], quality: f64, sides: impl Fn(usize) -> Side) -
     };
     (0..6).any(|edge| is_reached(quality, angles[edge] / dihedral::REGULAR) && is_between(edge))
         || (0..4).any(|i| sides[i] == Side::Firm && is_narrow(i))
-}
-
-/// The vertices of a facet, sorted.
-pub(super) fn sorted(mut facet: [VertexId; 3]) -> [VertexId; 3] {
-    facet.sort_unstable();
-    facet
 }

@@ -113,4 +113,4 @@ pub use point_mover::PointMover;
 pub use prescribed::Prescribed;
 pub use setup::{Setup, SetupSeconds};
 pub use slide::{LeavesPlane, SlidingPlane};
-pub use words::{MethodName, Motion};
+pub use words::{MethodName, Motion, MotionParts};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::de::{self, Deserializer, Visitor};
+use serde::de::{self, Deserializer};
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::base::{Error, Result, VertexId, nearest};
@@ -63,15 +63,28 @@ impl Motion {
         let facets = |words: &[String]| -> Result<Vec<FacetSet>> {
             words.iter().map(|word| FacetSet::find(mesh, word)).collect()
         };
-        let wall = FacetSet::joined(facets(&self.rigid_layer_at)?);
+        self.options_on(MotionParts {
+            bodies: facets(&self.bodies)?,
+            wall: FacetSet::joined(facets(&self.rigid_layer_at)?),
+            sliding: facets(&self.slide)?,
+            also_moved: self.driven_inside(mesh)?,
+        })
+    }
+
+    /// The options for parts of a mesh that are given by their facets: names of patches are not looked up.
+    ///
+    /// # Errors
+    /// When a word does not fit the method, or the memory for a factor is negative.
+    pub fn options_on(&self, parts: MotionParts) -> Result<Options> {
+        let MotionParts { bodies, wall, sliding, also_moved } = parts;
         Ok(Options {
-            method: self.method(facets(&self.bodies)?, wall.clone())?,
+            method: self.method(bodies, wall.clone())?,
             strain: self.strain.unwrap_or_default(),
             within_walls: self.within_walls,
             smoothing: self.smooth,
-            also_moved: self.driven_inside(mesh)?,
+            also_moved,
             rigid_layer: self.rigid_layer.map(|extent| RigidLayer { extent, wall }),
-            sliding: facets(&self.slide)?,
+            sliding,
             slide_tolerance: SlideTolerance(self.slide_tolerance),
             limits: Limits { substeps: self.substeps, ..Limits::default() },
         })
@@ -81,7 +94,7 @@ impl Motion {
     ///
     /// # Errors
     /// When there are words that the method does not use, or the memory for a factor is negative.
-    pub fn method(&self, bodies: Vec<FacetSet>, wall: Option<FacetSet>) -> Result<Method> {
+    fn method(&self, bodies: Vec<FacetSet>, wall: Option<FacetSet>) -> Result<Method> {
         if self.factor_gib < 0.0 || self.factor_gib.is_nan() {
             return Err(Error::options(format!(
                 "the memory for a factor must be 0 or more GiB; got {}",
@@ -142,6 +155,20 @@ impl Motion {
         inside.dedup();
         Ok(inside)
     }
+}
+
+/// The parts of a mesh that the words of a [`Motion`] name.
+#[derive(Clone, Debug, Default)]
+pub struct MotionParts {
+    /// The rigid bodies; without any, each connected part of the walls is one, except the outer one.
+    pub bodies: Vec<FacetSet>,
+    /// The wall that has the rigid layer, or where a Laplace equation is stiff; `None`: all that does not
+    /// slide.
+    pub wall: Option<FacetSet>,
+    /// Flat parts whose vertices slide.
+    pub sliding: Vec<FacetSet>,
+    /// Vertices that are driven in addition to those of the boundary.
+    pub also_moved: Vec<VertexId>,
 }
 
 /// The name of a [`Method`].
@@ -279,31 +306,17 @@ impl Serialize for Extent {
 
 impl<'de> Deserialize<'de> for Extent {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        struct NumberOrText;
-        impl Visitor<'_> for NumberOrText {
-            type Value = Extent;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a distance such as 0.2, or cell layers such as \"3layers\"")
-            }
-
-            fn visit_f64<E: de::Error>(self, distance: f64) -> std::result::Result<Extent, E> {
-                self.visit_str(&distance.to_string())
-            }
-
-            fn visit_u64<E: de::Error>(self, distance: u64) -> std::result::Result<Extent, E> {
-                self.visit_str(&distance.to_string())
-            }
-
-            fn visit_i64<E: de::Error>(self, distance: i64) -> std::result::Result<Extent, E> {
-                self.visit_str(&distance.to_string())
-            }
-
-            fn visit_str<E: de::Error>(self, text: &str) -> std::result::Result<Extent, E> {
-                Extent::of_text(text).map_err(|e| E::custom(e.what()))
-            }
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Written {
+            Distance(f64),
+            Text(String),
         }
-        deserializer.deserialize_any(NumberOrText)
+        let text = match Written::deserialize(deserializer)? {
+            Written::Distance(distance) => distance.to_string(),
+            Written::Text(text) => text,
+        };
+        Self::of_text(&text).map_err(|e| de::Error::custom(e.what()))
     }
 }
 

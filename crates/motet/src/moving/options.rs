@@ -103,9 +103,11 @@ impl Options {
 pub type Contents = Vec<String>;
 
 impl Watching {
+    /// Checks that all numbers are in their ranges.
+    ///
     /// # Errors
     /// If a number is out of range; the error names the first.
-    fn check(&self) -> Result<()> {
+    pub(super) fn check(&self) -> Result<()> {
         self.options.check()?;
         if let Some(hold) = self.hold.filter(|hold| !(*hold >= 0.0 && *hold <= LARGEST)) {
             return Err(Error::options(format!(

@@ -1,6 +1,6 @@
 //! How a moving mesh is kept good, in words: what files, Python and other callers give.
 
-use crate::base::{Error, Result};
+use crate::base::Result;
 use crate::contact;
 use crate::mesh::Mesh;
 use crate::moving::options::{Options, Watching};
@@ -41,31 +41,22 @@ impl RepairWords {
     /// If a number is not in [0, 1), a rule or a name does not exist, or a distance is given for a surface
     /// that is kept.
     pub fn options(&self, mesh: &Mesh) -> Result<Options> {
-        for (word, value) in [
-            ("min_eas", self.min_eas),
-            ("margin", self.margin),
-            ("floor", self.floor),
-            ("improve_below", self.improve_below),
-        ] {
-            if !(0.0..1.0).contains(&value) {
-                return Err(Error::options(format!("{word} must be an EAS in [0, 1); got {value}"))
-                    .remedy("leave it out, or give a number such as 0.2"));
-            }
-        }
         let repair = remesh::Options {
             min_eas: self.min_eas,
             surface: SurfaceRule::of_name(&self.surface, self.distance)?,
             held: Held::of_names(mesh, &self.hold)?,
             ..remesh::Options::default()
         };
-        Ok(Options {
+        let options = Options {
             repair: (!self.off).then_some(repair),
             margin: self.margin,
             floor: self.floor,
             improve_below: self.improve_below,
             valid_at_start: self.valid_at_start,
             ..Options::default()
-        })
+        };
+        options.check()?;
+        Ok(options)
     }
 }
 
@@ -96,12 +87,6 @@ impl ContactWords {
     /// If the mesh has no such patch, or a distance is not above 0.
     pub fn watching(&self, mesh: &Mesh) -> Result<Option<Watching>> {
         mesh.find_patches(&self.patches)?;
-        for (word, value) in [("warn", self.warn), ("hold", self.hold)] {
-            if let Some(value) = value.filter(|value| *value <= 0.0 || value.is_nan()) {
-                return Err(Error::options(format!("{word} must be above 0; got {value}"))
-                    .remedy("give a distance above 0, or leave it out"));
-            }
-        }
         let options = contact::Options {
             warn: self.warn,
             own: self.own,
@@ -110,6 +95,7 @@ impl ContactWords {
         };
         let watching =
             Watching { patches: self.patches.clone(), options, horizon: self.horizon, hold: self.hold };
+        watching.check()?;
         Ok((!self.patches.is_empty()).then_some(watching))
     }
 }

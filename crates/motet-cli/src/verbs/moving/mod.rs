@@ -13,10 +13,8 @@ use std::time::Instant;
 use motet::base::{Point, Threads};
 use motet::io;
 use motet::mesh::Boundary;
-use motet::motion::{
-    self, Certificate, FacetSet, Motion, Mover, Options, RigidLayer, SlideTolerance, mesh_velocity,
-};
-use motet::{Error, Mesh};
+use motet::motion::{self, Certificate, FacetSet, Motion, MotionParts, Mover, Options, mesh_velocity};
+use motet::{Error, Mesh, Result};
 
 pub(crate) use args::MoveArgs;
 
@@ -30,7 +28,7 @@ use crate::console::Console;
 use crate::outcome::Outcome;
 use crate::outputs;
 
-pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
+pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> Result<Outcome> {
     let begin = Instant::now();
     let motion = args.displacement.as_ref().map(Path::new);
     outputs::check(&args.output, motion, "the motion")?;
@@ -75,32 +73,24 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     Ok(outcome)
 }
 
-fn options(
-    args: &MoveArgs,
-    boundary: &Boundary,
-    patches: &Patches<'_>,
-    plan: &Plan<'_>,
-) -> motet::Result<Options> {
-    let sliding = args.slide.iter().map(|word| patches.find(word)).collect::<motet::Result<Vec<_>>>()?;
-    let rigid_layer = match args.rigid_layer {
-        None => None,
-        Some(extent) => {
-            Some(RigidLayer { extent, wall: Some(wall(args, boundary, patches, plan, &sliding)?) })
-        }
-    };
-    let bodies = args.body.iter().map(|word| patches.find(word)).collect::<motet::Result<Vec<_>>>()?;
-    let method = method(args, bodies, || wall(args, boundary, patches, plan, &sliding))?;
-    let smoothing = usize::from(args.smooth);
-    Ok(Options {
-        method,
-        smoothing,
+fn options(args: &MoveArgs, boundary: &Boundary, patches: &Patches<'_>, plan: &Plan<'_>) -> Result<Options> {
+    let facets = |words: &[String]| words.iter().map(|word| patches.find(word)).collect::<Result<Vec<_>>>();
+    let (sliding, bodies) = (facets(&args.slide)?, facets(&args.body)?);
+    check_method(args)?;
+    // A Laplace equation is stiff at the facets that would have the rigid layer.
+    let needs_wall = args.rigid_layer.is_some() || args.method == Method::Laplace;
+    let wall = needs_wall.then(|| wall(args, boundary, patches, plan, &sliding)).transpose()?;
+    let motion = Motion {
+        method: args.method.name(),
         within_walls: args.within_walls,
-        also_moved: plan.driven.clone(),
-        rigid_layer,
-        sliding,
-        slide_tolerance: SlideTolerance(args.slide_tolerance),
-        ..Options::default()
-    })
+        smooth: usize::from(args.smooth),
+        rigid_layer: args.rigid_layer,
+        slide_tolerance: args.slide_tolerance,
+        residual: args.residual,
+        factor_gib: args.factor.unwrap_or(0.0),
+        ..Motion::default()
+    };
+    motion.options_on(MotionParts { bodies, wall, sliding, also_moved: plan.driven.clone() })
 }
 
 /// Chooses a method by trying all steps, and puts it into the options.
@@ -112,7 +102,7 @@ fn choose(
     options: &mut Options,
     threads: &Threads,
     console: &Console,
-) -> motet::Result<Chosen> {
+) -> Result<Chosen> {
     let frames = || {
         // Frames are read in order, so each method needs a plan of its own.
         let mut plan = Plan::new(mesh, boundary, patches, args, console)?;
@@ -125,17 +115,13 @@ fn choose(
     Ok(chosen)
 }
 
-/// The requested method; a Laplace equation is stiff at the facets that would have the rigid layer.
-fn method(
-    args: &MoveArgs,
-    bodies: Vec<FacetSet>,
-    wall: impl Fn() -> motet::Result<FacetSet>,
-) -> motet::Result<motion::Method> {
+/// Refuses options that the method does not use.
+fn check_method(args: &MoveArgs) -> Result<()> {
     if args.least.is_some() && args.method != Method::Auto {
         return Err(Error::options("--least is a criterion for choosing a method, but the method is given")
             .remedy("add --method auto"));
     }
-    if !bodies.is_empty() && !matches!(args.method, Method::Bodies | Method::Auto) {
+    if !args.body.is_empty() && !matches!(args.method, Method::Bodies | Method::Auto) {
         return Err(Error::options("--body names a rigid body, but the method does not use rigid bodies")
             .remedy("add --method bodies"));
     }
@@ -145,13 +131,7 @@ fn method(
         )
         .remedy("add --method elastic"));
     }
-    let words = Motion {
-        method: args.method.name(),
-        residual: args.residual,
-        factor_gib: args.factor.unwrap_or(0.0),
-        ..Motion::default()
-    };
-    words.method(bodies, if args.method == Method::Laplace { Some(wall()?) } else { None })
+    Ok(())
 }
 
 /// The facets that have the rigid layer: those of the named patches, otherwise all that move and do not
@@ -162,7 +142,7 @@ fn wall(
     patches: &Patches<'_>,
     plan: &Plan<'_>,
     sliding: &[FacetSet],
-) -> motet::Result<FacetSet> {
+) -> Result<FacetSet> {
     if args.rigid_layer_at.is_empty() {
         let within = |all: &[motet::base::VertexId], facet: usize| {
             boundary.facets.list(facet).iter().all(|v| all.binary_search(v).is_ok())
@@ -171,8 +151,7 @@ fn wall(
             within(&plan.moving, i) && !sliding.iter().any(|slide| within(&slide.vertices, i))
         }));
     }
-    let named =
-        args.rigid_layer_at.iter().map(|word| patches.find(word)).collect::<motet::Result<Vec<_>>>()?;
+    let named = args.rigid_layer_at.iter().map(|word| patches.find(word)).collect::<Result<Vec<_>>>()?;
     Ok(FacetSet::joined(named).unwrap_or_default())
 }
 
@@ -184,7 +163,7 @@ fn frames(
     report: &mut Report,
     threads: Threads,
     console: &Console,
-) -> motet::Result<()> {
+) -> Result<()> {
     let n = plan.times.len();
     let meter = console.meter("moving", Some(n - plan.first_frame));
     let threads = threads.watched(meter.watch());
@@ -224,7 +203,7 @@ struct Position {
 }
 
 /// The velocities by backward difference; zero in the first frame, which has no predecessor.
-fn velocity(before: &Position, time: f64, points: &[Point]) -> motet::Result<Vec<Point>> {
+fn velocity(before: &Position, time: f64, points: &[Point]) -> Result<Vec<Point>> {
     if time > before.time {
         mesh_velocity(&before.points, points, time - before.time)
     } else {
