@@ -100,13 +100,9 @@ fn copy_speed(bytes: usize, threads: &Threads, budget: f64) -> f64 {
     let from = vec![1.0f64; n];
     let mut to = vec![0.0f64; n];
     let part = n.div_ceil(threads.count());
-    let (best, _) = repeat(budget, || match threads.pool() {
-        None => to.copy_from_slice(&from),
-        Some(pool) => pool.scope(|scope| {
-            for (to, from) in to.chunks_mut(part).zip(from.chunks(part)) {
-                scope.spawn(move |_| to.copy_from_slice(from));
-            }
-        }),
+    let (best, _) = repeat(budget, || {
+        let parts = to.chunks_mut(part).zip(from.chunks(part)).collect();
+        threads.each(parts, |(to, from)| to.copy_from_slice(from));
     });
     std::hint::black_box(&to);
     16.0 * n as f64 / best

@@ -21,22 +21,55 @@
 //! | [`moving`] | 9 | the loop: moved, repaired, refined, watched, carried, step after step |
 //!
 //! A module imports only from lower floors; `tests/layers.rs` enforces this.
+//!
+//! | feature | adds | crates |
+//! |---|---|---|
+//! | none | [`base`], [`geometry`], [`mesh`], [`spatial`] | |
+//! | `delaunay` | [`kernel`], [`delaunay`] | |
+//! | `io` | [`io`], without HDF5 and lzma | `quick-xml`, `flate2`, `serde`, ... |
+//! | `suite` | all other modules, and `io` | `serde_json`, `strsim` |
+//! | `elasticity` | motion as an elastic body and by Laplace's equation | `faer` |
+//! | `hdf5` | files in VTKHDF and CGNS | `hdf5-pure` |
+//! | `lzma` | VTK's XML files compressed with lzma | `lzma-rust2` |
+//! | `parallel` | more than one thread | `rayon` |
+//! | `serde` | reports, histories and ids can be stored | `serde` |
+//!
+//! By default all are on. `motet = { version = "0.1", default-features = false, features = ["delaunay"] }`
+//! compiles the triangulations with 14 crates in all.
 
+#![cfg_attr(
+    not(all(feature = "suite", feature = "elasticity", feature = "hdf5")),
+    allow(dead_code, unused_imports, reason = "used by parts of the library that are left out")
+)]
+
+#[cfg(feature = "suite")]
 pub mod algebra;
 pub mod base;
+#[cfg(feature = "suite")]
 pub mod contact;
+#[cfg(feature = "delaunay")]
 pub mod delaunay;
 pub mod geometry;
+#[cfg(feature = "suite")]
 pub mod implant;
+#[cfg(feature = "io")]
 pub mod io;
+#[cfg(feature = "delaunay")]
 pub mod kernel;
 pub mod mesh;
+#[cfg(feature = "suite")]
 pub mod meshing;
+#[cfg(feature = "suite")]
 pub mod motion;
+#[cfg(feature = "suite")]
 pub mod moving;
+#[cfg(feature = "suite")]
 pub mod ops;
+#[cfg(feature = "suite")]
 pub mod preflight;
+#[cfg(feature = "suite")]
 pub mod refine;
+#[cfg(feature = "suite")]
 pub mod remesh;
 pub mod spatial;
 

@@ -9,16 +9,21 @@
 //! | [`Cholesky`] | a factor of such a matrix, kept for many right-hand sides |
 
 mod block;
+#[cfg(feature = "elasticity")]
 mod cholesky;
 mod conjugate_gradients;
+#[cfg(feature = "elasticity")]
 mod dissection;
 mod sparse;
+#[cfg(feature = "elasticity")]
 mod two_level;
 
 pub use block::{Block, Block3};
+#[cfg(feature = "elasticity")]
 pub use cholesky::Cholesky;
 pub use conjugate_gradients::{Preconditioner, Sgs, Solved, Tolerance, conjugate_gradients};
 pub use sparse::SparseMatrix;
+#[cfg(feature = "elasticity")]
 pub use two_level::TwoLevel;
 
 /// An unknown, or its right-hand side: three numbers.

@@ -1,15 +1,15 @@
 //! Lists of lists in two flat arrays (compressed sparse rows).
 
 /// `n` lists of `T`, end to end in one array.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(try_from = "Parts<T>")]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "Parts<T>"))]
 pub struct Csr<T> {
     offsets: Vec<u32>,
     items: Vec<T>,
 }
 
 /// The stored form of a [`Csr`], before validation.
-#[derive(serde::Deserialize)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize))]
 struct Parts<T> {
     offsets: Vec<u32>,
     items: Vec<T>,

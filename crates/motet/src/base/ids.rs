@@ -37,9 +37,9 @@ pub trait Id: Copy + Ord + fmt::Display + fmt::Debug + Default {
 }
 
 /// An id, or none, in the space of an id. None comes last in the order.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
 #[repr(transparent)]
-#[serde(transparent)]
 pub struct MaybeId<I>(I);
 
 impl<I: Id> MaybeId<I> {
@@ -107,12 +107,10 @@ impl<I: Id> fmt::Debug for MaybeId<I> {
 macro_rules! id {
     ($(#[$doc:meta])* $vis:vis $name:ident) => {
         $(#[$doc])*
-        #[derive(
-            Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash,
-            bytemuck::Pod, bytemuck::Zeroable, serde::Serialize, serde::Deserialize,
-        )]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
         #[repr(transparent)]
-        #[serde(transparent)]
         $vis struct $name($vis u32);
 
         impl $name {

@@ -6,11 +6,13 @@ pub(crate) mod four;
 mod ids;
 mod lanewise;
 mod percent;
+mod pool;
 mod reasons;
 mod sets;
 mod splitmix;
 mod threads;
 mod watch;
+#[cfg(feature = "suite")]
 mod words;
 
 pub use csr::Csr;
@@ -26,8 +28,10 @@ pub(crate) use sets::DisjointSets;
 pub(crate) use splitmix::splitmix64;
 pub use threads::Threads;
 pub use watch::{Progress, Watch};
+#[cfg(feature = "suite")]
 #[doc(hidden)]
 pub use words::{NoWords, read_both};
+#[cfg(feature = "suite")]
 pub use words::{Word, Words, nearest};
 
 /// Coordinates of a point, or any other vector in space.

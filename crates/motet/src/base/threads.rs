@@ -3,8 +3,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
+use crate::base::pool::Pool;
 use crate::base::{Error, Result, Watch};
 
 /// The least number of items per thread: fewer are done sooner than they are distributed.
@@ -13,7 +12,7 @@ const MIN_PART: usize = 4096;
 /// A pool of threads that belongs to the caller. Results do not depend on its size.
 #[derive(Debug, Default)]
 pub struct Threads {
-    pool: Option<rayon::ThreadPool>,
+    pool: Option<Pool>,
     watch: Watch,
 }
 
@@ -23,20 +22,19 @@ impl Threads {
         Self::default()
     }
 
-    /// A pool of `n` threads, but no more than the machine has cores; 0 means one per core.
+    /// A pool of `n` threads, but no more than the machine has cores; 0 means one per core. Without the
+    /// feature `parallel`, everything runs on the calling thread.
     ///
     /// # Errors
     /// When the operating system cannot start them.
     pub fn new(n: usize) -> Result<Self> {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let n = if n == 0 { cores } else { n.min(cores) };
-        if n == 1 {
-            return Ok(Self::single());
-        }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
-        pool.map(|pool| Self { pool: Some(pool), ..Self::default() }).map_err(|e| {
-            Error::options(format!("{n} threads could not be started: {e}")).remedy("request fewer threads")
-        })
+        let pool = Pool::new(n).map_err(|cause| {
+            Error::options(format!("{n} threads could not be started: {cause}"))
+                .remedy("request fewer threads")
+        })?;
+        Ok(Self { pool, ..Self::default() })
     }
 
     /// Attaches a watch: work on these threads reports its progress, and stops on request.
@@ -52,14 +50,24 @@ impl Threads {
 
     /// The number of threads.
     pub fn count(&self) -> usize {
-        self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+        self.pool.as_ref().map_or(1, Pool::count)
     }
 
     /// `of(i)` for each `i` below `n`, in order.
     pub fn map<T: Send>(&self, n: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+        self.map_parts(n, MIN_PART, of)
+    }
+
+    /// `of(i)` for each `i` below `n`, in order; a thread takes at least `min_part` of them at a time.
+    pub fn map_parts<T: Send>(
+        &self,
+        n: usize,
+        min_part: usize,
+        of: impl Fn(usize) -> T + Sync + Send,
+    ) -> Vec<T> {
         match &self.pool {
             None => (0..n).map(of).collect(),
-            Some(pool) => pool.install(|| (0..n).into_par_iter().with_min_len(MIN_PART).map(of).collect()),
+            Some(pool) => pool.map(n, min_part, of),
         }
     }
 
@@ -71,28 +79,46 @@ impl Threads {
         length: usize,
         of: impl Fn(&mut S, Range<usize>) -> Vec<T> + Sync + Send,
     ) -> Vec<T> {
-        match &self.pool {
-            None => of(&mut S::default(), 0..n),
-            Some(pool) => pool.install(|| {
-                let runs =
-                    (0..n.div_ceil(length)).into_par_iter().map(|k| k * length..n.min((k + 1) * length));
-                let parts: Vec<Vec<T>> = runs.map_init(S::default, of).collect();
-                parts.into_iter().flatten().collect()
-            }),
-        }
+        let Some(pool) = &self.pool else {
+            return of(&mut S::default(), 0..n);
+        };
+        let runs = (0..n).step_by(length).map(|start| start..n.min(start + length)).collect();
+        pool.in_ranges(runs, of).into_iter().flatten().collect()
     }
 
     /// Applies `of` to each of a few expensive things; the results are in order.
     pub fn each<T: Send, U: Send>(&self, things: Vec<T>, of: impl Fn(T) -> U + Sync + Send) -> Vec<U> {
         match &self.pool {
             None => things.into_iter().map(of).collect(),
-            Some(pool) => pool.install(|| things.into_par_iter().map(of).collect()),
+            Some(pool) => pool.each(things, of),
         }
     }
 
-    /// The pool, where there is more than one thread. Where it is `None`, use a plain loop, since a parallel
-    /// iterator outside a pool would start the global one.
-    pub fn pool(&self) -> Option<&rayon::ThreadPool> {
-        self.pool.as_ref()
+    /// Whether `is_such` is true of any of these things; the others need not be looked at.
+    pub fn any<T: Send>(&self, things: Vec<T>, is_such: impl Fn(T) -> bool + Sync + Send) -> bool {
+        match &self.pool {
+            None => things.into_iter().any(is_such),
+            Some(pool) => pool.any(things, is_such),
+        }
+    }
+
+    /// The results of two calls, which may run at the same time.
+    pub fn join<A: Send, B: Send>(
+        &self,
+        first: impl FnOnce() -> A + Send,
+        second: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        match &self.pool {
+            None => (first(), second()),
+            Some(pool) => pool.join(first, second),
+        }
+    }
+
+    /// Runs `work` once on each thread, the calling one included.
+    pub fn on_all(&self, work: impl Fn() + Sync) {
+        match &self.pool {
+            None => work(),
+            Some(pool) => pool.on_all(work),
+        }
     }
 }

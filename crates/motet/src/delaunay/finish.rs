@@ -25,10 +25,7 @@ pub(super) fn finish(store: Store, vertex_to_id: &[u32], threads: &Threads) -> F
     let tet = |link: u32| slot_to_tet[(link >> 2) as usize];
     let tets = || compact(vertices, &slot_to_tet, |[a, b, c, d]| [id(a), id(b), id(c), id(d)]);
     let neighbors = || compact(links, &slot_to_tet, |[a, b, c, d]| [tet(a), tet(b), tet(c), tet(d)]);
-    let (tets, neighbors) = match threads.pool() {
-        Some(pool) => pool.join(tets, neighbors),
-        None => (tets(), neighbors()),
-    };
+    let (tets, neighbors) = threads.join(tets, neighbors);
     Finished { tets, neighbors, hull }
 }
 

@@ -1,7 +1,5 @@
 //! Quality statistics over all tets of a mesh: what the worst tet alone does not show.
 
-use serde::Serialize;
-
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::quality::{eas, mean_ratio};
 use crate::geometry::vector::in_range;
@@ -11,7 +9,8 @@ use crate::mesh::{Mesh, OrientedTets};
 /// are no tets.
 ///
 /// A percentile is the EAS at that fraction of the way from the worst to the best tet, rounded down to a tet.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Qualities {
     /// The worst EAS.
     pub worst: f64,

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
-
 use crate::base::{CellId, Point, VertexId};
 use crate::geometry::vector::{distance, in_range};
 use crate::geometry::{quality, triangle};
@@ -18,7 +16,8 @@ use crate::mesh::{
 pub const BAD_EAS: f64 = 0.2;
 
 /// The summary of a mesh in numbers. Field names are those of `motet info --json`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Summary {
     /// Number of points.
     pub points: usize,
@@ -43,7 +42,7 @@ pub struct Summary {
     /// Shape of the tets (of quadratic ones, by their corners); `None` if there are none.
     pub quality: Option<QualitySummary>,
     /// Quadratic volume cells by their Jacobian; `None` if there are none.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub curved: Option<CurvedSummary>,
     /// Number of volume cells that are inverted or flat: their volume, for tets as oriented by their
     /// neighbours, is not positive, or they are quadratic and folded inside.
@@ -58,7 +57,8 @@ pub struct Summary {
 }
 
 /// The volume cells of one label.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RegionSummary {
     /// Number of tets among them.
     pub tets: usize,
@@ -69,7 +69,8 @@ pub struct RegionSummary {
 }
 
 /// The surface cells of one label.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PatchSummary {
     /// Number of triangles that they are divided into.
     pub triangles: usize,
@@ -82,7 +83,8 @@ pub struct PatchSummary {
 }
 
 /// Shape of the triangles of a surface.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TriangleSummary {
     /// The shortest, the median and the longest edge length.
     pub edges: [f64; 3],
@@ -97,7 +99,8 @@ pub struct TriangleSummary {
 }
 
 /// The boundary of the volume cells.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BoundarySummary {
     /// Number of facets.
     pub facets: usize,
@@ -106,7 +109,8 @@ pub struct BoundarySummary {
 }
 
 /// Shape of the tets.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct QualitySummary {
     /// Equi-angle quality.
     pub eas: EasSummary,
@@ -121,7 +125,8 @@ pub struct QualitySummary {
 }
 
 /// Equi-angle quality of the tets.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EasSummary {
     /// The worst EAS.
     pub min: f64,
@@ -142,7 +147,8 @@ pub struct EasSummary {
 }
 
 /// The smallest and the largest value.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Range {
     /// The smallest.
     pub min: f64,
@@ -151,7 +157,8 @@ pub struct Range {
 }
 
 /// The smallest value and the mean.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MinMean {
     /// The smallest.
     pub min: f64,

@@ -1,6 +1,5 @@
 //! The certificate: the quality of the mesh that a motion returned, and what it took.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::base::{CellId, Point, Threads, VertexId, percent};
@@ -125,10 +124,7 @@ pub(crate) fn measure(check: &Check, points: &[Point], threads: &Threads) -> Qua
     let n = check.corners.len();
     let chunk = |start: usize| measure_range(check, points, start..(start + CHUNK).min(n));
     let starts: Vec<usize> = (0..n).step_by(CHUNK).collect();
-    let parts: Vec<Measured> = match threads.pool() {
-        None => starts.into_iter().map(chunk).collect(),
-        Some(pool) => pool.install(|| starts.into_par_iter().map(chunk).collect()),
-    };
+    let parts = threads.each(starts, chunk);
     let (mut low, mut eas, mut ratios) = (Vec::new(), Vec::with_capacity(n), 0.0);
     let all = parts.into_iter().fold(Quality::default(), |all, measured| {
         let part = measured.quality;

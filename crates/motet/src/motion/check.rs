@@ -1,8 +1,6 @@
 //! Which cells a motion has inverted, relative to the reference: linear ones by exact signs at their corners,
 //! quadratic ones by bounds of the determinant of their Jacobian.
 
-use rayon::prelude::*;
-
 use crate::base::{CellId, Point, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::volume_6;
@@ -104,10 +102,7 @@ impl Check {
             }
             share == 0.0 || least(i, points) >= share * least(i, start)
         };
-        match threads.pool() {
-            None => (0..self.curved.len()).all(stays_upright),
-            Some(pool) => pool.install(|| (0..self.curved.len()).into_par_iter().all(stays_upright)),
-        }
+        !threads.any((0..self.curved.len()).collect(), |i| !stays_upright(i))
     }
 
     /// The number of cells with an inverted or flat part, now and in the reference.
@@ -131,23 +126,15 @@ impl Check {
             let first = (i * CHUNK) as u32;
             (first..).zip(tets).filter(|&(i, tet)| pick(i, *tet)).map(|(i, _)| i).collect()
         };
-        let found: Vec<Vec<u32>> = match threads.pool() {
-            None => self.corners.tets.chunks(CHUNK).enumerate().map(chunk).collect(),
-            Some(pool) => {
-                pool.install(|| self.corners.tets.par_chunks(CHUNK).enumerate().map(chunk).collect())
-            }
-        };
-        found.into_iter().flatten().collect()
+        let chunks = self.corners.tets.chunks(CHUNK).enumerate().collect();
+        threads.each(chunks, chunk).into_iter().flatten().collect()
     }
 
     fn any(&self, threads: &Threads, pick: impl Fn(u32, [VertexId; 4]) -> bool + Sync) -> bool {
         let chunk = |(i, tets): (usize, &[[VertexId; 4]])| {
             ((i * CHUNK) as u32..).zip(tets).any(|(i, tet)| pick(i, *tet))
         };
-        match threads.pool() {
-            None => self.corners.tets.chunks(CHUNK).enumerate().any(chunk),
-            Some(pool) => pool.install(|| self.corners.tets.par_chunks(CHUNK).enumerate().any(chunk)),
-        }
+        threads.any(self.corners.tets.chunks(CHUNK).enumerate().collect(), chunk)
     }
 }
 

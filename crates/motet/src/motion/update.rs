@@ -100,20 +100,16 @@ impl WeightTable {
             add_means(&from[vertices], nodes, weights, bytemuck::cast_slice(table), out);
         };
         let part = out.len().div_ceil(PARTS * threads.count()).max(MIN_PART);
-        let Some(pool) = threads.pool().filter(|_| part < out.len()) else {
+        if threads.count() == 1 || part >= out.len() {
             return some(0, &displacements.table(), out);
-        };
+        }
         let parts = Mutex::new(out.chunks_mut(part).enumerate());
         let next = || parts.lock().ok()?.next();
-        let work = || {
+        threads.on_all(|| {
             let table = displacements.table();
             while let Some((i, out)) = next() {
                 some(i * part, &table, out);
             }
-        };
-        pool.in_place_scope(|scope| {
-            (1..threads.count()).for_each(|_| scope.spawn(|_| work()));
-            work();
         });
     }
 

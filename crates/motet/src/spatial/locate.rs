@@ -10,7 +10,6 @@ use crate::base::{Point, TetId, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::triangle;
 use crate::geometry::vector::{dot, sub};
-use rayon::prelude::*;
 
 /// Stands for no tet in an array of neighbours: the facet lies on the hull.
 pub const OUTSIDE: TetId = TetId(u32::MAX);
@@ -93,10 +92,7 @@ impl<'a> Locator<'a> {
             };
             ids.iter().map(locate).collect()
         };
-        let chunks: Vec<Vec<Located>> = match threads.pool() {
-            Some(pool) => pool.install(|| order.par_chunks(CHUNK).map(chunk).collect()),
-            None => order.chunks(CHUNK).map(chunk).collect(),
-        };
+        let chunks = threads.each(order.chunks(CHUNK).collect(), chunk);
         let mut located = vec![Located::Inside(TetId(0)); queries.len()];
         for (&id, found) in order.iter().zip(chunks.into_iter().flatten()) {
             located[id as usize] = found;

@@ -1,69 +1,17 @@
-//! Builds a tree of groups and arrays, and the bytes of a file with it.
+//! The bytes of a file that holds a tree of groups and arrays.
 
 use hdf5_pure::{AttrValue, DatasetBuilder, FileBuilder, FinishedGroup, GroupBuilder, LibVer, MaxExtent};
 
+use super::tree::{Attribute, Node, Storage};
 use crate::base::{Error, Result};
 use crate::mesh::Values;
-
-/// The value of an attribute.
-#[derive(Clone, Debug)]
-pub(in crate::io) enum Attribute {
-    /// A text without padding.
-    Text(String),
-    /// A text in a field of the given number of bytes, padded with zeros.
-    Padded(String, u32),
-    /// 64-bit integers.
-    Ints(Vec<i64>),
-    /// 32-bit integers.
-    ShortInts(Vec<i32>),
-}
-
-/// Storage of an array in the file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::io) enum Storage {
-    /// Contiguous and uncompressed.
-    Plain,
-    /// In chunks, so that rows can be appended.
-    Growing,
-    /// In chunks, shuffled and compressed with zlib; rows can be appended.
-    Zlib,
-}
 
 /// Approximate size of a chunk: small enough for reading a few rows, large enough for zlib.
 const CHUNK_BYTES: usize = 1 << 18;
 /// Compression level from 0 to 9; higher levels take several times as long and save a few percent.
 const ZLIB_LEVEL: u32 = 4;
 
-/// A group for writing.
-#[derive(Debug, Default)]
-pub(in crate::io) struct Node {
-    name: String,
-    attributes: Vec<(String, Attribute)>,
-    arrays: Vec<(String, Values, Vec<usize>, Storage)>,
-    groups: Vec<Node>,
-}
-
 impl Node {
-    /// An empty group with this name; the name of the root is ignored.
-    pub(in crate::io) fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), ..Self::default() }
-    }
-
-    /// Adds an attribute.
-    pub(in crate::io) fn attribute(&mut self, name: &str, value: Attribute) {
-        self.attributes.push((name.to_owned(), value));
-    }
-
-    /// Adds an array with this shape.
-    pub(in crate::io) fn array(&mut self, name: &str, values: Values, shape: &[usize], storage: Storage) {
-        self.arrays.push((name.to_owned(), values, shape.to_vec(), storage));
-    }
-
-    /// Adds a group.
-    pub(in crate::io) fn group(&mut self, group: Self) {
-        self.groups.push(group);
-    }
-
     /// The bytes of a file with this group as its root.
     pub(in crate::io) fn into_file(self) -> Result<Vec<u8>> {
         self.into(FileBuilder::new())

@@ -1,19 +1,14 @@
 //! Compression of single blocks in VTK's XML files.
 
-use std::io::Read as _;
-
 use flate2::{Compress, Decompress, FlushCompress, FlushDecompress, Status};
-use lzma_rust2::{CheckType, XzOptions, XzReader, XzWriter};
 
+use super::xz;
 use crate::base::{Error, Result};
 use crate::io::Compression;
 
 /// VTK uses level 5 of zlib; this level of zlib-rs gives files of the same size (within a percent on meshes)
 /// in less time.
 const ZLIB_LEVEL: u32 = 5;
-const XZ_PRESET: u32 = 5;
-/// Memory limit: blocks hold some ten thousand bytes, and the strongest preset of xz needs 65 MiB.
-const XZ_MEMORY_KIB: u32 = 128 << 10;
 
 /// VTK's name of a compression in the attribute `compressor`; `None` for no compression.
 pub(super) fn vtk_name(compression: Compression) -> Option<&'static str> {
@@ -78,20 +73,10 @@ impl Decompressor {
             (None, Compression::Lz4) => {
                 lz4_flex::block::decompress_into(block, out).map_err(|e| e.to_string())?
             }
-            (None, Compression::Lzma) => decompress_xz(block, out)?,
+            (None, Compression::Lzma) => xz::decompress(block, out)?,
             (None, _) => return Err("the file is not compressed".into()),
         };
         if n == out.len() { Ok(()) } else { Err(format!("expected {} bytes, found {n}", out.len())) }
-    }
-}
-
-fn decompress_xz(block: &[u8], out: &mut [u8]) -> Result<usize, String> {
-    let mut reader = XzReader::new_mem_limit(block, false, XZ_MEMORY_KIB);
-    reader.read_exact(out).map_err(|e| e.to_string())?;
-    match reader.read(&mut [0]) {
-        Ok(0) => Ok(out.len()),
-        Ok(_) => Err("it contains more data than declared".into()),
-        Err(e) => Err(e.to_string()),
     }
 }
 
@@ -119,7 +104,7 @@ impl Compressor {
                 out.truncate(start + n);
                 Ok(())
             }
-            (None, Compression::Lzma) => compress_xz(block, out),
+            (None, Compression::Lzma) => xz::compress(block, out).map_err(|e| failed(&e)),
             (None, Compression::None | Compression::Zlib) => {
                 out.extend_from_slice(block);
                 Ok(())
@@ -139,17 +124,6 @@ fn compress_zlib(zlib: &mut Compress, block: &[u8], out: &mut Vec<u8>) -> Result
             return Ok(());
         }
     }
-}
-
-fn compress_xz(block: &[u8], out: &mut Vec<u8>) -> Result<()> {
-    let mut options = XzOptions::with_preset(XZ_PRESET);
-    options.set_check_sum_type(CheckType::Crc32);
-    // A dictionary larger than the block has no use.
-    options.lzma_options.dict_size = (block.len() as u32).next_power_of_two().max(1 << 12);
-    let mut writer = XzWriter::new(out, options).map_err(|e| failed(&e))?;
-    std::io::Write::write_all(&mut writer, block).map_err(|e| failed(&e))?;
-    writer.finish().map_err(|e| failed(&e))?;
-    Ok(())
 }
 
 fn failed(error: &dyn std::fmt::Display) -> Error {

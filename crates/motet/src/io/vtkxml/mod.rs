@@ -9,7 +9,7 @@
 //! |---|---|
 //! | `document` | the XML as a tree, up to the appended data |
 //! | `payload` | one array's bytes: header and blocks |
-//! | `codec` | zlib, lz4, xz |
+//! | `codec`, `xz` | zlib, lz4; xz |
 //! | `tail` | large raw data, left in the file until an array is read |
 //! | `file` | layout of the file; arrays as values |
 //! | `pieces`, `parts` | pieces of a file, and files that refer to others, joined |
@@ -28,6 +28,7 @@ mod tail;
 mod vtp;
 mod vtu;
 mod writer;
+mod xz;
 
 use crate::base::{Error, Result};
 use crate::io::format::{Format, Input, Notes};

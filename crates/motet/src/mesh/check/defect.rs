@@ -2,17 +2,16 @@
 
 use std::fmt;
 
-use serde::Serialize;
-
 use crate::base::{CellId, Point, VertexId};
 use crate::geometry::vector::in_range;
 
 macro_rules! defect_kinds {
     ($($variant:ident = $name:literal, $meaning:literal;)*) => {
         /// A kind of defect.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
         pub enum DefectKind {
-            $(#[doc = $meaning] #[serde(rename = $name)] $variant,)*
+            $(#[doc = $meaning] #[cfg_attr(feature = "serde", serde(rename = $name))] $variant,)*
         }
 
         impl DefectKind {
@@ -56,23 +55,25 @@ defect_kinds! {
 const MAX_EXAMPLES: usize = 5;
 
 /// Where a defect is.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Example {
     /// The cells concerned.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub cells: Vec<CellId>,
     /// The vertices concerned.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub vertices: Vec<VertexId>,
     /// The place in space; `None` where it is not finite.
     pub at: Option<Point>,
 }
 
 /// A defect of one kind: how often it occurs, and the first few places.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Defect {
     /// The kind of defect.
-    #[serde(rename = "name")]
+    #[cfg_attr(feature = "serde", serde(rename = "name"))]
     pub kind: DefectKind,
     /// Number of occurrences.
     pub count: usize,

@@ -1,7 +1,5 @@
 //! The quadratic volume cells of a mesh, and the way each kind of them is numbered.
 
-use serde::Serialize;
-
 use crate::base::{CellId, Csr, Point, VertexId};
 use crate::geometry::vector::in_range;
 use crate::mesh::curved::jacobian::{
@@ -22,7 +20,8 @@ pub struct CurvedCells {
 }
 
 /// The summary of the quadratic volume cells of a mesh.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CurvedSummary {
     /// Number of quadratic volume cells.
     pub cells: usize,

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
-
 use super::rule::is_averageable;
 use super::{Rule, Rules};
 use crate::base::VertexId;
@@ -11,7 +9,8 @@ use crate::geometry::tet;
 use crate::mesh::{Field, Mesh, Values};
 
 /// The range and the integrals of an array of real numbers before and after a change.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FieldLedger {
     /// The name of the array.
     pub name: String,
@@ -29,8 +28,8 @@ pub struct FieldLedger {
 }
 
 /// Where an array has its rows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum On {
     /// One row for each point; values are linear in each tet.
     Points,
@@ -40,7 +39,8 @@ pub enum On {
 
 /// The integral of an array over the tets of one region. Tets of either orientation count with positive
 /// volume.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FieldIntegral {
     /// The label of the region; 0 for tets without one.
     pub region: i32,

@@ -1,9 +1,8 @@
 //! How well the volumes of old and new tets match, region by region.
 
-use serde::{Deserialize, Serialize};
-
 /// What a change did to volumes, and to vertices that ended outside the old tets.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ledger {
     /// One entry for each region with a changed tet, by rising label.
     pub regions: Vec<RegionLedger>,
@@ -16,7 +15,8 @@ pub struct Ledger {
 
 /// The volumes of one region, in the cube of the unit of length. Tets of either orientation count as
 /// positive.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RegionLedger {
     /// The label of the region.
     pub region: i32,

@@ -30,8 +30,6 @@ pub use origins::{Origin, Origins};
 pub use row::{Row, Rows};
 pub use rule::{Carry, Rule, Rules};
 
-use serde::{Deserialize, Serialize};
-
 use crate::base::{CellId, VertexId};
 
 /// What a change did to a mesh, in arrays: where everything came from, and how well volumes match.
@@ -55,7 +53,8 @@ use crate::base::{CellId, VertexId};
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct History {
     /// Where each vertex of the new mesh came from.
     pub vertices: Origins<VertexId>,

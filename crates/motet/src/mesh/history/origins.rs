@@ -1,7 +1,5 @@
 //! Where each vertex, or each cell, of a new mesh came from.
 
-use serde::{Deserialize, Serialize};
-
 use super::row::{Row, Rows, Signs};
 use crate::base::{Error, Id, Result};
 
@@ -11,9 +9,12 @@ const MAX_ROW_LENGTH: usize = 400;
 
 /// For each entity of the new mesh, a vertex or a cell, the old entity that it is, or a row of old entities
 /// with shares.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Parts<I>")]
-#[serde(bound(serialize = "I: Id + Serialize", deserialize = "I: Id + Deserialize<'de>"))]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "Parts<I>"))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "I: Id + serde::Serialize", deserialize = "I: Id + serde::Deserialize<'de>"))
+)]
 pub struct Origins<I> {
     n_old: usize,
     /// The old id of each new entity that was kept; `NONE` if it changed.
@@ -21,7 +22,7 @@ pub struct Origins<I> {
     /// A row for each new entity that changed, in their order.
     changed: Rows<I>,
     /// A further row, for quadratic fields, for some of the entities that changed.
-    #[serde(skip_serializing_if = "Rows::is_empty")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Rows::is_empty"))]
     quadratic: Rows<I>,
 }
 
@@ -35,13 +36,16 @@ pub enum Origin<'a, I> {
 }
 
 /// The stored parts of [`Origins`], not yet validated.
-#[derive(Deserialize)]
-#[serde(bound(deserialize = "I: Id + Deserialize<'de>"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize),
+    serde(bound(deserialize = "I: Id + serde::Deserialize<'de>"))
+)]
 struct Parts<I> {
     n_old: usize,
     kept: Vec<I>,
     changed: Rows<I>,
-    #[serde(default)]
+    #[cfg_attr(feature = "serde", serde(default))]
     quadratic: Rows<I>,
 }
 

@@ -1,16 +1,14 @@
 //! The rows of entities that changed: old entities with shares, and the main one among them.
 
-use serde::{Deserialize, Serialize};
-
 use crate::base::{Csr, Error, Id, Result};
 
 /// Tolerance on the sum of the shares of a row, which must be 1.
 const SUM_TOLERANCE: f64 = 1e-9;
 
 /// For each entity that changed, the old entities that it came from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Parts<I>")]
-#[serde(bound(deserialize = "I: Id + Deserialize<'de>"))]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "Parts<I>"))]
+#[cfg_attr(feature = "serde", serde(bound(deserialize = "I: Id + serde::Deserialize<'de>")))]
 pub struct Rows<I> {
     /// The new ids, in rising order.
     ids: Vec<I>,
@@ -23,7 +21,7 @@ pub struct Rows<I> {
 }
 
 /// The stored parts of [`Rows`], not yet validated.
-#[derive(Deserialize)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize))]
 struct Parts<I> {
     ids: Vec<I>,
     from: Csr<I>,

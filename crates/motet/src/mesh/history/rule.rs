@@ -2,15 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
-
 use crate::base::{Error, Result};
 use crate::mesh::{Field, Mesh, Values};
 
 /// How the values of a field are transferred where the mesh changed. Where it did not, they are copied bit
 /// for bit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Rule {
     /// For points: by the [row for quadratic fields](super::Origins::quadratic) if there is one, otherwise
     /// linear in each old tet. Fields that are linear in space are reproduced to the last digits. Other
@@ -46,8 +44,8 @@ impl Rule {
 }
 
 /// Rules for arrays by their names; all other arrays get [`Rule::of_points`] and [`Rule::of_cells`].
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Rules {
     /// The rules of point arrays.
     pub points: BTreeMap<String, Rule>,
@@ -56,8 +54,8 @@ pub struct Rules {
 }
 
 /// A user's choice of how an array is transferred, on points and on cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Carry {
     /// [`Rule::Interpolate`] on points, [`Rule::Conserve`] on cells.
     Mean,

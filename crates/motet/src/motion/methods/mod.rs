@@ -8,11 +8,14 @@ mod bodies;
 mod delaunay;
 mod guided;
 mod inverse_distance;
+#[cfg(feature = "elasticity")]
 mod linear;
 mod radial;
 
 use std::fmt::Debug;
 
+#[cfg(not(feature = "elasticity"))]
+use crate::base::Error;
 use crate::base::{Point, Result, Threads, VertexId};
 use crate::mesh::{Boundary, Mesh};
 use crate::motion::graph::Walls;
@@ -30,8 +33,15 @@ pub(crate) fn of(reference: &mut Reference<'_>) -> Result<Box<dyn Prepare>> {
         Method::Delaunay => Box::new(delaunay::Delaunay::new(reference)),
         Method::Bodies(sets) => Box::new(bodies::Bodies::new(sets, reference)?),
         Method::Guided => Box::new(guided::Guided::new(reference)),
+        #[cfg(feature = "elasticity")]
         Method::Elastic(law) => Box::new(*law),
+        #[cfg(feature = "elasticity")]
         Method::Laplace(law) => Box::new(linear::LaplaceEquation::new(law, reference)),
+        #[cfg(not(feature = "elasticity"))]
+        Method::Elastic(_) | Method::Laplace(_) => {
+            return Err(Error::options("motet was built without the methods `elastic` and `laplace`")
+                .remedy("build it with the feature `elasticity`, or choose another method"));
+        }
         Method::InverseDistance => Box::new(inverse_distance::InverseDistance::new(reference)),
         Method::Radial => Box::new(radial::Radial),
     })

@@ -10,7 +10,6 @@ mod pairs;
 mod search;
 
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 use crate::base::{MaybeId, Point, Threads, TriangleId, VertexId};
 use nearby::Nearby;
@@ -123,7 +122,7 @@ impl NearestTriangle {
         };
         let runs = order.chunks(RUN).map(|order| SearchRun { tree: &self.tree, points, guesses, order });
         let arch = Arch::new();
-        let Some(pool) = threads.pool() else {
+        if threads.count() == 1 {
             // Each run is stored at once, so that the next one reuses its memory.
             let mut found = vec![None; points.len()];
             for run in runs {
@@ -131,9 +130,8 @@ impl NearestTriangle {
                 run.order.iter().zip(answers).for_each(|(&i, answer)| found[i as usize] = answer);
             }
             return found;
-        };
-        let runs: Vec<_> = runs.collect();
-        let answers: Vec<_> = pool.install(|| runs.par_iter().map(|&run| arch.dispatch(run)).collect());
+        }
+        let answers = threads.each(runs.collect(), |run| arch.dispatch(run));
         let mut place = vec![0u32; points.len()];
         order.iter().zip(0..).for_each(|(&i, k)| place[i as usize] = k);
         threads.map(points.len(), |i| answers[place[i] as usize / RUN][place[i] as usize % RUN])
@@ -157,17 +155,11 @@ impl NearestTriangle {
         let (reach, arch, n) = (Reach::new(start), Arch::new(), self.tree.oriented.len());
         let run = |state: &mut T, eights| {
             let pair = |i: u32, j: u32, bound: f64| pair(state, i, j, bound);
-            arch.dispatch(PairSearch { from: &self.tree, to: &other.tree, eights, reach: &reach, pair })
+            let search = PairSearch { from: &self.tree, to: &other.tree, eights, reach: &reach, pair };
+            Vec::from_iter(arch.dispatch(search))
         };
         let nearer = |x: (f64, u32, u32), y| if y < x { y } else { x };
-        match threads.pool() {
-            None => run(&mut T::default(), 0..n),
-            Some(pool) => pool.install(|| {
-                let runs = (0..n.div_ceil(EIGHTS_PER_TASK)).into_par_iter();
-                let runs = runs.map(|k| k * EIGHTS_PER_TASK..n.min((k + 1) * EIGHTS_PER_TASK));
-                runs.map_init(T::default, run).flatten().reduce_with(nearer)
-            }),
-        }
+        threads.in_runs(n, EIGHTS_PER_TASK, run).into_iter().reduce(nearer)
     }
 }
 

@@ -5,7 +5,6 @@
 //! Faloutsos 1993, *On packing R-trees*). When points move, one pass from the leaves to the root refits it.
 
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 use super::eights::{Boxes, Triangles, larger, smaller};
 use super::oriented::OrientedBoxes;
@@ -172,19 +171,14 @@ impl Packed {
             arch.dispatch(FitLeaves { triangles, framed: &self.framed, leaves, is_sound, oriented, boxes });
         };
         let boxes = &mut self.boxes[self.levels[0]..];
-        let Some(pool) = threads.pool() else {
-            return fit(&self.triangles, &mut self.leaves, &mut self.is_sound, &mut self.oriented, boxes);
-        };
-        let (leaves, is_sound) = (
-            self.leaves.par_chunks_mut(64 * BOXES_PER_TASK),
-            self.is_sound.par_chunks_mut(64 * BOXES_PER_TASK),
-        );
-        let (oriented, boxes) =
-            (self.oriented.par_chunks_mut(8 * BOXES_PER_TASK), boxes.par_chunks_mut(BOXES_PER_TASK));
-        let triangles = self.triangles.par_chunks(512 * BOXES_PER_TASK);
-        let parts = triangles.zip(leaves).zip(is_sound).zip(oriented).zip(boxes);
-        pool.install(|| {
-            parts.for_each(|((((t, leaves), is_sound), oriented), b)| fit(t, leaves, is_sound, oriented, b))
+        let per_task = if threads.count() == 1 { boxes.len().max(1) } else { BOXES_PER_TASK };
+        let leaves = self.leaves.chunks_mut(64 * per_task);
+        let is_sound = self.is_sound.chunks_mut(64 * per_task);
+        let oriented = self.oriented.chunks_mut(8 * per_task);
+        let triangles = self.triangles.chunks(512 * per_task);
+        let parts = triangles.zip(leaves).zip(is_sound).zip(oriented).zip(boxes.chunks_mut(per_task));
+        threads.each(parts.collect(), |((((triangles, leaves), is_sound), oriented), boxes)| {
+            fit(triangles, leaves, is_sound, oriented, boxes);
         });
     }
 
@@ -344,10 +338,7 @@ fn spatial_order(points: &[Point], triangles: &[[VertexId; 3]], threads: &Thread
         middle_of_longest(corners).map(|x| ordered(x.to_bits()))
     };
     let mut items = threads.map(triangles.len(), |i| (middle(&triangles[i]), i as u32));
-    match threads.pool() {
-        None => halve(&mut items, None, false),
-        Some(pool) => pool.install(|| halve(&mut items, None, true)),
-    }
+    halve(&mut items, None, threads);
     items.into_iter().map(|item| item.1).collect()
 }
 
@@ -379,7 +370,7 @@ const MAX_SERIAL_ITEMS: usize = 2048;
 ///
 /// On every other level the box is the one that the previous halving left, which saves 4 % of the time of a
 /// build.
-fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>, is_shared: bool) {
+fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>, threads: &Threads) {
     if items.len() <= 8 {
         return;
     }
@@ -402,11 +393,11 @@ fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>, is_shared: bool) {
     let (mut below, mut above) = (high, low);
     (below[axis], above[axis]) = (cut, cut);
     let is_known = known.is_none();
-    let is_shared = is_shared && left.len() > MAX_SERIAL_ITEMS;
-    let mut left = || halve(left, is_known.then_some([low, below]), is_shared);
-    let mut right = || halve(right, is_known.then_some([above, high]), is_shared);
+    let is_shared = left.len() > MAX_SERIAL_ITEMS;
+    let mut left = || halve(left, is_known.then_some([low, below]), threads);
+    let mut right = || halve(right, is_known.then_some([above, high]), threads);
     if is_shared {
-        rayon::join(left, right);
+        threads.join(left, right);
     } else {
         left();
         right();

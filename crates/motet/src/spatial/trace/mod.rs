@@ -112,9 +112,5 @@ const CHUNK: usize = 64;
 
 /// Applies `of` to each item; results are in the order of the items.
 fn map<T: Sync, U: Send>(items: &[T], threads: &Threads, of: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
-    use rayon::prelude::*;
-    match threads.pool() {
-        Some(pool) => pool.install(|| items.par_iter().with_min_len(CHUNK).map(of).collect()),
-        None => items.iter().map(of).collect(),
-    }
+    threads.map_parts(items.len(), CHUNK, |i| of(&items[i]))
 }

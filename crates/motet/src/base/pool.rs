@@ -1,0 +1,135 @@
+//! A pool of threads: those of `rayon` with the feature `parallel`, none without.
+
+#[cfg(feature = "parallel")]
+pub(super) use parallel::Pool;
+#[cfg(not(feature = "parallel"))]
+pub(super) use serial::Pool;
+
+#[cfg(feature = "parallel")]
+mod parallel {
+    use std::ops::Range;
+
+    use rayon::prelude::*;
+
+    /// Two threads or more. Its methods run on these, and return when all work is done.
+    #[derive(Debug)]
+    pub(in crate::base) struct Pool(rayon::ThreadPool);
+
+    impl Pool {
+        /// Starts `n` threads; `None` if a pool has no use.
+        ///
+        /// # Errors
+        /// The cause, if the operating system does not start them.
+        pub(in crate::base) fn new(n: usize) -> Result<Option<Self>, String> {
+            if n < 2 {
+                return Ok(None);
+            }
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
+            pool.map(|pool| Some(Self(pool))).map_err(|e| e.to_string())
+        }
+
+        pub(in crate::base) fn count(&self) -> usize {
+            self.0.current_num_threads()
+        }
+
+        /// `of(i)` for each `i` below `n`, in order; a thread takes at least `min_part` at a time.
+        pub(in crate::base) fn map<T: Send>(
+            &self,
+            n: usize,
+            min_part: usize,
+            of: impl Fn(usize) -> T + Sync + Send,
+        ) -> Vec<T> {
+            self.0.install(|| (0..n).into_par_iter().with_min_len(min_part).map(of).collect())
+        }
+
+        /// The results for each of some ranges, in order, with a state that ranges of one thread share.
+        pub(in crate::base) fn in_ranges<S: Default, T: Send>(
+            &self,
+            ranges: Vec<Range<usize>>,
+            of: impl Fn(&mut S, Range<usize>) -> T + Sync + Send,
+        ) -> Vec<T> {
+            self.0.install(|| ranges.into_par_iter().map_init(S::default, of).collect())
+        }
+
+        pub(in crate::base) fn each<T: Send, U: Send>(
+            &self,
+            items: Vec<T>,
+            of: impl Fn(T) -> U + Sync + Send,
+        ) -> Vec<U> {
+            self.0.install(|| items.into_par_iter().map(of).collect())
+        }
+
+        pub(in crate::base) fn any<T: Send>(
+            &self,
+            items: Vec<T>,
+            is_such: impl Fn(T) -> bool + Sync + Send,
+        ) -> bool {
+            self.0.install(|| items.into_par_iter().any(is_such))
+        }
+
+        pub(in crate::base) fn join<A: Send, B: Send>(
+            &self,
+            first: impl FnOnce() -> A + Send,
+            second: impl FnOnce() -> B + Send,
+        ) -> (A, B) {
+            self.0.join(first, second)
+        }
+
+        /// Runs `work` once on the calling thread, and at the same time on all threads but one of the pool.
+        pub(in crate::base) fn on_all(&self, work: impl Fn() + Sync) {
+            let work = &work;
+            self.0.in_place_scope(|scope| {
+                (1..self.count()).for_each(|_| scope.spawn(|_| work()));
+                work();
+            });
+        }
+    }
+}
+
+#[cfg(not(feature = "parallel"))]
+mod serial {
+    use std::ops::Range;
+
+    /// A pool that cannot be made: everything runs on the calling thread.
+    #[derive(Debug)]
+    pub(in crate::base) enum Pool {}
+
+    #[allow(clippy::unused_self, reason = "there is no such value")]
+    impl Pool {
+        pub(in crate::base) fn new(_: usize) -> Result<Option<Self>, String> {
+            Ok(None)
+        }
+
+        pub(in crate::base) fn count(&self) -> usize {
+            match *self {}
+        }
+
+        pub(in crate::base) fn map<T>(&self, _: usize, _: usize, _: impl Fn(usize) -> T) -> Vec<T> {
+            match *self {}
+        }
+
+        pub(in crate::base) fn in_ranges<S, T>(
+            &self,
+            _: Vec<Range<usize>>,
+            _: impl Fn(&mut S, Range<usize>) -> T,
+        ) -> Vec<T> {
+            match *self {}
+        }
+
+        pub(in crate::base) fn each<T, U>(&self, _: Vec<T>, _: impl Fn(T) -> U) -> Vec<U> {
+            match *self {}
+        }
+
+        pub(in crate::base) fn any<T>(&self, _: Vec<T>, _: impl Fn(T) -> bool) -> bool {
+            match *self {}
+        }
+
+        pub(in crate::base) fn join<A, B>(&self, _: impl FnOnce() -> A, _: impl FnOnce() -> B) -> (A, B) {
+            match *self {}
+        }
+
+        pub(in crate::base) fn on_all(&self, _: impl Fn()) {
+            match *self {}
+        }
+    }
+}
