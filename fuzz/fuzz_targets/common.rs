@@ -21,8 +21,8 @@ pub fn read(extension: &str, bytes: &[u8]) -> Option<Mesh> {
 
 /// Writes a mesh; returns the first file written, and whether nothing was lost.
 pub fn write(extension: &str, mesh: &Mesh) -> (Vec<u8>, bool) {
-    let write = format(extension).write.expect("the format is written");
-    let mut written = write(mesh, &WriteOptions::default()).expect("what is read can be written");
+    let written = format(extension).to_files(mesh, &WriteOptions::default());
+    let mut written = written.expect("what is read can be written");
     (written.files.swap_remove(0).1, written.lost.is_empty())
 }
 

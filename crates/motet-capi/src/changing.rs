@@ -78,8 +78,8 @@ pub(crate) unsafe extern "C" fn motet_outcome_to_old(
     guarded(error, || {
         let history = handle(outcome, "outcome")?.history()?;
         let kept: Vec<u32> = match constants::on(on)? {
-            On::Points => history.vertices.kept().iter().map(|v| v.0).collect(),
-            On::Cells => history.cells.kept().iter().map(|c| c.0).collect(),
+            On::Points => history.vertices.kept().iter().map(|v| v.get().map_or(u32::MAX, |v| v.0)).collect(),
+            On::Cells => history.cells.kept().iter().map(|c| c.get().map_or(u32::MAX, |c| c.0)).collect(),
         };
         expect(n, kept.len(), "ids")?;
         let out = values_mut(old, kept.len(), "old")?;

@@ -27,7 +27,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use carried::{Carried, integral};
-use motet::base::{Id, Point, Threads};
+use motet::base::{MaybeId, Point, Threads};
 use motet::geometry::tet;
 use motet::io;
 use motet::mesh::history::Rule;
@@ -165,7 +165,7 @@ fn refill(mesh: &Mesh, &Call { turns, each, size, rule, .. }: &Call) -> Result<(
     let meshes = (0..MESHES).map(filled).collect::<motet::Result<Vec<_>>>()?;
     let way = |k: usize| {
         let (old, new) = (&meshes[k], &meshes[(k + 1) % MESHES]);
-        let (vertices, cells) = (vec![Id::NONE; new.points.len()], vec![Id::NONE; new.cells.len()]);
+        let (vertices, cells) = (vec![MaybeId::NONE; new.points.len()], vec![MaybeId::NONE; new.cells.len()]);
         trace::between(old, new, &vertices, &cells, &Threads::single())
     };
     let ways = (0..MESHES).map(way).collect::<motet::Result<Vec<_>>>()?;

@@ -6,7 +6,7 @@ mod common;
 use std::collections::BTreeMap;
 
 use common::random::Random;
-use motet::base::{CellId, Id, Point, Threads, VertexId};
+use motet::base::{CellId, MaybeId, Point, Threads, VertexId};
 use motet::delaunay::Triangulation;
 use motet::geometry::tet;
 use motet::mesh::history::{History, Ledger, Origin, Origins, Rows, Rule, Rules};
@@ -76,7 +76,7 @@ fn two_regions(seed: u64, n: usize) -> Mesh {
 
 /// The history between two meshes that have no vertex or cell in common.
 fn all_new(old: &Mesh, new: &Mesh) -> History {
-    let (vertices, cells) = (vec![Id::NONE; new.points.len()], vec![Id::NONE; new.cells.len()]);
+    let (vertices, cells) = (vec![MaybeId::NONE; new.points.len()], vec![MaybeId::NONE; new.cells.len()]);
     between(old, new, &vertices, &cells, &single()).unwrap()
 }
 
@@ -249,11 +249,10 @@ fn sorted(mut tet: [VertexId; 4]) -> [VertexId; 4] {
 fn local(old_points: &[Point], new_points: &[Point], threads: &Threads) -> (Mesh, Mesh, History) {
     let (old, places) = triangulated(old_points);
     let (new, _) = triangulated(new_points);
-    let vertices: Vec<VertexId> = (0..new.points.len())
-        .map(|i| if i < old.points.len() { VertexId::new(i) } else { Id::NONE })
-        .collect();
-    let cells: Vec<CellId> =
-        new.cells.tets().map(|(_, tet)| places.get(&sorted(tet)).copied().unwrap_or(Id::NONE)).collect();
+    let vertices: Vec<MaybeId<VertexId>> =
+        (0..new.points.len()).map(|i| (i < old.points.len()).then(|| VertexId::new(i)).into()).collect();
+    let cells: Vec<MaybeId<CellId>> =
+        new.cells.tets().map(|(_, tet)| places.get(&sorted(tet)).copied().into()).collect();
     let history = between(&old, &new, &vertices, &cells, threads).unwrap();
     (old, new, history)
 }
@@ -420,7 +419,7 @@ fn all_arrays_of_a_mesh_are_carried_by_their_rules() {
 fn rows_for_quadratic_fields_have_to_fit() {
     let mut half = Rows::new();
     half.push(VertexId(1), &[(VertexId(0), 0.5), (VertexId(1), 0.5)], VertexId(0));
-    let origins = Origins::new(3, vec![VertexId(2), Id::NONE], half).unwrap();
+    let origins = Origins::new(3, vec![VertexId(2).into(), MaybeId::NONE], half).unwrap();
     let with = |id: u32, parts: &[(u32, f64)]| {
         let mut rows = Rows::new();
         let parts: Vec<_> = parts.iter().map(|&(old, share)| (VertexId(old), share)).collect();
@@ -446,7 +445,7 @@ fn rows_for_quadratic_fields_have_to_fit() {
     assert!(with(1, &[(3, 1.0)]).unwrap_err().to_string().contains("old id 3"));
     assert!(with(1, &[(0, 0.5), (1, f64::NAN)]).is_err());
     let twice = history.then(&History {
-        vertices: Origins::new(2, vec![VertexId(1)], Rows::new()).unwrap(),
+        vertices: Origins::new(2, vec![VertexId(1).into()], Rows::new()).unwrap(),
         cells: Origins::identity(0),
         ledger: Ledger::default(),
     });
@@ -482,7 +481,7 @@ fn what_does_not_fit_is_refused_with_its_name_and_counts() {
     let (old, mut new) = (two_regions(81, 4), two_regions(82, 4));
     let ids = new.regions().unwrap().ids.iter().map(|&r| if r == 2 { 3 } else { r }).collect::<Vec<i32>>();
     new.set_cell_field(Field::scalars("region", ids));
-    let none = (vec![Id::NONE; new.points.len()], vec![Id::NONE; new.cells.len()]);
+    let none = (vec![MaybeId::NONE; new.points.len()], vec![MaybeId::NONE; new.cells.len()]);
     let error = between(&old, &new, &none.0, &none.1, &single()).unwrap_err().to_string();
     assert!(error.contains("is new in region 3, but no tet of that region was removed"), "{error}");
     let error = between(&old, &new, &none.0[1..], &none.1, &single()).unwrap_err().to_string();
@@ -496,7 +495,7 @@ fn origins_that_do_not_fit_are_refused() {
         rows.push(VertexId(1), from, VertexId(0));
         rows
     };
-    let kept = vec![VertexId(0), Id::NONE];
+    let kept = vec![VertexId(0).into(), MaybeId::NONE];
     let fine = row(&[(VertexId(0), 1.0), (VertexId(1), 3.0)]);
     let origins = Origins::new(2, kept.clone(), fine.clone()).unwrap();
     let Origin::Changed(found) = origins.of(VertexId(1)) else { panic!("it changed") };
@@ -504,9 +503,9 @@ fn origins_that_do_not_fit_are_refused() {
     assert_eq!(origins.of(VertexId(0)), Origin::Kept(VertexId(0)));
     let beyond = Origins::new(1, kept.clone(), fine.clone()).unwrap_err().to_string();
     assert_eq!(beyond, "row of 1: refers to the old id 1, but there were only 1");
-    assert!(Origins::new(2, vec![VertexId(2), Id::NONE], fine.clone()).is_err());
-    assert!(Origins::new(2, vec![VertexId(0), VertexId(1)], fine).is_err());
-    assert!(Origins::new(2, vec![Id::NONE, VertexId(1)], row(&[])).is_err());
+    assert!(Origins::new(2, vec![VertexId(2).into(), MaybeId::NONE], fine.clone()).is_err());
+    assert!(Origins::new(2, vec![VertexId(0).into(), VertexId(1).into()], fine).is_err());
+    assert!(Origins::new(2, vec![MaybeId::NONE, VertexId(1).into()], row(&[])).is_err());
     // Without a positive share, the main vertex gives everything.
     for empty in [vec![], vec![(VertexId(1), 0.0)], vec![(VertexId(1), f64::NAN)]] {
         let origins = Origins::new(2, kept.clone(), row(&empty)).unwrap();
@@ -519,7 +518,7 @@ fn a_history_can_be_stored() {
     let mut rows = Rows::new();
     rows.push(VertexId(1), &[(VertexId(0), 0.25), (VertexId(2), 0.75)], VertexId(2));
     let history = History {
-        vertices: Origins::new(3, vec![VertexId(2), Id::NONE], rows).unwrap(),
+        vertices: Origins::new(3, vec![VertexId(2).into(), MaybeId::NONE], rows).unwrap(),
         cells: Origins::identity(2),
         ledger: Ledger::default(),
     };

@@ -27,8 +27,7 @@ fn notes_of(extension: &str, bytes: &[u8]) -> Vec<String> {
 
 /// Writes into memory; returns the first file, and what was lost.
 fn print(extension: &str, mesh: &Mesh, options: &WriteOptions) -> (Vec<u8>, Vec<String>) {
-    let writer = format(extension).write.expect("the format is written");
-    let mut written = writer(mesh, options).expect("the mesh is written");
+    let mut written = format(extension).to_files(mesh, options).expect("the mesh is written");
     (written.files.swap_remove(0).1, written.lost)
 }
 

@@ -85,13 +85,13 @@ proptest! {
         again.verify().map_err(TestCaseError::fail)?;
         prop_assert_eq!(again.n_tets(), complex.n_tets());
         prop_assert_eq!(extract.mesh.triangles.len(), mesh.triangles.len());
-        for (new, &old) in extract.tet_to_old.iter().enumerate().filter(|(_, old)| **old != u32::MAX) {
+        let known = || extract.tet_to_old.iter().enumerate().filter_map(|(new, old)| Some((new, old.get()?)));
+        for (new, old) in known() {
             let corners = |mesh: &TetMesh, t: usize| mesh.tets[t].map(|v| mesh.points[v.index()].map(f64::to_bits));
-            prop_assert_eq!(corners(&extract.mesh, new), corners(&mesh, old as usize));
-            prop_assert_eq!(extract.mesh.regions[new], mesh.regions[old as usize]);
+            prop_assert_eq!(corners(&extract.mesh, new), corners(&mesh, old.index()));
+            prop_assert_eq!(extract.mesh.regions[new], mesh.regions[old.index()]);
         }
-        let n_kept = extract.tet_to_old.iter().filter(|&&old| old != u32::MAX).count();
-        prop_assert_eq!(extract.removed_tets.len() + n_kept, mesh.tets.len());
+        prop_assert_eq!(extract.removed_tets.len() + known().count(), mesh.tets.len());
     }
 }
 

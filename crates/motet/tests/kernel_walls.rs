@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use common::editor::Editor;
 use common::{Numbers, random_mesh};
 use motet::base::VertexId;
-use motet::kernel::{Complex, NEW};
+use motet::kernel::Complex;
 use motet::mesh::TetMesh;
 use proptest::prelude::*;
 
@@ -77,10 +77,10 @@ proptest! {
         prop_assert_eq!(again.n_tets(), complex.n_tets());
         prop_assert_eq!(again.walls().count(), complex.walls().count());
         prop_assert_eq!(again.lines().len(), complex.lines().len());
-        for (new, &old) in extract.vertex_to_old.iter().enumerate() {
+        for (new, old) in extract.vertex_to_old.iter().map(|old| old.get()).enumerate() {
             let is_changed = extract.changed_vertices.binary_search(&VertexId::new(new)).is_ok();
-            prop_assert!(old == NEW || (old as usize) < mesh.points.len());
-            prop_assert!(is_changed || extract.mesh.points[new] == mesh.points[old as usize]);
+            prop_assert!(old.is_none_or(|old| old.index() < mesh.points.len()));
+            prop_assert!(is_changed || old.is_some_and(|old| extract.mesh.points[new] == mesh.points[old.index()]));
         }
         let label_of = |old: u32| mesh.line_labels[old as usize];
         let labels: Vec<i32> = extract.line_to_old.iter().map(|&old| label_of(old)).collect();

@@ -7,7 +7,7 @@ use motet::base::{CellId, Point, TetId, Threads, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::tet::volume;
 use motet::geometry::vector::distance;
-use motet::kernel::{Complex, Hold, NEW};
+use motet::kernel::{Complex, Hold};
 use motet::mesh::shapes::{box_grid, sphere_in_box};
 use motet::mesh::{TetMesh, TetPart};
 use motet::remesh::classify::{Defect, classify};
@@ -59,12 +59,13 @@ fn hold_to_the_promise(mesh: &TetMesh, outcome: &Outcome, keep: bool) -> Result<
     let worst = qualities.iter().copied().fold(f64::INFINITY, f64::min);
     prop_assert_eq!(report.after.worst.unwrap().eas, worst);
     prop_assert!(worst >= report.before.worst.unwrap().eas);
-    let kept = outcome.extract.tet_to_old.iter().enumerate().filter(|(_, old)| **old != NEW);
+    let all = outcome.extract.tet_to_old.iter().enumerate();
+    let kept = all.filter_map(|(new, old)| Some((new, old.get()?)));
     prop_assert_eq!(kept.clone().count(), report.kept);
-    for (now, &old) in kept {
+    for (now, old) in kept {
         let bits = |mesh: &TetMesh, t: usize| corners(mesh, t).map(|p| p.map(f64::to_bits));
-        prop_assert_eq!(bits(new, now), bits(mesh, old as usize));
-        prop_assert_eq!(new.regions[now], mesh.regions[old as usize]);
+        prop_assert_eq!(bits(new, now), bits(mesh, old.index()));
+        prop_assert_eq!(new.regions[now], mesh.regions[old.index()]);
     }
     if keep {
         let same = |mesh: &TetMesh| {

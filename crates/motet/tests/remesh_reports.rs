@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use motet::base::{CellId, Id, Point, Threads, VertexId};
+use motet::base::{CellId, Point, Threads, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::tet::centroid;
 use motet::mesh::history::Rules;
@@ -70,8 +70,7 @@ fn counts_and_shares_are_those_of_the_meshes() {
     assert_eq!((report.before.vertices, report.after.vertices), (old.points.len(), mesh.points.len()));
     assert_eq!(report.kept_share, report.kept as f64 / tets(&old) as f64);
     let is_tet = |cell: usize| mesh.cells.kind(CellId::new(cell)) == CellKind::TETRA;
-    let kept =
-        history.cells.kept().iter().enumerate().filter(|(cell, old)| is_tet(*cell) && **old != CellId::NONE);
+    let kept = history.cells.kept().iter().enumerate().filter(|(cell, old)| is_tet(*cell) && old.is_some());
     assert_eq!(kept.count(), report.kept);
     let bad = |mesh: &Mesh| {
         mesh.cells.tets().filter(|(cell, _)| eas(corners(mesh, *cell)) < report.min_eas).count()

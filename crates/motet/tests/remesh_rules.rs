@@ -6,11 +6,11 @@ mod common;
 use std::collections::BTreeSet;
 
 use common::Numbers;
-use motet::base::{Point, Threads, VertexId};
+use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::quality::{dihedral, eas};
 use motet::geometry::triangle::{angle_at, area_vector};
 use motet::geometry::vector::{distance, norm};
-use motet::kernel::{Complex, NEW};
+use motet::kernel::Complex;
 use motet::mesh::shapes::{box_grid, sphere_in_box};
 use motet::mesh::{TetMesh, TetPart};
 use motet::remesh::{Goal, Held, Options, Outcome, Reason, Sizes, SurfaceRule, remesh};
@@ -84,7 +84,7 @@ fn a_region_that_is_held_stays_bad_tets_and_all() {
             remeshed(&mesh, Options { held: held.clone(), surface, ..Options::default() });
         assert_eq!((report.held, report.before.bad, report.after.bad), (inside.len(), outside.len(), 0));
         let kept: BTreeSet<usize> =
-            extract.tet_to_old.iter().filter(|old| **old != NEW).map(|&old| old as usize).collect();
+            extract.tet_to_old.iter().filter_map(|old| old.get()).map(TetId::index).collect();
         assert!((0..mesh.tets.len()).filter(in_region).all(|t| kept.contains(&t)));
         assert!(outside.iter().all(|t| !kept.contains(t)));
     }

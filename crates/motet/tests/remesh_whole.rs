@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use common::random::Random;
 use motet::Mesh;
-use motet::base::{CellId, Csr, Id, Point, Threads, VertexId};
+use motet::base::{CellId, Csr, Point, Threads, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::tet;
 use motet::geometry::triangle::{area, area_vector};
@@ -94,8 +94,8 @@ fn integrals(mesh: &Mesh, name: &str) -> BTreeMap<i32, [f64; 2]> {
 /// and in order.
 fn assert_kept(old: &Mesh, outcome: &MeshOutcome) {
     let MeshOutcome { mesh: new, history, .. } = outcome;
-    let kept = |ids: &[CellId]| ids.iter().copied().filter(|c| *c != Id::NONE).collect::<Vec<_>>();
-    assert!(kept(history.cells.kept()).is_sorted(), "cells that stayed keep their order");
+    let kept = history.cells.kept().iter().filter_map(|cell| cell.get());
+    assert!(kept.is_sorted(), "cells that stayed keep their order");
     let mut kept_points = Vec::new();
     for (new_id, origin) in history.vertices.iter().enumerate() {
         if let Origin::Kept(was) = origin {

@@ -38,7 +38,8 @@ pub trait Id: Copy + Ord + fmt::Display + fmt::Debug + Default {
 
 /// An id, or none, in the space of an id. None comes last in the order.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
 #[repr(transparent)]
 pub struct MaybeId<I>(I);
 
@@ -71,11 +72,6 @@ impl<I: Id> MaybeId<I> {
         }
         self.0
     }
-}
-
-/// The ids of a list, with [`Id::NONE`] for none, for interfaces that have it so.
-pub(crate) fn or_none<I: Copy>(list: &[MaybeId<I>]) -> Vec<I> {
-    list.iter().map(|id| id.0).collect()
 }
 
 /// The places in a list at which there is no id, in rising order, as ids.

@@ -18,9 +18,7 @@ mod words;
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result, printable};
 pub use ids::{BodyId, CellId, Id, MaybeId, TetId, TriangleId, VertexId, rising_list};
-pub(crate) use ids::{
-    EdgeId, ForestVertexId, LineId, NodeId, absent, id, or_none, same_orientation, sorted_ids,
-};
+pub(crate) use ids::{EdgeId, ForestVertexId, LineId, NodeId, absent, id, same_orientation, sorted_ids};
 pub(crate) use lanewise::lanewise;
 pub use percent::percent;
 pub use reasons::reasons;

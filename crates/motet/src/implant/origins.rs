@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::layout::{Layout, Numbering, Pieces};
 use super::owner::{Owner, Patch};
-use crate::base::{CellId, Point, Result, Threads, VertexId, or_none, sorted_ids};
+use crate::base::{CellId, Point, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::{at, centroid, closest};
 use crate::geometry::vector::distance;
 use crate::mesh::Mesh;
@@ -94,8 +94,8 @@ pub(super) fn history(
     };
     let traced = trace(&change, threads)?;
     Ok(History {
-        vertices: Origins::new(host.points.len(), or_none(&numbering.kept), traced.vertices)?,
-        cells: Origins::new(host.cells.len(), or_none(&layout.to_old), traced.cells)?,
+        vertices: Origins::new(host.points.len(), numbering.kept.clone(), traced.vertices)?,
+        cells: Origins::new(host.cells.len(), layout.to_old.clone(), traced.cells)?,
         ledger: traced.ledger,
     })
 }

@@ -89,8 +89,8 @@ impl Draft {
         let outcome = remesh(&zone.mesh, &options, threads)?;
         let (extract, n_new) = (outcome.extract, self.tets.len());
         let mut to_result = Vec::with_capacity(extract.mesh.points.len());
-        for (point, &old) in extract.mesh.points.iter().zip(&extract.vertex_to_old) {
-            to_result.push(zone.to_result.get(old as usize).copied().unwrap_or_else(|| {
+        for (point, old) in extract.mesh.points.iter().zip(&extract.vertex_to_old) {
+            to_result.push(old.get().map(|old| zone.to_result[old.index()]).unwrap_or_else(|| {
                 self.points.push(*point);
                 VertexId::new(self.points.len() - 1)
             }));
@@ -108,10 +108,10 @@ impl Draft {
         }
         near.iter().for_each(|&t| self.is_removed[t] = true);
         (self.tets, self.owners) = (Vec::new(), Vec::new());
-        for ((tet, &region), &old) in
+        for ((tet, &region), old) in
             extract.mesh.tets.iter().zip(&extract.mesh.regions).zip(&extract.tet_to_old)
         {
-            match near.get((old as usize).wrapping_sub(n_new)) {
+            match old.get().and_then(|old| near.get(old.index().checked_sub(n_new)?)) {
                 Some(&t) => {
                     self.is_removed[t] = false;
                     self.zone_to_site.push(Site::Host(t));

@@ -1,9 +1,10 @@
 //! File formats: a reader and a writer, their inputs and their results.
 
+use std::io;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-use crate::base::Result;
+use crate::base::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
 
 /// Input of a reader: the whole file, and its path for formats that consist of several files.
@@ -75,7 +76,7 @@ pub struct WriteOptions {
     pub version: Option<String>,
 }
 
-/// Result of a writer: one or more files, and what the format could not hold.
+/// Files in memory, and what their format could not hold.
 #[derive(Clone, Debug, Default)]
 pub struct Written {
     /// Extension (with dot) and content of each file; the extension replaces that of the requested path, and
@@ -85,17 +86,18 @@ pub struct Written {
     pub lost: Vec<String>,
 }
 
-impl Written {
-    /// A single file without losses.
-    pub fn one(bytes: Vec<u8>) -> Self {
-        Self { files: vec![(String::new(), bytes)], lost: Vec::new() }
-    }
-}
-
 /// A reader: takes the whole file, returns a mesh.
 pub type Read = fn(&Input<'_>) -> Result<Mesh>;
-/// A writer: takes a mesh, returns the content of one or more files.
-pub type Write = fn(&Mesh, &WriteOptions) -> Result<Written>;
+
+/// A writer of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub enum Write {
+    /// Writes one file to a sink, part by part; returns what the format could not hold, one message for the
+    /// user each.
+    File(fn(&Mesh, &WriteOptions, &mut dyn io::Write) -> Result<Vec<String>>),
+    /// Makes several files, or those of a folder.
+    Files(fn(&Mesh, &WriteOptions) -> Result<Written>),
+}
 
 /// A file format.
 #[derive(Clone, Copy)]
@@ -115,4 +117,36 @@ impl Format {
     pub fn is_folder(&self) -> bool {
         self.extensions.iter().any(|extension| extension.ends_with('/'))
     }
+
+    /// The files that hold a mesh in this format, in memory.
+    ///
+    /// # Errors
+    /// If the format cannot be written, or cannot hold the mesh.
+    pub fn to_files(&self, mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+        match self.write.ok_or_else(|| self.only_read())? {
+            Write::File(write) => {
+                let mut bytes = Vec::new();
+                let lost = write(mesh, options, &mut bytes)?;
+                Ok(Written { files: vec![(String::new(), bytes)], lost })
+            }
+            Write::Files(write) => write(mesh, options),
+        }
+    }
+
+    /// The error for a format that cannot be written.
+    pub(super) fn only_read(&self) -> Error {
+        Error::input(format!("{} files can only be read", self.name))
+    }
+}
+
+/// Writes bytes to a sink.
+pub(super) fn write_all(sink: &mut dyn io::Write, bytes: &[u8]) -> Result<()> {
+    sink.write_all(bytes).map_err(|e| Error::new(ErrorKind::Output, format!("cannot be written: {e}")))
+}
+
+/// Writes all bytes of a buffer to a sink, and empties the buffer.
+pub(super) fn drain(buffer: &mut Vec<u8>, sink: &mut dyn io::Write) -> Result<()> {
+    write_all(sink, buffer)?;
+    buffer.clear();
+    Ok(())
 }

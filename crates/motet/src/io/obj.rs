@@ -10,13 +10,17 @@ use std::io::Write as _;
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::cell_labels::{cell_labels, lost_cell_arrays};
-use crate::io::format::{Format, Input, WriteOptions, Written};
+use crate::io::format::{Format, Input, Write, WriteOptions, write_all};
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, parse_float, parse_int, push_floats, quoted};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
-pub(super) const FORMAT: Format =
-    Format { name: "Wavefront OBJ", extensions: &[".obj"], read: Some(read), write: Some(write) };
+pub(super) const FORMAT: Format = Format {
+    name: "Wavefront OBJ",
+    extensions: &[".obj"],
+    read: Some(read),
+    write: Some(Write::File(write)),
+};
 
 #[derive(Default)]
 struct Reader {
@@ -218,7 +222,7 @@ impl Reader {
     }
 }
 
-fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
+fn write(mesh: &Mesh, _: &WriteOptions, sink: &mut dyn std::io::Write) -> Result<Vec<String>> {
     let (surface, boundary_only) = surface_of(mesh, "OBJ");
     let (mesh, mut lost) = keep_cells(&surface, "OBJ", |kind| statement(kind).is_some());
     lost.extend(boundary_only);
@@ -248,7 +252,8 @@ fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
         }
         out.push(b'\n');
     }
-    Ok(Written { files: vec![(String::new(), out)], lost })
+    write_all(sink, &out)?;
+    Ok(lost)
 }
 
 fn statement(kind: CellKind) -> Option<&'static str> {

@@ -8,14 +8,14 @@ use std::io::Write as _;
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::cell_labels::{cell_labels, lost_cell_arrays, lost_names};
-use crate::io::format::{Format, Input, WriteOptions, Written};
+use crate::io::format::{Format, Input, Write, WriteOptions, write_all};
 use crate::io::polygonal::kind_of_face;
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, parse_int, push_floats};
 use crate::mesh::{CellKind, Cells, Mesh};
 
 pub(super) const FORMAT: Format =
-    Format { name: "OFF", extensions: &[".off"], read: Some(read), write: Some(write) };
+    Format { name: "OFF", extensions: &[".off"], read: Some(read), write: Some(Write::File(write)) };
 
 fn read(input: &Input<'_>) -> Result<Mesh> {
     let mut text = Text::with_comments(input.bytes, b'#');
@@ -97,7 +97,7 @@ fn faces(text: &mut Text<'_>, n: usize, n_points: usize) -> Result<(Cells, usize
     Ok((cells, n_colours))
 }
 
-fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
+fn write(mesh: &Mesh, _: &WriteOptions, sink: &mut dyn std::io::Write) -> Result<Vec<String>> {
     let (surface, boundary_only) = surface_of(mesh, "OFF");
     let holds = |kind| matches!(kind, CellKind::TRIANGLE | CellKind::QUAD | CellKind::POLYGON);
     let (mesh, mut lost) = keep_cells(&surface, "OFF", holds);
@@ -123,7 +123,8 @@ fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
         }
         out.push(b'\n');
     }
-    Ok(Written { files: vec![(String::new(), out)], lost })
+    write_all(sink, &out)?;
+    Ok(lost)
 }
 
 #[cfg(test)]

@@ -17,14 +17,14 @@ use ply_rs_bw::writer::Writer;
 
 use crate::base::{Error, Result, VertexId};
 use crate::geometry::vector::is_finite;
-use crate::io::format::{Encoding, Format, Input, WriteOptions, Written};
+use crate::io::format::{Encoding, Format, Input, Write, WriteOptions, write_all};
 use crate::io::polygonal::kind_of_face;
 use crate::io::scalar::append;
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
 pub(super) const FORMAT: Format =
-    Format { name: "PLY", extensions: &[".ply"], read: Some(read), write: Some(write) };
+    Format { name: "PLY", extensions: &[".ply"], read: Some(read), write: Some(Write::File(write)) };
 
 /// Common names of the components of a normal.
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
@@ -235,7 +235,7 @@ fn interleaved(columns: Vec<Values>) -> Values {
     all.pick((0..n * k).map(|i| i % k * n + i / k)).values
 }
 
-fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+fn write(mesh: &Mesh, options: &WriteOptions, sink: &mut dyn std::io::Write) -> Result<Vec<String>> {
     let (surface, boundary_only) = surface_of(mesh, "PLY");
     let holds = |kind| matches!(kind, CellKind::TRIANGLE | CellKind::QUAD | CellKind::POLYGON);
     let (mesh, mut lost) = keep_cells(&surface, "PLY", holds);
@@ -291,7 +291,8 @@ fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let mut out = Vec::new();
     let written = Writer::new().write_ply(&mut out, &mut ply);
     written.map_err(|e| Error::input(format!("cannot be written as PLY: {e}")))?;
-    Ok(Written { files: vec![(String::new(), out)], lost })
+    write_all(sink, &out)?;
+    Ok(lost)
 }
 
 /// Declares an element and its properties in the header.
@@ -403,7 +404,7 @@ mod tests {
         let mesh = full();
         for encoding in [Encoding::Ascii, Encoding::Binary] {
             let options = WriteOptions { encoding, ..WriteOptions::default() };
-            let written = write(&mesh, &options).unwrap();
+            let written = FORMAT.to_files(&mesh, &options).unwrap();
             assert_eq!(written.lost, [""; 0]);
             assert_eq!(parse(&written.files[0].1).0.unwrap(), mesh, "{encoding:?}");
         }
@@ -415,7 +416,8 @@ mod tests {
         let n = mesh.cells.len();
         mesh.set_cell_field(Field::scalars("odd name", vec![f64::INFINITY; n]));
         let [text, bytes] = [Encoding::Ascii, Encoding::Binary].map(|encoding| {
-            let mut written = write(&mesh, &WriteOptions { encoding, ..WriteOptions::default() }).unwrap();
+            let options = WriteOptions { encoding, ..WriteOptions::default() };
+            let mut written = FORMAT.to_files(&mesh, &options).unwrap();
             (parse(&written.files.remove(0).1).0.unwrap(), written.lost)
         });
         assert!(text.1.len() == 1 && text.1[0].contains("odd name"), "{:?}", text.1);
@@ -423,9 +425,8 @@ mod tests {
         assert!(bytes.1 == ["cell array odd name is written as odd_name"]);
         assert_eq!(bytes.0.cell_field("odd_name").unwrap().values, vec![f64::INFINITY; n].into());
         mesh.points[0][1] = f64::NAN;
-        assert!(
-            write(&mesh, &WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() }).is_err()
-        );
+        let text = WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() };
+        assert!(FORMAT.to_files(&mesh, &text).is_err());
     }
 
     #[test]
@@ -499,7 +500,7 @@ mod tests {
             assert!(error.contains(reported), "{text}: {error}");
         }
         // A file truncated at any point is rejected.
-        let written = write(&full(), &WriteOptions::default()).unwrap().files.remove(0).1;
+        let written = FORMAT.to_files(&full(), &WriteOptions::default()).unwrap().files.remove(0).1;
         for end in (0..written.len()).step_by(written.len() / 97) {
             assert!(parse(&written[..end]).0.is_err(), "{end}");
         }

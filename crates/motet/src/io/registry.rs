@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::base::{Error, ErrorKind, Result};
-use crate::io::format::{Format, Notes, WriteOptions};
+use crate::io::format::{Format, Notes, Write, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{replace_all, replace_folder, replace_with};
 use crate::io::{
@@ -165,17 +165,16 @@ pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
 pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Result<Vec<String>> {
     let path = path.as_ref();
     let format = for_writing(path)?;
-    let Some(write) = format.write else {
-        return Err(Error::input(format!("{} files can only be read", format.name)).in_file(path));
-    };
+    let write = format.write.ok_or_else(|| format.only_read().in_file(path))?;
     mesh.validate()?;
-    if format.extensions == vtkxml::VTU.extensions {
-        // Written directly to the file, so that large meshes are not copied in memory.
-        let (mut lost, note) = replace_with(path, |sink| vtkxml::write_to(mesh, options, sink))?;
-        lost.extend(note);
-        return Ok(lost);
-    }
-    let written = write(mesh, options).map_err(|e| e.in_file(path))?;
+    let written = match write {
+        Write::File(write) => {
+            let (mut lost, note) = replace_with(path, |sink| write(mesh, options, sink))?;
+            lost.extend(note);
+            return Ok(lost);
+        }
+        Write::Files(write) => write(mesh, options).map_err(|e| e.in_file(path))?,
+    };
     if format.is_folder() {
         refuse_full_folder(path)?;
         replace_folder(path, &written.files)?;

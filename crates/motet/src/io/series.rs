@@ -10,7 +10,8 @@ use quick_xml::events::{BytesStart, Event};
 use crate::base::{Error, Result};
 use crate::io::format::WriteOptions;
 use crate::io::lock::OutputLock;
-use crate::io::{replace, replace_all, vtkhdf, write};
+use crate::io::replace::replace_with;
+use crate::io::{replace, vtkhdf, write};
 use crate::mesh::Mesh;
 
 /// Whether a path is that of a series: a `.pvd` file by its extension, or an existing VTKHDF file with
@@ -144,9 +145,9 @@ pub fn write_series(
         let (time, mesh) = frame?;
         steps.add(time, &mesh).map_err(|e| e.in_file(path))?;
     }
-    let written = steps.into_file(options).map_err(|e| e.in_file(path))?;
-    let notes = replace_all(&[(path.to_owned(), written.files[0].1.as_slice())])?;
-    Ok([written.lost, notes].concat())
+    let (mut lost, note) = replace_with(path, |sink| steps.write_to(options, sink))?;
+    lost.extend(note);
+    Ok(lost)
 }
 
 /// Writer of a series that grows frame by frame. The PVD file is replaced after each frame, so that an

@@ -14,13 +14,13 @@ use std::io::Write as _;
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector;
-use crate::io::format::{Encoding, Format, Input, WriteOptions, Written};
+use crate::io::format::{Encoding, Format, Input, Write, WriteOptions, write_all};
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, push_floats, quoted};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 pub(super) const FORMAT: Format =
-    Format { name: "STL", extensions: &[".stl"], read: Some(read), write: Some(write) };
+    Format { name: "STL", extensions: &[".stl"], read: Some(read), write: Some(Write::File(write)) };
 
 /// Size of the header and the number of triangles.
 const HEAD_BYTES: usize = 84;
@@ -210,7 +210,7 @@ fn words(text: &mut Text<'_>, expected: &[&str]) -> Result<()> {
     Ok(())
 }
 
-fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+fn write(mesh: &Mesh, options: &WriteOptions, sink: &mut dyn std::io::Write) -> Result<Vec<String>> {
     let (surface, boundary_only) = surface_of(mesh, "STL");
     let (mesh, mut lost) = keep_cells(&surface, "STL", |kind| fan(kind).is_some());
     lost.extend(boundary_only);
@@ -222,7 +222,8 @@ fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     lost.extend(lost_arrays("STL", "field", &mesh.field_data));
     let bytes =
         if binary { write_binary(&mesh, &triangles, &mut lost)? } else { write_ascii(&mesh, &triangles) };
-    Ok(Written { files: vec![(String::new(), bytes)], lost })
+    write_all(sink, &bytes)?;
+    Ok(lost)
 }
 
 /// Whether cells of this kind are split into triangles around their first vertex, and into how many if that

@@ -1,13 +1,10 @@
 //! The extraction of plain arrays, and where each of their rows came from.
 
-use crate::base::{Point, TetId, VertexId};
+use crate::base::{MaybeId, Point, TetId, VertexId};
 use crate::kernel::complex::Complex;
 use crate::kernel::link::NO_TRIANGLE;
 use crate::kernel::provenance::Origin;
 use crate::mesh::TetMesh;
-
-/// Marks a row without a counterpart in the old mesh.
-pub const NEW: u32 = u32::MAX;
 
 /// A mesh after changes, compared with the one before.
 ///
@@ -17,10 +14,10 @@ pub const NEW: u32 = u32::MAX;
 pub struct Extract {
     /// The new mesh.
     pub mesh: TetMesh,
-    /// For each tet its id in the old mesh, or [`NEW`].
-    pub tet_to_old: Vec<u32>,
-    /// For each vertex its id in the old mesh, or [`NEW`].
-    pub vertex_to_old: Vec<u32>,
+    /// For each tet its id in the old mesh; none if it is new.
+    pub tet_to_old: Vec<MaybeId<TetId>>,
+    /// For each vertex its id in the old mesh; none if it is new.
+    pub vertex_to_old: Vec<MaybeId<VertexId>>,
     /// For each triangle the old one that it was, or is part of.
     pub triangle_to_old: Vec<u32>,
     /// For each line the old one that it was, or is part of.
@@ -38,14 +35,18 @@ impl Extract {
     pub fn tet(&self, tet: TetId) -> TetId {
         let n_kept = self.tet_to_old.len() - self.new_tets.len();
         let place = self.new_tets.binary_search(&tet).map(|i| n_kept + i);
-        TetId::new(place.or_else(|_| self.tet_to_old[..n_kept].binary_search(&tet.0)).unwrap_or_default())
+        TetId::new(
+            place.or_else(|_| self.tet_to_old[..n_kept].binary_search(&tet.into())).unwrap_or_default(),
+        )
     }
 
-    /// The new id of each vertex of the old mesh; [`NEW`] for removed ones.
-    pub fn old_to_vertex(&self, n_old: usize) -> Vec<u32> {
-        let mut old_to_vertex = vec![NEW; n_old];
-        for (new, &old) in (0..).zip(&self.vertex_to_old).filter(|(_, old)| **old != NEW) {
-            old_to_vertex[old as usize] = new;
+    /// The new id of each vertex of the old mesh; none for removed ones.
+    pub fn old_to_vertex(&self, n_old: usize) -> Vec<MaybeId<VertexId>> {
+        let mut old_to_vertex = vec![MaybeId::NONE; n_old];
+        for (new, old) in self.vertex_to_old.iter().enumerate() {
+            if let Some(old) = old.get() {
+                old_to_vertex[old.index()] = VertexId::new(new).into();
+            }
         }
         old_to_vertex
     }
@@ -65,7 +66,7 @@ impl Complex {
         for t in first_tets().filter(is_kept) {
             tets.push(first.tets[t.index()].map(new_id));
             extract.mesh.regions.push(self.region(t));
-            extract.tet_to_old.push(t.0);
+            extract.tet_to_old.push(t.into());
         }
         for t in self.tets().filter(|&t| !self.is_original(t)) {
             let mut tet = self.vertices(t).map(new_id);
@@ -74,7 +75,7 @@ impl Complex {
             }
             tets.push(tet);
             extract.mesh.regions.push(self.region(t));
-            extract.tet_to_old.push(NEW);
+            extract.tet_to_old.push(MaybeId::NONE);
             extract.new_tets.push(t);
         }
         extract.removed_tets = first_tets().filter(|t| !is_kept(t)).collect();
@@ -105,7 +106,7 @@ impl Complex {
             // A vertex that moved is still the same vertex; one in the slot of a removed vertex is not.
             let origin = self.provenance.origin(v);
             let is_of_first = v.index() < n_first && origin != Origin::Inserted;
-            extract.vertex_to_old.push(if is_of_first { v.0 } else { NEW });
+            extract.vertex_to_old.push(is_of_first.then_some(v).into());
             if origin != Origin::First {
                 extract.changed_vertices.push(new_id);
             }

@@ -57,7 +57,7 @@ pub use change::{Change, Fill, NewLine, NewWall, VertexChange};
 pub use check::{Checked, Reject};
 pub use complex::Complex;
 pub use exempt::{FLATTEST, Side, best_at, is_reached};
-pub use extract::{Extract, NEW};
+pub use extract::Extract;
 pub use hold::Hold;
 pub use journal::Mark;
 pub use lines::Line;

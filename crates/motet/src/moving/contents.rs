@@ -1,7 +1,7 @@
 //! Cell arrays that are densities of contents: these stay in the cell while it moves, and are passed on where
 //! cells change.
 
-use crate::base::{CellId, Id, Point};
+use crate::base::{CellId, Point};
 use crate::geometry::tet;
 use crate::geometry::vector::distance;
 use crate::mesh::history::{History, Row};
@@ -84,7 +84,7 @@ impl<'a> Heirs<'a> {
         let rows = changed.ids().iter().copied().zip(changed.iter());
         let rows: Vec<_> = rows.filter(|(cell, _)| after.cells.kind(*cell) == CellKind::TETRA).collect();
         let mut is_kept = vec![false; before.cells.len()];
-        let kept = history.cells.kept().iter().filter(|old| **old != CellId::NONE);
+        let kept = history.cells.kept().iter().filter_map(|old| old.get());
         kept.for_each(|old| is_kept[old.index()] = true);
         let mut taken = vec![0.0; before.cells.len()];
         for (cell, row) in &rows {

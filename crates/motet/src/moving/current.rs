@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use crate::base::{CellId, Id, Point, Result, Threads, VertexId};
+use crate::base::{CellId, Id, MaybeId, Point, Result, Threads, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{add, sub};
 use crate::mesh::history::{History, Rule, Rules};
@@ -67,16 +67,16 @@ pub(super) struct Records {
 /// the first mesh is not remembered.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct InFirst {
-    pub(super) vertices: Vec<VertexId>,
-    pub(super) cells: Vec<CellId>,
+    pub(super) vertices: Vec<MaybeId<VertexId>>,
+    pub(super) cells: Vec<MaybeId<CellId>>,
 }
 
 impl InFirst {
     /// The ids of the first mesh itself.
     pub(super) fn same(first: &Mesh) -> Self {
         Self {
-            vertices: (0..first.points.len()).map(VertexId::new).collect(),
-            cells: (0..first.cells.len()).map(CellId::new).collect(),
+            vertices: (0..first.points.len()).map(|v| VertexId::new(v).into()).collect(),
+            cells: (0..first.cells.len()).map(|c| CellId::new(c).into()).collect(),
         }
     }
 
@@ -93,8 +93,8 @@ impl InFirst {
 }
 
 /// The values of the old entities that were kept; none for new ones.
-fn of_kept<I: Id>(kept: &[I], before: &[I]) -> Vec<I> {
-    kept.iter().map(|old| if *old == I::NONE { I::NONE } else { before[old.place()] }).collect()
+fn of_kept<I: Id>(kept: &[MaybeId<I>], before: &[MaybeId<I>]) -> Vec<MaybeId<I>> {
+    kept.iter().map(|old| old.get().map_or(MaybeId::NONE, |old| before[old.place()])).collect()
 }
 
 /// A mesh with new connectivity.
@@ -128,14 +128,8 @@ impl Records {
     /// # Errors
     /// If the history is of another mesh.
     fn after(&self, before: &[Point], history: &History) -> Result<Self> {
-        let node = |old: &VertexId| match *old == VertexId::NONE {
-            true => NO_NODE,
-            false => self.node[old.index()],
-        };
-        let eas = |old: &CellId| match *old == CellId::NONE {
-            true => f64::NAN,
-            false => self.first_eas[old.index()],
-        };
+        let node = |old: &MaybeId<VertexId>| old.get().map_or(NO_NODE, |old| self.node[old.index()]);
+        let eas = |old: &MaybeId<CellId>| old.get().map_or(f64::NAN, |old| self.first_eas[old.index()]);
         let rest = self.rest.as_ref().map(|rest| positions_after(rest, history));
         Ok(Self {
             first: positions_after(&self.first, history)?,

@@ -1,6 +1,6 @@
 //! The first mesh of walls that come back, as arrays of a saved state, and back.
 
-use crate::base::{Id, Result, Threads, VertexId};
+use crate::base::{Id, MaybeId, Result, Threads, VertexId};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 use crate::moving::current::{InFirst, LeftBad, Records};
 use crate::moving::first_mesh::{Count, FirstMesh, Returns};
@@ -38,8 +38,8 @@ impl Returns {
             return;
         };
         file.field_data.push(Field::scalars(COUNT, count.to_vec()));
-        file.set_point_field(Field::scalars(VERTEX, numbers(&in_first.vertices)));
-        file.set_cell_field(Field::scalars(CELL, numbers(&in_first.cells)));
+        file.set_point_field(Field::scalars(VERTEX, known_numbers(&in_first.vertices)));
+        file.set_cell_field(Field::scalars(CELL, known_numbers(&in_first.cells)));
         let FirstMesh { mesh, records, left, .. } = first.as_ref();
         let kinds: Vec<u8> = mesh.cells.kinds().iter().map(|kind| kind.0).collect();
         file.field_data.extend([
@@ -120,11 +120,16 @@ fn check_records(records: &Records, first: &Mesh, n_nodes: usize) -> Result<()> 
 }
 
 fn numbers<I: Id>(ids: &[I]) -> Vec<u32> {
-    ids.iter().map(|id| if *id == I::NONE { u32::MAX } else { id.place() as u32 }).collect()
+    ids.iter().map(|id| id.place() as u32).collect()
+}
+
+/// The numbers of ids, the largest one for none.
+fn known_numbers<I: Id>(ids: &[MaybeId<I>]) -> Vec<u32> {
+    ids.iter().map(|id| id.get().map_or(u32::MAX, |id| id.place() as u32)).collect()
 }
 
 /// An id in the first mesh, or none, for each of `n` entities; fails if an id occurs twice.
-fn ids_of<I: Id>(arrays: &StateArrays, name: &str, n: usize, n_first: usize) -> Result<Vec<I>> {
+fn ids_of<I: Id>(arrays: &StateArrays, name: &str, n: usize, n_first: usize) -> Result<Vec<MaybeId<I>>> {
     let numbers = arrays.ids(name)?;
     let mut is_used = vec![false; n_first];
     let mut is_free = |number: u32| {
@@ -133,7 +138,8 @@ fn ids_of<I: Id>(arrays: &StateArrays, name: &str, n: usize, n_first: usize) -> 
     };
     match numbers.len() == n && numbers.iter().all(|number| is_free(*number)) {
         true => {
-            Ok(numbers.into_iter().map(|i| if i == u32::MAX { I::NONE } else { I::of(i as usize) }).collect())
+            let known = |i: u32| if i == u32::MAX { MaybeId::NONE } else { I::of(i as usize).into() };
+            Ok(numbers.into_iter().map(known).collect())
         }
         false => Err(damaged_state(name)),
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::base::{CellId, ErrorKind, Id, Point, Result, Threads, VertexId};
+use crate::base::{ErrorKind, Id, MaybeId, Point, Result, Threads};
 use crate::mesh::history::History;
 use crate::mesh::{Field, Mesh};
 use crate::motion::Mover;
@@ -93,13 +93,8 @@ impl StepRun<'_> {
     /// The vertices of a mesh, moved to their positions in the first one where that has them and no tet turns
     /// over: this is part of the step's motion, so that tets still shared with the first mesh stay.
     fn nearest_to(&self, now: &Current, places: &[Point]) -> Vec<Point> {
-        let mut is_first: Vec<Option<Point>> = now
-            .records
-            .in_first
-            .vertices
-            .iter()
-            .map(|v| (*v != VertexId::NONE).then(|| places[v.index()]))
-            .collect();
+        let mut is_first: Vec<Option<Point>> =
+            now.records.in_first.vertices.iter().map(|v| v.get().map(|v| places[v.index()])).collect();
         for _ in 0..MAX_ATTEMPTS {
             let points: Vec<Point> =
                 is_first.iter().zip(&self.points).map(|(place, here)| place.unwrap_or(*here)).collect();
@@ -123,8 +118,8 @@ fn history(given: &Mesh, now: &Current, first: &Mesh, threads: &Threads) -> Resu
         return Ok(None);
     }
     let InFirst { vertices, cells } = &now.records.in_first;
-    let vertices: Vec<VertexId> = inverse_ids(vertices, first.points.len());
-    let cells: Vec<CellId> = inverse_ids(cells, first.cells.len());
+    let vertices = inverse_ids(vertices, first.points.len());
+    let cells = inverse_ids(cells, first.cells.len());
     match between(given, first, &vertices, &cells, threads) {
         Ok(history) => Ok(Some(history)),
         Err(e) if e.kind() == ErrorKind::Input => Ok(None),
@@ -133,10 +128,12 @@ fn history(given: &Mesh, now: &Current, first: &Mesh, threads: &Threads) -> Resu
 }
 
 /// For each entity of the first mesh its current id, or none: the inverse of `in_first`.
-fn inverse_ids<I: Id>(in_first: &[I], n_first: usize) -> Vec<I> {
-    let mut now = vec![I::NONE; n_first];
-    for (i, first) in in_first.iter().enumerate().filter(|(_, first)| **first != I::NONE) {
-        now[first.place()] = I::of(i);
+fn inverse_ids<I: Id>(in_first: &[MaybeId<I>], n_first: usize) -> Vec<MaybeId<I>> {
+    let mut now = vec![MaybeId::NONE; n_first];
+    for (i, first) in in_first.iter().enumerate() {
+        if let Some(first) = first.get() {
+            now[first.place()] = I::of(i).into();
+        }
     }
     now
 }
@@ -149,10 +146,12 @@ fn arrange(fields: &mut [Field], as_in: &[Field]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::VertexId;
 
     #[test]
     fn ids_are_inverted() {
-        let [none, a, b, c] = [VertexId::NONE, VertexId(0), VertexId(1), VertexId(2)];
+        let none = MaybeId::NONE;
+        let [a, b, c] = [0, 1, 2].map(|v| MaybeId::from(VertexId(v)));
         assert_eq!(inverse_ids(&[c, none, a], 4), [c, none, a, none]);
         assert_eq!(inverse_ids(&[none, b], 2), [none, b]);
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::base::{CellId, Id, Point, percent};
+use crate::base::{CellId, Point, percent};
 use crate::mesh::Qualities;
 use crate::mesh::history::History;
 use crate::moving::shapes::Shape;
@@ -135,7 +135,7 @@ impl Change {
         history: Arc<History>,
         points_before: Vec<Point>,
     ) -> Self {
-        let n_kept = history.cells.kept().iter().filter(|id| **id != Id::NONE).count();
+        let n_kept = history.cells.kept().iter().filter(|id| id.is_some()).count();
         let regions = history.ledger.regions.iter().filter(|region| region.volume_before > 0.0);
         Self {
             time,

@@ -4,7 +4,7 @@
 //! facets of a cell they sum to the change of its volume, to rounding (the geometric conservation law; Thomas
 //! and Lombard 1979). Velocities of facets times areas at one time do not.
 
-use crate::base::{CellId, Id, Point, VertexId};
+use crate::base::{CellId, MaybeId, Point, VertexId};
 use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::mesh::Cells;
 use crate::mesh::adjacency::Facets;
@@ -16,8 +16,8 @@ pub struct SweptVolumes {
     pub facets: Vec<[VertexId; 3]>,
     /// The tet that owns the facet.
     pub owners: Vec<CellId>,
-    /// The tet on the other side, [`Id::NONE`] at the boundary.
-    pub neighbors: Vec<CellId>,
+    /// The tet on the other side; none at the boundary.
+    pub neighbors: Vec<MaybeId<CellId>>,
     /// The swept volume, in the unit of the points cubed: positive if the owner grows.
     pub volumes: Vec<f64>,
 }
@@ -33,7 +33,7 @@ pub fn swept_volumes(cells: &Cells, before: &[Point], after: &[Point]) -> SweptV
         let &[a, b, c] = corners.as_slice() else { return };
         swept.facets.push([a, b, c]);
         swept.owners.push(uses[0].cell);
-        swept.neighbors.push(uses.get(1).map_or(Id::NONE, |other| other.cell));
+        swept.neighbors.push(uses.get(1).map(|other| other.cell).into());
         let [x, y] = [before, after].map(|points| [a, b, c].map(|v| points[v.index()]));
         swept.volumes.push(sweep(x, y));
     });
@@ -69,8 +69,8 @@ mod tests {
         let mut gained = vec![0.0; mesh.cells.len()];
         for (i, &v) in swept.volumes.iter().enumerate() {
             gained[swept.owners[i].index()] += v;
-            if swept.neighbors[i] != Id::NONE {
-                gained[swept.neighbors[i].index()] -= v;
+            if let Some(neighbor) = swept.neighbors[i].get() {
+                gained[neighbor.index()] -= v;
             }
         }
         let mut n_moved = 0;

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::base::{CellId, Csr, Id, Point, Result, Threads, VertexId};
+use crate::base::{CellId, Csr, MaybeId, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{dot, sub};
-use crate::kernel::{Extract, NEW};
+use crate::kernel::Extract;
 use crate::mesh::history::{History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Cells, Field, Mesh, TetPart};
 use crate::remesh::held::{Held, Required};
@@ -59,9 +59,9 @@ pub fn remesh_part(
     let history = history(mesh, part, &extract, &joined, threads)?;
     let mut new = Mesh::new(extract.mesh.points, joined.cells);
     history.transfer(mesh, &mut new, rules)?;
-    let is_new = |v: &VertexId| extract.vertex_to_old[v.index()] == NEW;
+    let is_new = |v: &VertexId| extract.vertex_to_old[v.index()].is_none();
     let new_points: Vec<VertexId> = (0..new.points.len()).map(VertexId::new).filter(is_new).collect();
-    let is_new = |cell: &CellId| joined.cell_to_old[cell.index()] == Id::NONE;
+    let is_new = |cell: &CellId| joined.cell_to_old[cell.index()].is_none();
     let new_cells: Vec<CellId> = (0..new.cells.len()).map(CellId::new).filter(is_new).collect();
     number_anew(&mut new, &new_points, &new_cells);
     new.unmark(&new_points);
@@ -136,8 +136,8 @@ fn changed(mesh: &Mesh, part: &TetPart, options: &Options, threads: &Threads) ->
 /// The cells of the new mesh, and the old cell of each.
 struct Joined {
     cells: Cells,
-    /// The old cell of each cell; [`Id::NONE`] for new ones.
-    cell_to_old: Vec<CellId>,
+    /// The old cell of each cell; none for new ones.
+    cell_to_old: Vec<MaybeId<CellId>>,
     /// The cell of each tet of the new mesh.
     tet_to_cell: Vec<CellId>,
     /// New triangles: the cell of each, and its index among the triangles.
@@ -165,7 +165,7 @@ impl Joined {
             if kind == CellKind::TETRA {
                 joined.tet_to_cell.push(CellId::new(joined.cells.len()));
             }
-            joined.cell_to_old.push(cell);
+            joined.cell_to_old.push(cell.into());
             let vertices = vertices.iter().map(|&v| kept.vertex(v));
             if kind == CellKind::POLYHEDRON {
                 joined
@@ -198,29 +198,29 @@ impl Joined {
         let of_region: BTreeMap<i32, CellId> =
             removed.map(|t| (part.mesh.regions[t], part.tet_to_cell[t])).collect();
         for (t, cell) in self.tet_to_cell.iter().enumerate() {
-            if sources[cell.index()] == CellId::NONE {
-                sources[cell.index()] = of_region[&extract.mesh.regions[t]];
+            if sources[cell.index()].is_none() {
+                sources[cell.index()] = of_region[&extract.mesh.regions[t]].into();
             }
         }
         for &(cell, t) in &self.new_triangles {
-            sources[cell.index()] = part.triangle_to_cell[extract.triangle_to_old[t] as usize];
+            sources[cell.index()] = part.triangle_to_cell[extract.triangle_to_old[t] as usize].into();
         }
         for &(cell, line) in &self.new_lines {
-            sources[cell.index()] = part.line_to_cell[extract.line_to_old[line] as usize];
+            sources[cell.index()] = part.line_to_cell[extract.line_to_old[line] as usize].into();
         }
-        sources
+        sources.into_iter().map(|cell| cell.get().expect("each new cell is a part of an old one")).collect()
     }
 
     fn push_new(&mut self, kind: CellKind, vertices: &[VertexId]) {
         self.cells.push(kind, vertices.iter().copied());
-        self.cell_to_old.push(Id::NONE);
+        self.cell_to_old.push(MaybeId::NONE);
     }
 }
 
 /// What is left of the old mesh, and how it is renumbered.
 struct Kept {
     is_removed: Vec<bool>,
-    old_to_vertex: Vec<u32>,
+    old_to_vertex: Vec<MaybeId<VertexId>>,
     removed_triangles: Vec<usize>,
     new_triangles: Vec<usize>,
     new_lines: Vec<usize>,
@@ -258,7 +258,8 @@ impl Kept {
         let mut stays = vec![false; before.len()];
         let mut inserted = Vec::new();
         for (i, &old) in to_old.iter().enumerate() {
-            let is_same = |t: usize| before[t].map(|v| self.vertex(v)) == after[i];
+            let is_same =
+                |t: usize| before[t].map(|v| self.old_to_vertex[v.index()]) == after[i].map(MaybeId::from);
             match old as usize {
                 t if inserted.is_empty() && is_same(t) => stays[t] = true,
                 _ => inserted.push(i),
@@ -268,7 +269,7 @@ impl Kept {
     }
 
     fn vertex(&self, old: VertexId) -> VertexId {
-        VertexId(self.old_to_vertex[old.index()])
+        self.old_to_vertex[old.index()].get().expect("a cell that stays keeps its vertices")
     }
 
     fn faces(&self, faces: &Csr<VertexId>) -> Csr<VertexId> {
@@ -304,11 +305,11 @@ fn history(
     joined: &Joined,
     threads: &Threads,
 ) -> Result<History> {
-    let mut vertex_to_old: Vec<VertexId> = extract.vertex_to_old.iter().map(|&v| VertexId(v)).collect();
+    let mut vertex_to_old = extract.vertex_to_old.clone();
     let mut changed_vertices = Vec::with_capacity(extract.changed_vertices.len());
     for &vertex in &extract.changed_vertices {
-        let was = std::mem::replace(&mut vertex_to_old[vertex.index()], Id::NONE);
-        changed_vertices.push(ChangedVertex { vertex, was: (was != Id::NONE).then_some(was) });
+        let was = std::mem::replace(&mut vertex_to_old[vertex.index()], MaybeId::NONE);
+        changed_vertices.push(ChangedVertex { vertex, was: was.get() });
     }
     let (before, after) = (&part.mesh, &extract.mesh);
     let old_tet = |t: usize| (part.tet_to_cell[t], before.tets[t], before.regions[t]);

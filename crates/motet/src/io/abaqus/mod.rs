@@ -37,13 +37,13 @@ mod surfaces;
 mod tests;
 mod write;
 
-use crate::io::Format;
+use crate::io::{Format, Write};
 
 pub(super) const FORMAT: Format = Format {
     name: "Abaqus",
     extensions: &[".inp"],
     read: Some(read::read),
-    write: Some(|mesh, _| write::write(mesh)),
+    write: Some(Write::File(write::write)),
 };
 
 /// Prefix of the name of an array that stands for a node set.

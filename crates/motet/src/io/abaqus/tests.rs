@@ -2,7 +2,7 @@ use std::path::Path;
 
 use super::*;
 use crate::base::{Result, VertexId};
-use crate::io::format::{Input, Notes};
+use crate::io::format::{Input, Notes, WriteOptions};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 fn parse_at(path: &Path, bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
@@ -21,7 +21,7 @@ fn error_of(text: &str) -> String {
 }
 
 fn print(mesh: &Mesh) -> (String, Vec<String>) {
-    let written = write::write(mesh).unwrap();
+    let written = FORMAT.to_files(mesh, &WriteOptions::default()).unwrap();
     (String::from_utf8(written.files.into_iter().next().unwrap().1).unwrap(), written.lost)
 }
 
@@ -357,7 +357,7 @@ fn truncated_and_damaged_files_never_panic() {
         let check = |bytes: &[u8]| {
             if let Ok(mesh) = parse_at(Path::new("in.inp"), bytes).0 {
                 mesh.validate().unwrap();
-                let again = write::write(&mesh).unwrap();
+                let again = FORMAT.to_files(&mesh, &WriteOptions::default()).unwrap();
                 parse_at(Path::new("in.inp"), &again.files[0].1).0.unwrap();
             }
         };

@@ -57,8 +57,12 @@ mod tree;
 mod write;
 mod zone;
 
-use crate::io::format::Format;
+use crate::io::format::{Format, Write};
 
 /// Unstructured meshes with boundary conditions and solutions.
-pub(super) const FORMAT: Format =
-    Format { name: "CGNS", extensions: &[".cgns"], read: Some(read::read), write: Some(write::write) };
+pub(super) const FORMAT: Format = Format {
+    name: "CGNS",
+    extensions: &[".cgns"],
+    read: Some(read::read),
+    write: Some(Write::File(write::write)),
+};

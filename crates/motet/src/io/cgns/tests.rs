@@ -23,7 +23,7 @@ fn refused(bytes: &[u8]) -> String {
 }
 
 fn print(mesh: &Mesh) -> (Vec<u8>, Vec<String>) {
-    let mut written = (FORMAT.write.unwrap())(mesh, &WriteOptions::default()).unwrap();
+    let mut written = FORMAT.to_files(mesh, &WriteOptions::default()).unwrap();
     (written.files.remove(0).1, written.lost)
 }
 

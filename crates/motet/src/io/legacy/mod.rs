@@ -17,8 +17,12 @@ mod read;
 mod source;
 mod write;
 
-use crate::io::format::Format;
+use crate::io::format::{Format, Write};
 
 /// Legacy VTK files.
-pub(super) const VTK: Format =
-    Format { name: "VTK legacy", extensions: &[".vtk"], read: Some(read::read), write: Some(write::write) };
+pub(super) const VTK: Format = Format {
+    name: "VTK legacy",
+    extensions: &[".vtk"],
+    read: Some(read::read),
+    write: Some(Write::File(write::write)),
+};

@@ -3,14 +3,18 @@
 use std::io::Write as _;
 
 use crate::base::{Error, Result};
-use crate::io::format::{Encoding, WriteOptions, Written};
+use crate::io::format::{Encoding, WriteOptions, drain};
 use crate::io::labels::label_fields;
 use crate::io::legacy::arrays::{encode, encode_length};
 use crate::io::polyhedra::face_stream;
 use crate::io::scalar::{big_bytes, write_text};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
-pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+pub(super) fn write(
+    mesh: &Mesh,
+    options: &WriteOptions,
+    sink: &mut dyn std::io::Write,
+) -> Result<Vec<String>> {
     let offsets = match options.version.as_deref() {
         None | Some("5.1") => true,
         Some("4.2") => false,
@@ -30,16 +34,19 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     writer.fields(&mesh.field_data.iter().chain(&label_names).collect::<Vec<_>>());
     writer.line(&format!("POINTS {} double", mesh.points.len()));
     writer.numbers(&Values::F64(mesh.points.as_flattened().to_vec()));
+    drain(&mut writer.out, sink)?;
     if !mesh.cells.is_empty() {
         writer.cells(mesh)?;
     }
+    drain(&mut writer.out, sink)?;
     writer.data(
         "CELL_DATA",
         mesh.cells.len(),
         &mesh.cell_data.iter().chain(&label_cells).collect::<Vec<_>>(),
     );
     writer.data("POINT_DATA", mesh.points.len(), &mesh.point_data.iter().collect::<Vec<_>>());
-    Ok(Written { lost: writer.lost, ..Written::one(writer.out) })
+    drain(&mut writer.out, sink)?;
+    Ok(writer.lost)
 }
 
 struct Writer {

@@ -37,7 +37,7 @@ mod source;
 mod tests;
 mod write;
 
-use crate::io::Format;
+use crate::io::{Format, Write};
 use crate::mesh::CellKind;
 use crate::mesh::marks::{CORNER, REQUIRED, RIDGE};
 
@@ -45,25 +45,25 @@ pub(super) const MESH: Format = Format {
     name: "Medit",
     extensions: &[".mesh"],
     read: Some(companion::read_mesh),
-    write: Some(|mesh, _| write::mesh(mesh, false)),
+    write: Some(Write::Files(|mesh, _| write::mesh(mesh, false))),
 };
 pub(super) const MESHB: Format = Format {
     name: "Medit binary",
     extensions: &[".meshb"],
     read: Some(companion::read_mesh),
-    write: Some(|mesh, _| write::mesh(mesh, true)),
+    write: Some(Write::Files(|mesh, _| write::mesh(mesh, true))),
 };
 pub(super) const SOL: Format = Format {
     name: "Medit solution",
     extensions: &[".sol"],
     read: Some(companion::read_solution),
-    write: Some(|mesh, _| write::solution(mesh, false)),
+    write: Some(Write::Files(|mesh, _| write::solution(mesh, false))),
 };
 pub(super) const SOLB: Format = Format {
     name: "Medit binary solution",
     extensions: &[".solb"],
     read: Some(companion::read_solution),
-    write: Some(|mesh, _| write::solution(mesh, true)),
+    write: Some(Write::Files(|mesh, _| write::solution(mesh, true))),
 };
 
 /// The name of a section in text and its number in binary files.

@@ -24,7 +24,11 @@ mod sink;
 mod source;
 mod write;
 
-use crate::io::Format;
+use crate::io::{Format, Write};
 
-pub(super) const FORMAT: Format =
-    Format { name: "Gmsh MSH", extensions: &[".msh"], read: Some(read::read), write: Some(write::write) };
+pub(super) const FORMAT: Format = Format {
+    name: "Gmsh MSH",
+    extensions: &[".msh"],
+    read: Some(read::read),
+    write: Some(Write::File(write::write)),
+};

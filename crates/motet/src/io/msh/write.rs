@@ -6,7 +6,7 @@ use super::kinds::{ElementType, element_types};
 use super::sink::Sink;
 use crate::base::{Error, Result};
 use crate::io::cell_labels::{cell_labels, int_column, labels_cover};
-use crate::io::format::{Encoding, WriteOptions, Written};
+use crate::io::format::{Encoding, WriteOptions, drain};
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
@@ -32,7 +32,11 @@ struct CellTags {
 /// Writes an MSH file in the requested version. The default is 4.1, or 2.2 if only some cells have a label,
 /// which meshio (5.3) cannot read in 4.1, and there are no cell arrays, which meshio cannot read on several
 /// kinds of cells in 2.2.
-pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+pub(super) fn write(
+    mesh: &Mesh,
+    options: &WriteOptions,
+    sink: &mut dyn std::io::Write,
+) -> Result<Vec<String>> {
     let types = element_types();
     let requested = match options.version.as_deref() {
         None => None,
@@ -51,20 +55,24 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let has_data = mesh.cell_data.iter().any(|f| !tagged.is_in_tags(&mesh, f, true));
     let default = if partly && !has_data { Version::V2 } else { Version::V4 };
     let version2 = requested.unwrap_or(default) == Version::V2;
-    let mut sink = Sink { out: Vec::new(), binary: options.encoding != Encoding::Ascii };
-    header(&mut sink, if version2 { "2.2" } else { "4.1" });
-    physical_names(&mut sink, &mesh);
+    let mut text = Sink { out: Vec::new(), binary: options.encoding != Encoding::Ascii };
+    header(&mut text, if version2 { "2.2" } else { "4.1" });
+    physical_names(&mut text, &mesh);
     if version2 {
-        nodes2(&mut sink, &mesh);
-        elements2(&mut sink, &mesh, &types, &tagged);
+        nodes2(&mut text, &mesh);
+        drain(&mut text.out, sink)?;
+        elements2(&mut text, &mesh, &types, &tagged);
     } else {
         let node_entities = node_entities(&mesh, &tagged);
-        entities4(&mut sink, &mesh, &tagged, &node_entities);
-        nodes4(&mut sink, &mesh, &node_entities);
-        elements4(&mut sink, &mesh, &types, &tagged);
+        entities4(&mut text, &mesh, &tagged, &node_entities);
+        nodes4(&mut text, &mesh, &node_entities);
+        drain(&mut text.out, sink)?;
+        elements4(&mut text, &mesh, &types, &tagged);
     }
-    data(&mut sink, &mesh, &tagged, version2, &mut lost);
-    Ok(Written { files: vec![(String::new(), sink.out)], lost })
+    drain(&mut text.out, sink)?;
+    data(&mut text, &mesh, &tagged, version2, &mut lost);
+    drain(&mut text.out, sink)?;
+    Ok(lost)
 }
 
 impl CellTags {

@@ -22,7 +22,7 @@ mod read;
 mod tests;
 mod write;
 
-use crate::io::format::Format;
+use crate::io::format::{Format, Write};
 
 pub(super) use folder::{is_case, is_polymesh_name};
 
@@ -30,5 +30,5 @@ pub(super) const FORMAT: Format = Format {
     name: "OpenFOAM polyMesh",
     extensions: &["polymesh/", ".foam"],
     read: Some(read::read),
-    write: Some(write::write),
+    write: Some(Write::Files(write::write)),
 };

@@ -7,13 +7,13 @@
 mod read;
 mod write;
 
-use crate::io::format::Format;
+use crate::io::format::{Format, Write};
 
 pub(super) const FORMAT: Format = Format {
     name: "SimVascular mesh-complete",
     extensions: &["/"],
     read: Some(read::read),
-    write: Some(write::write),
+    write: Some(Write::Files(write::write)),
 };
 
 const NODE_ID: &str = "GlobalNodeID";

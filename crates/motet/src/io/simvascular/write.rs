@@ -32,11 +32,11 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let numbered = WithIds::new(mesh, &volume_cells);
     let mut written = Written::default();
     let volume = numbered.volume(&volume_cells);
-    add(&mut written, VOLUME.into(), vtkxml::write_vtu(&volume, options)?);
+    add(&mut written, VOLUME.into(), vtkxml::VTU.to_files(&volume, options)?);
     let mut unknown = 0;
     let face = |written: &mut Written, path: String, cells: &[usize]| -> Result<usize> {
         let (face, inside) = numbered.face(cells, &labels);
-        add(written, path, vtkxml::write_vtp(&face, options)?);
+        add(written, path, vtkxml::VTP.to_files(&face, options)?);
         Ok(inside)
     };
     for (name, cells) in &faces {

@@ -10,13 +10,13 @@ mod read;
 mod write;
 
 use super::node_order::Nodes;
-use crate::io::Format;
+use crate::io::{Format, Write};
 
 pub(super) const FORMAT: Format = Format {
     name: "TetGen",
     extensions: &[".node", ".ele"],
     read: Some(read::read),
-    write: Some(write::write),
+    write: Some(Write::Files(write::write)),
 };
 
 /// Nodes on the edges of a tetrahedron, determined by comparing the output of TetGen 1.6 with `-o2` with

@@ -30,7 +30,7 @@ mod steps;
 mod tests;
 mod write;
 
-use crate::io::format::Format;
+use crate::io::format::{Format, Write};
 
 pub(super) use series::{StepPath, is_transient, is_vtkhdf_name, read_step, times};
 pub(super) use steps::Steps;
@@ -40,7 +40,7 @@ pub(super) const FORMAT: Format = Format {
     name: "VTKHDF",
     extensions: &[".vtkhdf", ".hdf"],
     read: Some(read::read),
-    write: Some(write::write),
+    write: Some(Write::File(write::write)),
 };
 
 /// The names of the groups of polygonal data, in the order of the sections.

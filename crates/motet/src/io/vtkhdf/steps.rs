@@ -1,8 +1,10 @@
 //! Writes meshes over time to one VTKHDF file. Cells and arrays that equal those of the previous step are
 //! stored once.
 
+use std::io::Write;
+
 use crate::base::{Error, Result};
-use crate::io::format::{WriteOptions, Written};
+use crate::io::format::{WriteOptions, write_all};
 use crate::io::hdf::{Attribute, Node, Storage};
 use crate::io::labels::label_fields;
 use crate::io::vtkhdf::write::{storage, valid_name};
@@ -100,10 +102,14 @@ impl Steps {
         self.last = Some(mesh.cells.clone());
     }
 
-    /// Builds the file.
+    /// Writes the file to a sink; returns what the format could not hold.
     ///
     /// Fails if there are no frames, or the options request an unsupported compression.
-    pub(in crate::io) fn into_file(mut self, options: &WriteOptions) -> Result<Written> {
+    pub(in crate::io) fn write_to(
+        mut self,
+        options: &WriteOptions,
+        sink: &mut dyn Write,
+    ) -> Result<Vec<String>> {
         let storage = storage(options)?;
         let n = self.times.len();
         if n == 0 {
@@ -170,7 +176,8 @@ impl Steps {
         root.group(steps);
         let mut file = Node::new("");
         file.group(root);
-        Ok(Written { lost, ..Written::one(file.into_file()?) })
+        write_all(sink, &file.into_file()?)?;
+        Ok(lost)
     }
 }
 

@@ -21,7 +21,7 @@ fn refused(bytes: &[u8]) -> String {
 
 fn print(mesh: &Mesh, compression: Compression) -> (Vec<u8>, Vec<String>) {
     let options = WriteOptions { compression, ..WriteOptions::default() };
-    let mut written = (FORMAT.write.unwrap())(mesh, &options).unwrap();
+    let mut written = FORMAT.to_files(mesh, &options).unwrap();
     (written.files.remove(0).1, written.lost)
 }
 
@@ -113,7 +113,7 @@ fn names_that_hdf5_cannot_hold_are_reported() {
     let names: Vec<_> = parse(&bytes).unwrap().0.point_data.into_iter().map(|f| f.name).collect();
     assert_eq!(names, ["a_b", "a_b_2", "a_b_3", "unnamed"]);
     let lz4 = WriteOptions { compression: Compression::Lz4, ..WriteOptions::default() };
-    assert!((FORMAT.write.unwrap())(&mesh, &lz4).unwrap_err().remedy_text().is_some());
+    assert!(FORMAT.to_files(&mesh, &lz4).unwrap_err().remedy_text().is_some());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Writes a mesh as a VTKHDF file.
 
 use crate::base::{Csr, Error, Result, VertexId};
-use crate::io::format::{Compression, WriteOptions, Written};
+use crate::io::format::{Compression, WriteOptions, write_all};
 use crate::io::hdf::{Attribute, Node, Storage};
 use crate::io::labels::label_fields;
 use crate::io::polygonal::{kind_in_section, section_of};
@@ -11,7 +11,11 @@ use crate::mesh::{CellKind, Cells, Field, Mesh, Values, unused_name};
 /// The version that every reader of VTKHDF supports, and the first with polyhedra.
 const VERSIONS: [[i64; 2]; 2] = [[2, 0], [2, 5]];
 
-pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+pub(super) fn write(
+    mesh: &Mesh,
+    options: &WriteOptions,
+    sink: &mut dyn std::io::Write,
+) -> Result<Vec<String>> {
     let storage = storage(options)?;
     let mut lost = Vec::new();
     let mut root = Node::new("VTKHDF");
@@ -44,7 +48,8 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     }
     let mut file = Node::new("");
     file.group(root);
-    Ok(Written { lost, ..Written::one(file.into_file()?) })
+    write_all(sink, &file.into_file()?)?;
+    Ok(lost)
 }
 
 pub(super) fn storage(options: &WriteOptions) -> Result<Storage> {

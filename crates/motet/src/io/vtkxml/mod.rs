@@ -31,19 +31,17 @@ mod writer;
 mod xz;
 
 use crate::base::{Error, Result};
-use crate::io::format::{Format, Input, Notes};
+use crate::io::format::{Format, Input, Notes, Write};
 use crate::mesh::Mesh;
 
 pub(super) use tail::Tail;
-pub(super) use vtp::write as write_vtp;
-pub(super) use vtu::{write as write_vtu, write_to};
 
 /// Unstructured grids: cells of any kind.
 pub(super) const VTU: Format = Format {
     name: "VTK XML unstructured grid",
     extensions: &[".vtu"],
     read: Some(read),
-    write: Some(write_vtu),
+    write: Some(Write::File(vtu::write)),
 };
 
 /// Polygonal data: vertices, lines, polygons, strips.
@@ -51,7 +49,7 @@ pub(super) const VTP: Format = Format {
     name: "VTK XML polygonal data",
     extensions: &[".vtp"],
     read: Some(read),
-    write: Some(write_vtp),
+    write: Some(Write::File(vtp::write)),
 };
 
 /// Files that refer to others, which together form a mesh.

@@ -1,7 +1,7 @@
 //! Polygonal data (`.vtp`): vertices, lines, polygons, strips.
 
 use crate::base::{CellId, Csr, Error, Result, VertexId};
-use crate::io::format::{WriteOptions, Written};
+use crate::io::format::WriteOptions;
 use crate::io::labels::label_fields;
 use crate::io::polygonal::{SECTIONS, kind_in_section, section_of};
 use crate::io::scalar::select_rows;
@@ -134,7 +134,12 @@ fn lost_by_kind(mut kinds: Vec<CellKind>) -> Vec<String> {
         .collect()
 }
 
-pub(in crate::io) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+/// Writes a mesh to `sink`; returns what the format could not hold.
+pub(super) fn write(
+    mesh: &Mesh,
+    options: &WriteOptions,
+    sink: &mut dyn std::io::Write,
+) -> Result<Vec<String>> {
     let sections = Sections::of(&mesh.cells)?;
     let (label_cells, label_names) = label_fields(mesh);
     let cell_data: Vec<Field> =
@@ -162,8 +167,7 @@ pub(in crate::io) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Writte
         writer.close(name);
     }
     writer.close("Piece");
-    let mut bytes = Vec::new();
-    let mut lost = writer.finish(KIND, &mut bytes)?;
+    let mut lost = writer.finish(KIND, sink)?;
     lost.extend(sections.lost.iter().cloned());
-    Ok(Written { lost, ..Written::one(bytes) })
+    Ok(lost)
 }

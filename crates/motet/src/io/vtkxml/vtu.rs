@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use crate::base::{Error, Result, VertexId};
-use crate::io::format::{WriteOptions, Written};
+use crate::io::format::WriteOptions;
 use crate::io::labels::label_fields;
 use crate::io::polyhedra::cells_with_polyhedra;
 use crate::io::surplus_points::trim;
@@ -79,18 +79,8 @@ fn read_kinds(file: &File<'_>, element: &Element<'_>, n: usize) -> Result<Vec<Ce
     Ok(bytemuck::allocation::cast_vec(numbers))
 }
 
-pub(in crate::io) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
-    let mut bytes = Vec::new();
-    let lost = write_to(mesh, options, &mut bytes)?;
-    Ok(Written { lost, ..Written::one(bytes) })
-}
-
 /// Writes a mesh to `sink`; returns what the format could not hold.
-pub(in crate::io) fn write_to(
-    mesh: &Mesh,
-    options: &WriteOptions,
-    sink: &mut dyn Write,
-) -> Result<Vec<String>> {
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions, sink: &mut dyn Write) -> Result<Vec<String>> {
     let (label_cells, label_names) = label_fields(mesh);
     let mut writer = Writer::new(KIND, options);
     let field_data: Vec<&Field> = mesh.field_data.iter().chain(&label_names).collect();

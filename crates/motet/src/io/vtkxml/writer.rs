@@ -6,8 +6,8 @@ use std::io::Write;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use crate::base::{Csr, Error, ErrorKind, Point, Result, VertexId};
-use crate::io::format::{Compression, Encoding, WriteOptions};
+use crate::base::{Csr, Point, Result, VertexId};
+use crate::io::format::{Compression, Encoding, WriteOptions, write_all};
 use crate::io::scalar::{native_bytes, write_lines, write_text};
 use crate::io::vtkxml::codec::{Compressor, vtk_name};
 use crate::mesh::{Field, Values};
@@ -90,10 +90,6 @@ impl Data<'_> {
             other => other.bytes().map_or(0, |b| b.len()),
         }
     }
-}
-
-fn write_all(sink: &mut dyn Write, bytes: &[u8]) -> Result<()> {
-    sink.write_all(bytes).map_err(|e| Error::new(ErrorKind::Output, format!("cannot be written: {e}")))
 }
 
 /// A file being written.

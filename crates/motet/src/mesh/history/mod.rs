@@ -35,14 +35,14 @@ use crate::base::{CellId, VertexId};
 /// What a change did to a mesh, in arrays: where everything came from, and how well volumes match.
 ///
 /// ```
-/// use motet::base::{CellId, VertexId};
+/// use motet::base::{MaybeId, VertexId};
 /// use motet::mesh::Field;
 /// use motet::mesh::history::{History, Ledger, Origins, Rows};
 /// # fn main() -> motet::Result<()> {
 /// // Three vertices; the new mesh has the last two, and one halfway between the first two.
 /// let mut halfway = Rows::new();
 /// halfway.push(VertexId(2), &[(VertexId(0), 0.5), (VertexId(1), 0.5)], VertexId(0));
-/// let kept = vec![VertexId(1), VertexId(2), motet::base::Id::NONE];
+/// let kept = vec![VertexId(1).into(), VertexId(2).into(), MaybeId::NONE];
 /// let history = History {
 ///     vertices: Origins::new(3, kept, halfway)?,
 ///     cells: Origins::identity(0),

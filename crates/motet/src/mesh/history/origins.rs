@@ -1,7 +1,7 @@
 //! Where each vertex, or each cell, of a new mesh came from.
 
 use super::row::{Row, Rows, Signs};
-use crate::base::{Error, Id, Result};
+use crate::base::{Error, Id, MaybeId, Result, absent};
 
 /// Rows for quadratic fields that are longer than this are dropped when changes are joined, since each change
 /// makes them longer.
@@ -15,10 +15,10 @@ const MAX_ROW_LENGTH: usize = 400;
     feature = "serde",
     serde(bound(serialize = "I: Id + serde::Serialize", deserialize = "I: Id + serde::Deserialize<'de>"))
 )]
-pub struct Origins<I> {
+pub struct Origins<I: Id> {
     n_old: usize,
-    /// The old id of each new entity that was kept; `NONE` if it changed.
-    kept: Vec<I>,
+    /// The old id of each new entity that was kept; none if it changed.
+    kept: Vec<MaybeId<I>>,
     /// A row for each new entity that changed, in their order.
     changed: Rows<I>,
     /// A further row, for quadratic fields, for some of the entities that changed.
@@ -43,7 +43,7 @@ pub enum Origin<'a, I> {
 )]
 struct Parts<I> {
     n_old: usize,
-    kept: Vec<I>,
+    kept: Vec<MaybeId<I>>,
     changed: Rows<I>,
     #[cfg_attr(feature = "serde", serde(default))]
     quadratic: Rows<I>,
@@ -59,23 +59,20 @@ impl<I: Id> TryFrom<Parts<I>> for Origins<I> {
 
 impl<I: Id> Origins<I> {
     /// Origins of new entities from `n_old` old ones. `kept` has the old id of each new entity, or
-    /// [`Id::NONE`] if it changed and `changed` has its row.
+    /// none if it changed and `changed` has its row.
     ///
     /// # Errors
     /// If an old id does not exist, shares are not valid, or an entity has both an old id and a row, or
     /// neither.
-    pub fn new(n_old: usize, kept: Vec<I>, changed: Rows<I>) -> Result<Self> {
+    pub fn new(n_old: usize, kept: Vec<MaybeId<I>>, changed: Rows<I>) -> Result<Self> {
         changed.check(n_old, Signs::Positive)?;
-        if let Some(new) = kept.iter().position(|&old| old != I::NONE && old.place() >= n_old) {
-            return Err(Error::input(format!(
-                "refers to the old id {}, but there were only {n_old}",
-                kept[new]
-            ))
-            .at(format!("origin of {new}")));
+        let known = kept.iter().enumerate().filter_map(|(new, old)| Some((new, old.get()?)));
+        if let Some((new, old)) = known.clone().find(|(_, old)| old.place() >= n_old) {
+            return Err(Error::input(format!("refers to the old id {old}, but there were only {n_old}"))
+                .at(format!("origin of {new}")));
         }
-        let without = || kept.iter().enumerate().filter(|(_, old)| **old == I::NONE).map(|(new, _)| new);
-        if !without().eq(changed.ids().iter().map(|id| id.place())) {
-            let n_without = without().count();
+        if absent(&kept) != changed.ids() {
+            let n_without = kept.len() - known.count();
             return Err(Error::input(format!(
                 "{n_without} entities without an old id need one row each, \
                  but there are {} rows, or rows for other ids",
@@ -102,7 +99,12 @@ impl<I: Id> Origins<I> {
     ///
     /// Panics if `n` is more than ids can count.
     pub fn identity(n: usize) -> Self {
-        Self { n_old: n, kept: (0..n).map(I::of).collect(), changed: Rows::new(), quadratic: Rows::new() }
+        Self {
+            n_old: n,
+            kept: (0..n).map(|id| I::of(id).into()).collect(),
+            changed: Rows::new(),
+            quadratic: Rows::new(),
+        }
     }
 
     /// Number of entities in the old mesh.
@@ -120,8 +122,8 @@ impl<I: Id> Origins<I> {
         self.kept.is_empty()
     }
 
-    /// For each new entity, the old one that it is, or [`Id::NONE`].
-    pub fn kept(&self) -> &[I] {
+    /// For each new entity, the old one that it is, or none.
+    pub fn kept(&self) -> &[MaybeId<I>] {
         &self.kept
     }
 
@@ -142,16 +144,16 @@ impl<I: Id> Origins<I> {
     pub fn of(&self, id: I) -> Origin<'_, I> {
         match self.changed.of(id) {
             Some(row) => Origin::Changed(row),
-            None => Origin::Kept(self.kept[id.place()]),
+            None => Origin::Kept(self.kept[id.place()].get().expect("kept where it has no row")),
         }
     }
 
     /// Where every entity came from, in the order of the new mesh.
     pub fn iter(&self) -> impl Iterator<Item = Origin<'_, I>> + '_ {
         let mut rows = self.changed.iter();
-        self.kept.iter().map(move |&old| match old == I::NONE {
-            false => Origin::Kept(old),
-            true => Origin::Changed(rows.next().expect("one row for each that changed")),
+        self.kept.iter().map(move |old| match old.get() {
+            Some(old) => Origin::Kept(old),
+            None => Origin::Changed(rows.next().expect("one row for each that changed")),
         })
     }
 
@@ -172,11 +174,11 @@ impl<I: Id> Origins<I> {
         for (id, origin) in later.iter().enumerate() {
             let direct = matches!(origin, Origin::Kept(_)).then(|| self.of(origin.main()));
             if let Some(Origin::Kept(old)) = direct {
-                kept.push(old);
+                kept.push(old.into());
                 continue;
             }
             let (id, main) = (I::of(id), self.of(origin.main()).main());
-            kept.push(I::NONE);
+            kept.push(MaybeId::NONE);
             compose(&origin, |middle| self.of(middle), &mut parts);
             changed.push(id, &parts, main);
             let is_wide = |&middle: &I| self.quadratic.of(middle).is_some();

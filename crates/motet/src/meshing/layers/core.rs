@@ -3,7 +3,7 @@
 
 use super::columns::{Columns, Site};
 use super::skin::{Sides, Skin};
-use crate::base::{Id, Point, VertexId};
+use crate::base::{MaybeId, Point, VertexId};
 use crate::geometry::vector::add;
 use crate::meshing::surfaces::Surfaces;
 
@@ -20,10 +20,10 @@ pub(super) struct Core {
     /// For each triangle, whether all its corners are unmoved.
     pub(super) is_unmoved: Vec<bool>,
     is_two_sided: Vec<bool>,
-    /// For each vertex of the surfaces, its vertex in the core, or [`Id::NONE`].
-    pub(super) of_vertex: Vec<VertexId>,
+    /// For each vertex of the surfaces, its vertex in the core, if it has one.
+    pub(super) of_vertex: Vec<MaybeId<VertexId>>,
     /// For each vertex of the skin, the vertex of the core at the top of its column, if that is not its foot.
-    pub(super) of_skin: Vec<VertexId>,
+    pub(super) of_skin: Vec<MaybeId<VertexId>>,
 }
 
 impl Core {
@@ -49,8 +49,8 @@ impl Core {
             is_raised: Vec::new(),
             is_unmoved: Vec::new(),
             is_two_sided: sides.iter().map(|sides| sides.iter().all(Option::is_some)).collect(),
-            of_vertex: vec![Id::NONE; surfaces.points.len()],
-            of_skin: vec![Id::NONE; skin.points.len()],
+            of_vertex: vec![MaybeId::NONE; surfaces.points.len()],
+            of_skin: vec![MaybeId::NONE; skin.points.len()],
         };
         let places: Vec<Point> = (0..skin.points.len())
             .map(|w| match columns.top(VertexId::new(w)) {
@@ -92,12 +92,11 @@ impl Core {
         corners: [(VertexId, Option<VertexId>); 3],
     ) {
         let points = &mut self.surfaces.points;
-        let mut number = |of: &mut VertexId, p: Point| {
-            if *of == VertexId::NONE {
-                *of = VertexId::new(points.len());
+        let mut number = |of: &mut MaybeId<VertexId>, p: Point| {
+            of.get_or_insert_with(|| {
                 points.push(p);
-            }
-            *of
+                VertexId::new(points.len() - 1)
+            })
         };
         let triangle = corners.map(|(v, moved)| match moved {
             Some(w) => number(&mut self.of_skin[w.index()], places[w.index()]),

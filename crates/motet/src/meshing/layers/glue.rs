@@ -4,7 +4,7 @@ use super::columns::{Columns, Site, distinct};
 use super::core::Core;
 use super::neighbors::NONE;
 use super::skin::Skin;
-use crate::base::{Id, Point, VertexId};
+use crate::base::{MaybeId, Point, VertexId};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 use crate::meshing::surfaces::Surfaces;
 
@@ -12,9 +12,9 @@ use crate::meshing::surfaces::Surfaces;
 struct Numbers<'a> {
     columns: &'a Columns<'a>,
     /// The vertex of the mesh at each foot.
-    feet: Vec<VertexId>,
+    feet: Vec<MaybeId<VertexId>>,
     /// The vertex of the mesh at each top that is not the foot.
-    tops: Vec<VertexId>,
+    tops: Vec<MaybeId<VertexId>>,
     /// For each column, the vertex at the first level in between.
     between: Vec<u32>,
 }
@@ -28,17 +28,17 @@ impl<'a> Numbers<'a> {
         to_mesh: &[VertexId],
         points: &mut Vec<Point>,
     ) -> Self {
-        let in_mesh = |v: &VertexId| if *v == Id::NONE { *v } else { to_mesh[v.index()] };
-        let mut of_vertex: Vec<VertexId> = core.of_vertex.iter().map(in_mesh).collect();
-        let mut feet = vec![Id::NONE; skin.points.len()];
+        let in_mesh = |v: &MaybeId<VertexId>| v.get().map(|v| to_mesh[v.index()]).into();
+        let mut of_vertex: Vec<MaybeId<VertexId>> = core.of_vertex.iter().map(in_mesh).collect();
+        let mut feet = vec![MaybeId::NONE; skin.points.len()];
         let mut between = vec![0; skin.points.len()];
         for w in 0..skin.points.len() {
             let vertex = VertexId::new(w);
             let n = columns.count(vertex);
             let foot = &mut of_vertex[skin.to_vertex[w].index()];
             // A foot that slid away is no longer needed, unless another body uses it.
-            if *foot == VertexId::NONE && n > 0 {
-                *foot = VertexId::new(points.len());
+            if foot.is_none() && n > 0 {
+                *foot = VertexId::new(points.len()).into();
                 points.push(skin.points[w]);
             }
             feet[w] = *foot;
@@ -49,11 +49,12 @@ impl<'a> Numbers<'a> {
     }
 
     fn of(&self, Site { foot, level }: Site) -> VertexId {
-        match level {
+        let known = match level {
             0 => self.feet[foot.index()],
             level if level == self.columns.count(foot) => self.tops[foot.index()],
-            level => VertexId(self.between[foot.index()] + level - 1),
-        }
+            level => VertexId(self.between[foot.index()] + level - 1).into(),
+        };
+        known.get().expect("the site of a column is numbered")
     }
 }
 
@@ -136,8 +137,8 @@ fn add_surface(
     // With a body on the other side the wall is already there: it bounds the core of that body.
     if !core.is_two_sided(skin.to_triangle[t as usize]) {
         let feet = wall.map(|v| {
-            let w = skin.vertex(v, skin.bodies[t as usize]);
-            w.map_or(Id::NONE, |w| numbers.feet[w.index()])
+            let foot = skin.vertex(v, skin.bodies[t as usize]).expect("a corner of the skin's triangle");
+            numbers.of(Site { foot, level: 0 })
         });
         surface.push(CellKind::TRIANGLE, feet, 0, patch(t));
     }

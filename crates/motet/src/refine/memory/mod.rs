@@ -20,8 +20,8 @@ mod record;
 mod trees;
 mod triangles;
 
-use crate::base::{Error, MaybeId, Point, Result, TetId};
-use crate::kernel::{Extract, NEW};
+use crate::base::{Error, MaybeId, Point, Result, TetId, VertexId};
+use crate::kernel::Extract;
 use crate::mesh::TetMesh;
 
 /// The memory of a refined mesh, array by array.
@@ -49,10 +49,9 @@ impl Memory {
     /// The memory after others have changed the mesh: new tets and vertices are unknown.
     #[must_use]
     pub fn after(&self, change: &Extract) -> Self {
-        let of_tets = || change.tet_to_old.iter().map(|&old| (old != NEW).then_some(old as usize));
-        let old_point = |(i, &old): (usize, &u32)| match old {
-            NEW => change.mesh.points[i],
-            old => self.reference[old as usize],
+        let of_tets = || change.tet_to_old.iter().map(|old| old.get().map(TetId::index));
+        let old_point = |(point, old): (&Point, &MaybeId<VertexId>)| {
+            old.get().map_or(*point, |old| self.reference[old.index()])
         };
         Self {
             roots: of_tets().map(|old| old.map_or(MaybeId::NONE, |t| self.roots[t])).collect(),
@@ -60,7 +59,7 @@ impl Memory {
             pieces: of_tets().map(|old| old.map_or(0, |t| self.pieces[t])).collect(),
             n_requested: of_tets().map(|old| old.map_or(0, |t| self.n_requested[t])).collect(),
             corners: change.triangle_to_old.iter().map(|&t| self.corners[t as usize]).collect(),
-            reference: change.vertex_to_old.iter().enumerate().map(old_point).collect(),
+            reference: change.mesh.points.iter().zip(&change.vertex_to_old).map(old_point).collect(),
         }
     }
 

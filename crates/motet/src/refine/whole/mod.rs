@@ -7,7 +7,7 @@ mod origins;
 
 use super::refinement::{Options, Refinement, Summary};
 use super::true_surface::OnSurface;
-use crate::base::{CellId, Result, TetId, Threads, VertexId, absent, or_none};
+use crate::base::{CellId, Result, TetId, Threads, VertexId, absent};
 use crate::mesh::history::{History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Mesh, TetPart};
 use crate::spatial::NearestTriangle;
@@ -152,8 +152,8 @@ impl MeshRefinement {
         let joined = Joined::of(&self.mesh, &self.slots, cells, [&self.refinement, &refinement]);
         let found = origins([&self.refinement, &refinement], &joined, cells, threads)?;
         let history = History {
-            vertices: Origins::new(self.mesh.points.len(), or_none(&joined.vertex_to_old), found.vertices)?,
-            cells: Origins::new(self.mesh.cells.len(), or_none(&joined.cell_to_old), found.cells)?,
+            vertices: Origins::new(self.mesh.points.len(), joined.vertex_to_old.clone(), found.vertices)?,
+            cells: Origins::new(self.mesh.cells.len(), joined.cell_to_old.clone(), found.cells)?,
             ledger: found.ledger,
         };
         let mut mesh = Mesh::new(refinement.mesh().points.clone(), joined.cells);

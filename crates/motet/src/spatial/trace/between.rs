@@ -1,12 +1,12 @@
 //! The whole history between two meshes, given which vertices and cells are the same.
 
 use super::{ChangedVertex, Labelled, LocalChange, quadratic_rows, trace};
-use crate::base::{CellId, Error, Id, Result, Threads, VertexId};
+use crate::base::{CellId, Error, Id, MaybeId, Result, Threads, VertexId};
 use crate::mesh::history::{History, Origins};
 use crate::mesh::{CellKind, Labels, Mesh};
 
 /// Builds the history from `old` to `new`. `vertex_to_old` and `cell_to_old` give, for each vertex and each
-/// cell of `new`, its id in `old`, or [`Id::NONE`] if it is new.
+/// cell of `new`, its id in `old`, or none if it is new.
 ///
 /// A vertex with an old id but at another place counts as moved. Tets with a moved vertex count as changed;
 /// other cells do not. New tets and triangles are traced within the regions and patches given by the arrays
@@ -18,8 +18,8 @@ use crate::mesh::{CellKind, Labels, Mesh};
 pub fn between(
     old: &Mesh,
     new: &Mesh,
-    vertex_to_old: &[VertexId],
-    cell_to_old: &[CellId],
+    vertex_to_old: &[MaybeId<VertexId>],
+    cell_to_old: &[MaybeId<CellId>],
     threads: &Threads,
 ) -> Result<History> {
     check(vertex_to_old, new.points.len(), old.points.len(), "vertex")?;
@@ -27,15 +27,15 @@ pub fn between(
     let mut vertices = vertex_to_old.to_vec();
     let mut cells = cell_to_old.to_vec();
     let changed_vertices = changed_vertices(old, new, &mut vertices);
-    let is_changed: Vec<bool> = vertices.iter().map(|&v| v == Id::NONE).collect();
+    let is_changed: Vec<bool> = vertices.iter().map(|v| v.is_none()).collect();
     for (cell, tet) in new.cells.tets() {
         if tet.iter().any(|v| is_changed[v.index()]) {
-            cells[cell.index()] = Id::NONE;
+            cells[cell.index()] = MaybeId::NONE;
         }
     }
     let mut is_removed = vec![true; old.cells.len()];
-    cells.iter().filter(|&&c| c != Id::NONE).for_each(|c| is_removed[c.index()] = false);
-    let is_new: Vec<bool> = cells.iter().map(|&c| c == Id::NONE).collect();
+    cells.iter().filter_map(|c| c.get()).for_each(|c| is_removed[c.index()] = false);
+    let is_new: Vec<bool> = cells.iter().map(|c| c.is_none()).collect();
     check_kinds(new, &is_new)?;
     let traced = trace(
         &LocalChange {
@@ -59,17 +59,16 @@ pub fn between(
 
 /// The vertices that are new or moved, which lose their old id in `to_old`. A moved vertex that is in no tet
 /// keeps its old id, since there is nothing to interpolate in.
-fn changed_vertices(old: &Mesh, new: &Mesh, to_old: &mut [VertexId]) -> Vec<ChangedVertex> {
+fn changed_vertices(old: &Mesh, new: &Mesh, to_old: &mut [MaybeId<VertexId>]) -> Vec<ChangedVertex> {
     let mut has_tet = vec![false; new.points.len()];
     new.cells.tets().for_each(|(_, tet)| tet.iter().for_each(|v| has_tet[v.index()] = true));
     let mut changed = Vec::new();
     for (i, was) in to_old.iter_mut().enumerate() {
         let vertex = VertexId::new(i);
-        if *was == Id::NONE {
-            changed.push(ChangedVertex { vertex, was: None });
-        } else if has_tet[i] && new.points[i] != old.points[was.index()] {
-            changed.push(ChangedVertex { vertex, was: Some(*was) });
-            *was = Id::NONE;
+        let is_same = |was: VertexId| !has_tet[i] || new.points[i] == old.points[was.index()];
+        if !was.get().is_some_and(is_same) {
+            changed.push(ChangedVertex { vertex, was: was.get() });
+            *was = MaybeId::NONE;
         }
     }
     changed
@@ -90,18 +89,19 @@ fn labelled<const N: usize>(
     of_kind.filter_map(with_label).collect()
 }
 
-fn check<I: Id>(to_old: &[I], n_new: usize, n_old: usize, what: &str) -> Result<()> {
+fn check<I: Id>(to_old: &[MaybeId<I>], n_new: usize, n_old: usize, what: &str) -> Result<()> {
     if to_old.len() != n_new {
         return Err(Error::input(format!(
             "{} old ids were given, but the new mesh has {n_new} {what} ids",
             to_old.len()
         )));
     }
-    match to_old.iter().position(|&old| old != I::NONE && old.place() >= n_old) {
+    let mut known = to_old.iter().enumerate().filter_map(|(new, old)| Some((new, old.get()?)));
+    match known.find(|(_, old)| old.place() >= n_old) {
         None => Ok(()),
-        Some(i) => {
-            Err(Error::input(format!("has the old id {}, but the old mesh has only {n_old}", to_old[i]))
-                .at(format!("{what} {i}")))
+        Some((new, old)) => {
+            Err(Error::input(format!("has the old id {old}, but the old mesh has only {n_old}"))
+                .at(format!("{what} {new}")))
         }
     }
 }

@@ -285,7 +285,6 @@ fn solve(factor: &[[f64; N]; N], k: usize) -> [f64; N] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::Id;
     use crate::mesh::Field;
     use crate::mesh::history::{History, Origins, Row};
     use crate::mesh::shapes::box_grid;
@@ -376,7 +375,7 @@ mod tests {
         let mut history = History::identity(mesh.points.len(), mesh.cells.len());
         let linear = one_a_tet(&mesh);
         let rows = quadratic_rows(&mesh, &linear, &Threads::single());
-        let kept = vec![VertexId::NONE; linear.len()];
+        let kept = vec![MaybeId::NONE; linear.len()];
         let origins = Origins::new(mesh.points.len(), kept, linear).unwrap();
         history.vertices = origins.with_quadratic(rows).unwrap();
         let step: Vec<f64> =
