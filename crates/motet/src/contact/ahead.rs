@@ -26,6 +26,7 @@ pub struct Ahead {
 
 /// Where surfaces will touch first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct FirstContact {
     /// A time before which they do not touch.
     pub time: f64,

@@ -74,6 +74,7 @@ pub struct Nearest {
 
 /// A group of connected vertices with a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Warned {
     /// The body of the vertices, and the body that the nearest of them is near to, if any.
     pub bodies: (BodyId, MaybeId<BodyId>),

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::devices::Devices;
-use super::gap::Gap;
+use super::fill::Gap;
 use super::zone::Draft;
 use crate::base::{CellId, Id, MaybeId, VertexId, sorted_ids};
 use crate::mesh::{CellKind, Cells, Mesh, TetPart};

@@ -8,7 +8,7 @@
 //! | carve | `carve` | tets in the devices and near them are removed |
 //! | place | `place` | devices that lie outside of the host are refused |
 //! | divide | `frame`, `cut`, `parts` | walls and devices divided where they meet; what bounds something is kept |
-//! | gap | `gap`, `lattice`, `bodies` | every triangle of the devices and of what the carving left is a facet of new tets ([`mod@crate::delaunay::constrain`]); which of them are in which device |
+//! | fill | `fill`, `lattice`, `bodies` | every triangle of the devices and of what the carving left is a facet of new tets ([`mod@crate::delaunay::constrain`]); which of them are in which device |
 //! | zone | `zone` | new tets, and a ring of the host, repaired by [`crate::remesh`]; nothing beyond is touched |
 //! | join | `join`, `layout`, `origins`, `names`, `starts` | one mesh again, arrays carried across, new cells named |
 //! | certificate | `report` | conforming, volumes, triangles kept, bad tets that are left and why |
@@ -23,8 +23,8 @@ mod bodies;
 mod carve;
 mod cut;
 mod devices;
+mod fill;
 mod frame;
-mod gap;
 mod join;
 mod lattice;
 mod layout;

@@ -9,6 +9,7 @@ use crate::remesh::{self, Left};
 
 /// The result of refining the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Adapted {
     /// The requested edge length beside the devices.
     pub size: f64,
@@ -22,6 +23,7 @@ pub struct Adapted {
 
 /// How well a new surface fits the original one of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Fit {
     /// The largest distance of the new surface from the old one, at corners and at the middles of edges and
     /// triangles.
@@ -47,6 +49,7 @@ impl Fit {
 
 /// What became of a device.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct DeviceReport {
     /// The name of the device.
     pub name: String,
@@ -94,6 +97,7 @@ pub struct Seconds {
 
 /// What was done, and what the mesh is worth.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// How the host was refined; `None` if that was not necessary.
     pub adapted: Option<Adapted>,

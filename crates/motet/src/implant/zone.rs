@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashSet};
 
 use super::carve::{Carved, Fate};
-use super::gap::Gap;
+use super::fill::Gap;
 use super::owner::{Owner, Patch};
 use crate::base::{CellId, MaybeId, Point, Result, TetId, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::FACETS;

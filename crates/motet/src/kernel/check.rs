@@ -12,6 +12,7 @@ use crate::kernel::link::{Behind, HalfFacet, WallId};
 
 /// Why a change is refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Reject {
     /// The worst quality of the fill is not above the bar.
     Quality {

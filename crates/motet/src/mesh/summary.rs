@@ -18,6 +18,7 @@ pub const BAD_EAS: f64 = 0.2;
 /// The summary of a mesh in numbers. Field names are those of `motet info --json`.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Summary {
     /// Number of points.
     pub points: usize,
@@ -59,6 +60,7 @@ pub struct Summary {
 /// The volume cells of one label.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct RegionSummary {
     /// Number of tets among them.
     pub tets: usize,
@@ -71,6 +73,7 @@ pub struct RegionSummary {
 /// The surface cells of one label.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct PatchSummary {
     /// Number of triangles that they are divided into.
     pub triangles: usize,
@@ -85,6 +88,7 @@ pub struct PatchSummary {
 /// Shape of the triangles of a surface.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct TriangleSummary {
     /// The shortest, the median and the longest edge length.
     pub edges: [f64; 3],
@@ -101,6 +105,7 @@ pub struct TriangleSummary {
 /// The boundary of the volume cells.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct BoundarySummary {
     /// Number of facets.
     pub facets: usize,
@@ -111,6 +116,7 @@ pub struct BoundarySummary {
 /// Shape of the tets.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct QualitySummary {
     /// Equi-angle quality.
     pub eas: EasSummary,
@@ -127,6 +133,7 @@ pub struct QualitySummary {
 /// Equi-angle quality of the tets.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct EasSummary {
     /// The worst EAS.
     pub min: f64,

@@ -154,6 +154,7 @@ impl Filled {
 
 /// Statistics on filling.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Triangles of the given surfaces, those shared by two surfaces counted once.
     pub triangles: usize,

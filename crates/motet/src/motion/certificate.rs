@@ -15,6 +15,7 @@ pub const BAD_EAS: f64 = 0.2;
 
 /// What a motion reached, and how good the mesh is there.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct Certificate {
     /// Whether the mesh is where it was requested to be.
     pub complete: bool,
@@ -51,6 +52,7 @@ pub struct Certificate {
 
 /// The quality of cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Quality {
     /// Number of bad tets: with an EAS below [`BAD_EAS`], and not of a boundary layer (see
     /// [`crate::mesh::OrientedTets`]).
@@ -76,6 +78,7 @@ pub struct Quality {
 
 /// The worst cell by some measure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Worst {
     /// The measure.
     pub value: f64,

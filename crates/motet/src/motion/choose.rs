@@ -24,6 +24,7 @@ pub struct Choice {
 
 /// The result of trying one method.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Tried {
     /// The name of the method, from [`Method::name`].
     pub method: MethodName,

@@ -9,6 +9,7 @@ use crate::mesh::{Boundary, CellKind, Mesh, corners};
 
 /// How the interior vertices follow.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub enum Method {
     /// By weights in the Delaunay graph of the nodes (Liu, Qin, Xia 2006).
     #[default]

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// What setting up found, and how long it took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Setup {
     /// Vertices that the caller moves: those of the boundary, and those requested.
     pub driven: usize,
@@ -39,6 +40,7 @@ pub struct Setup {
 
 /// Seconds that the stages of setting up took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct SetupSeconds {
     /// Finding the boundary.
     pub boundary: f64,

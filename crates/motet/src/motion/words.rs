@@ -173,6 +173,7 @@ pub struct MotionParts {
 
 /// The name of a [`Method`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum MethodName {
     /// [`Method::Delaunay`].
     #[default]

@@ -62,6 +62,7 @@ impl Step {
 
 /// The worst tet of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct WorstTet {
     /// EAS of the tet.
     pub eas: f64,
@@ -76,6 +77,7 @@ pub struct WorstTet {
 /// integrate over the mesh of an earlier time level (BDF2, a discrete geometric conservation law) find no
 /// positive volume there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct InvertedAtStart {
     /// Number of such tets.
     pub tets: usize,
@@ -86,6 +88,7 @@ pub struct InvertedAtStart {
 /// Why a mesh changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Why {
     /// Tets were bad.
     Repair,
@@ -97,6 +100,7 @@ pub enum Why {
 
 /// A change of connectivity at one time.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Change {
     /// The time of the change.
     pub time: f64,
@@ -176,6 +180,7 @@ pub struct Gaps {
 
 /// A node of a wall that was stopped in front of another one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Stopped {
     /// The name of the patch that was stopped.
     pub patch: String,
@@ -187,6 +192,7 @@ pub struct Stopped {
 
 /// The nearest points of two patches.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Closest {
     /// The names of the patches.
     pub patches: [String; 2],

@@ -12,6 +12,7 @@ macro_rules! fault_kinds {
         /// A kind of fault. Kinds that are also among [`DefectKind`](crate::mesh::check::DefectKind) have the
         /// same names there.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+        #[non_exhaustive]
         pub enum FaultKind {
             $(#[doc = $meaning] #[serde(rename = $name)] $variant,)*
         }
@@ -76,6 +77,7 @@ impl FaultKind {
 
 /// One place where surfaces are not what meshing expects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Fault {
     /// The kind of fault.
     #[serde(rename = "name")]

@@ -14,6 +14,7 @@ const MAX_RIMS_IN_ERROR: usize = 4;
 
 /// The number of faults of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct FaultCount {
     /// The kind.
     #[serde(rename = "name")]
@@ -26,6 +27,7 @@ pub struct FaultCount {
 
 /// The faults of surfaces that are to be meshed, sorted by kind, then by triangles and vertices.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Preflight {
     /// Number of surfaces.
     pub n_surfaces: usize,

@@ -29,6 +29,7 @@ pub(super) struct Rims {
 
 /// A closed chain of open edges of a surface that has to be closed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Rim {
     /// The surface.
     pub surface: u32,

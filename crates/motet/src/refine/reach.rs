@@ -67,6 +67,7 @@ impl Reached {
 /// What stops a refinement before all edges are as short as wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Stop {
     /// The requested number of generations was reached.
     Generations,
@@ -90,6 +91,7 @@ impl fmt::Display for Stop {
 
 /// The mesh after a generation.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Step {
     /// `came` for the mesh as given, the number of the generation, or `back` where divisions were taken back.
     pub step: String,

@@ -45,6 +45,7 @@ impl Default for Options {
 
 /// The result of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Summary {
     /// Number of tets of the mesh.
     pub n_tets: usize,

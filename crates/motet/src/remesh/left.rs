@@ -15,6 +15,7 @@ use crate::remesh::surface::Surface;
 
 /// A bad tet that is left.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Left<Tet = CellId> {
     /// The tet: as a cell of a whole mesh, or as a tet of a mesh of tets.
     pub tet: Tet,
@@ -39,6 +40,7 @@ impl Left<TetId> {
 /// Why a bad tet is left.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Reason {
     /// One of its facets is a wall whose smallest or largest angle allows no better tet on it.
     WallAngle {

@@ -13,6 +13,7 @@ use crate::remesh::lengths::Lengths;
 /// An operation of the remesher.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Operation {
     /// An edge removed.
     #[default]
@@ -72,6 +73,7 @@ impl Counts {
 
 /// The worst tet of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Worst<Tet = CellId> {
     /// The tet: as a cell of a whole mesh, or as a tet of a mesh of tets.
     pub tet: Tet,
@@ -83,6 +85,7 @@ pub struct Worst<Tet = CellId> {
 
 /// The size and quality of a mesh at one time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct State<Tet = CellId> {
     /// How many vertices the tets have.
     pub vertices: usize,
@@ -131,6 +134,7 @@ impl State<TetId> {
 
 /// Edge lengths compared with the requested sizes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct SizesReport {
     /// For the input mesh.
     pub before: Lengths,
@@ -154,6 +158,7 @@ pub struct Seconds {
 /// What was found, what was done, and what is left. Tets are those of a mesh of tets ([`TetId`]), or cells of
 /// a whole mesh ([`CellId`]).
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct Report<Tet = CellId> {
     /// A tet below this EAS counts as bad.
     pub min_eas: f64,

@@ -328,8 +328,10 @@ impl Report {
         let leaving =
             self.steps.iter().filter_map(|step| Some((step, step.certificate.leaves_plane.as_ref()?)));
         let farthest = leaving.reduce(|a, b| if b.1.distance > a.1.distance { b } else { a });
-        if let Some((step, LeavesPlane { patch, vertex, place: [x, y, z], distance, is_significant: true })) =
-            farthest
+        if let Some((
+            step,
+            LeavesPlane { patch, vertex, place: [x, y, z], distance, is_significant: true, .. },
+        )) = farthest
         {
             console.warn(format_args!(
                 "the rim of the sliding patch {patch} leaves its plane, by {} at vertex {vertex}, initially \

@@ -189,7 +189,7 @@ impl Report {
                 self.leaves_plane = Some(leaves);
             }
         }
-        if let Some(LeavesPlane { patch, vertex, place: [x, y, z], distance, is_significant: true }) =
+        if let Some(LeavesPlane { patch, vertex, place: [x, y, z], distance, is_significant: true, .. }) =
             &self.leaves_plane
         {
             console.warn(format_args!(

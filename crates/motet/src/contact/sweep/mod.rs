@@ -1,10 +1,10 @@
 //! When moving surfaces will first touch: times before which they certainly do not.
 //!
 //! Every vertex moves in a straight line, `x(t) = x + t v`. Pairs of triangles come from a tree of moving
-//! boxes (`tree`), and each pair is followed to its time of contact by conservative advancement (`pair`).
+//! boxes (`tree`), and each pair is followed to its time of contact by conservative advancement (`contact_time`).
 //! Times are rounded down, so that "no contact before" holds despite rounding.
 
-mod pair;
+mod contact_time;
 mod queue;
 mod tree;
 
@@ -13,11 +13,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::vector::is_finite;
 use crate::spatial::runs::in_runs;
-use pair::Pair;
+use contact_time::Pair;
 use queue::{Item, Queue};
 use tree::{MovingBox, MovingTree};
 
-pub use pair::SLACK;
+pub use contact_time::SLACK;
 
 /// The first contact of two surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,6 +10,7 @@ macro_rules! defect_kinds {
         /// A kind of defect.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+        #[non_exhaustive]
         pub enum DefectKind {
             $(#[doc = $meaning] #[cfg_attr(feature = "serde", serde(rename = $name))] $variant,)*
         }
@@ -57,6 +58,7 @@ const MAX_EXAMPLES: usize = 5;
 /// Where a defect is.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Example {
     /// The cells concerned.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
@@ -71,6 +73,7 @@ pub struct Example {
 /// A defect of one kind: how often it occurs, and the first few places.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Defect {
     /// The kind of defect.
     #[cfg_attr(feature = "serde", serde(rename = "name"))]

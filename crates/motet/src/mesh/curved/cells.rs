@@ -22,6 +22,7 @@ pub struct CurvedCells {
 /// The summary of the quadratic volume cells of a mesh.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct CurvedSummary {
     /// Number of quadratic volume cells.
     pub cells: usize,

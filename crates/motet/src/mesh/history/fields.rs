@@ -11,6 +11,7 @@ use crate::mesh::{Field, Mesh, Values};
 /// The range and the integrals of an array of real numbers before and after a change.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct FieldLedger {
     /// The name of the array.
     pub name: String,
@@ -41,6 +42,7 @@ pub enum On {
 /// volume.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct FieldIntegral {
     /// The label of the region; 0 for tets without one.
     pub region: i32,

@@ -30,6 +30,7 @@ const MAX_POINTS_PER_TRIANGLE: usize = 16;
 
 /// The numbers of triangles before and after a surface was divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Divided {
     /// Triangles of the surfaces before, those that two surfaces share counted once.
     pub before: usize,

@@ -10,7 +10,8 @@
 //! | caps follow | `slide` | harmonic motion within their planes |
 //! | prisms | `columns` | levels, and cells where columns have fewer of them |
 //! | core | `core` | the surfaces around the core, to be filled |
-//! | check | `tangles` | exact: columns at fault are made thinner, and everything is checked again |
+//! | check | `tangles` | exact: which columns are at fault |
+//! | settle | `settle` | columns at fault are made thinner, and everything is checked again |
 //! | one mesh | `glue`, `split` | prisms joined to the tets of the core, and divided by the smallest vertex number |
 
 mod columns;
@@ -18,17 +19,17 @@ mod core;
 mod directions;
 mod flats;
 mod glue;
-mod grown;
 mod neighbors;
 mod options;
 mod report;
+mod settle;
 mod skin;
 mod slide;
 mod split;
 mod tangles;
 mod thickness;
 
-pub(super) use grown::GrownLayers;
 pub use options::{Layers, MOST_LAYERS, Stack};
 pub use report::Report;
+pub(super) use settle::GrownLayers;
 pub(super) use split::split;

@@ -13,6 +13,7 @@ const ALL: f64 = 1.0 - 1e-9;
 /// Statistics on layers. Vertices are those of walls with layers, counted once per body; thickness is that of
 /// all layers together, normal to the wall.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Cells of the layers before division: prisms, and pyramids and tets where columns end.
     pub prisms: usize,

@@ -8,6 +8,7 @@ use crate::motion::slide::constraints::SlidingConstraints;
 
 /// A plane in which one patch slides, or several patches side by side.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct SlidingPlane {
     /// The names of the patches.
     pub patch: String,
@@ -21,6 +22,7 @@ pub struct SlidingPlane {
 
 /// Where the rim of a sliding patch leaves its plane; the patch moves along with it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LeavesPlane {
     /// The names of the patches in the plane.
     pub patch: String,

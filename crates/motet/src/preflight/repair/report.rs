@@ -7,6 +7,7 @@ use crate::base::{Point, VertexId};
 /// What a repair did, or could not do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum RepairKind {
     /// A vertex was merged into another.
     MergedVertex,
@@ -47,6 +48,7 @@ pub enum RepairKind {
 
 /// One repair, or one that could not be made.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Repair {
     /// The kind of repair.
     #[serde(rename = "name")]

@@ -13,8 +13,8 @@
 //! rows of what changed.
 
 mod between;
+mod overlaps;
 mod quadratic;
-mod tets;
 mod triangles;
 mod vertices;
 
@@ -89,8 +89,8 @@ pub struct Traced {
 ///
 /// Panics when a vertex id is beyond the points.
 pub fn trace(change: &LocalChange<'_>, threads: &Threads) -> Result<Traced> {
-    let removed = tets::Removed::new(change.old_points, change.removed_tets);
-    let (tet_rows, regions) = tets::trace(change, &removed, threads)?;
+    let removed = overlaps::Removed::new(change.old_points, change.removed_tets);
+    let (tet_rows, regions) = overlaps::trace(change, &removed, threads)?;
     let vertices = vertices::trace(change, &removed, threads)?;
     let mut cell_rows = tet_rows;
     cell_rows.extend(triangles::trace(change)?);

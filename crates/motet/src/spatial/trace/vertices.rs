@@ -1,6 +1,6 @@
 //! Rows of new and moved vertices: their weights in the removed tets that contained their places.
 
-use super::tets::Removed;
+use super::overlaps::Removed;
 use super::{ChangedVertex, LocalChange, map};
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::tet;
