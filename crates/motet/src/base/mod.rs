@@ -5,6 +5,7 @@ mod error;
 pub(crate) mod four;
 mod ids;
 mod lanewise;
+mod names;
 mod percent;
 mod reasons;
 mod sets;
@@ -20,6 +21,9 @@ pub(crate) use ids::{
     EdgeId, ForestVertexId, LineId, NodeId, absent, id, or_none, same_orientation, sorted_ids,
 };
 pub(crate) use lanewise::lanewise;
+#[doc(hidden)]
+pub use names::read_text;
+pub use names::{Names, one_of};
 pub use percent::percent;
 pub use reasons::reasons;
 pub(crate) use sets::DisjointSets;
@@ -27,7 +31,7 @@ pub(crate) use splitmix::splitmix64;
 pub use threads::Threads;
 pub use watch::{Progress, Watch};
 #[doc(hidden)]
-pub use words::{NoWords, read_both};
+pub use words::{NoWords, paragraph, read_both};
 pub use words::{Word, Words, nearest};
 
 /// Coordinates of a point, or any other vector in space.
