@@ -8,7 +8,7 @@
 //! | `command` | the command line |
 //! | `error` | errors as Python exceptions |
 //! | `watch` | long calls: Ctrl-C and progress |
-//! | `words` | common arguments: patches, rules of arrays, threads |
+//! | `words` | common arguments: patches, rules of arrays, threads; defaults of the library |
 //! | `shapes` | built-in meshes |
 //! | `files`, `meshing`, `motion`, `remesh`, `implant`, `refine`, `contact`, `moving` | one verb or handle each |
 
@@ -66,6 +66,8 @@ mod _motet {
 
     #[pymodule_export]
     use crate::shapes::{aneurysm, ball, box_grid, coil, mixed, sphere_in_box, stent, tube};
+    #[pymodule_export]
+    use crate::words::defaults;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

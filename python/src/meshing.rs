@@ -1,11 +1,9 @@
 //! Closed surfaces filled with tets.
 
-use std::collections::BTreeMap;
-
-use motet::base::Point;
-use motet::meshing::layers::{Layers, Stack};
-use motet::meshing::{self, Dividing, Options, Seed, Sizes, Surfaces, fill, sizes_by};
-use motet::preflight::{Repair, Repairs, Role};
+use motet::base::{Names, Point};
+use motet::meshing::layers::Stack;
+use motet::meshing::{self, EdgeLength, MeshingWords, Seed, Surfaces, WallLayers, fill, sizes_by};
+use motet::preflight::{Repair, Role};
 use motet::{Mesh, remesh};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -19,23 +17,28 @@ use crate::watch::watched;
 /// The request of a call; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
 pub(crate) struct Request {
-    size: Option<f64>,
+    size: Option<SizeArg>,
     surface: String,
-    is_graded: bool,
     growth: Option<f64>,
     size_array: Option<String>,
     seeds: Vec<(Point, String)>,
     holes: Vec<Point>,
     min_eas: Option<f64>,
-    /// Layers on all walls, and by patch: number, first thickness, growth.
-    layers: Option<(u32, f64, f64)>,
-    layers_on: BTreeMap<String, (u32, f64, f64)>,
+    /// Each with its patch, if it has one: number, first thickness, growth.
+    layers: Vec<(Option<String>, (u32, f64, f64))>,
     keep_prisms: bool,
     repair: bool,
     cut: bool,
     voids: bool,
     merge: f64,
     hole_edges: usize,
+}
+
+/// The requested edge length, or `auto`.
+#[derive(FromPyObject)]
+enum SizeArg {
+    Length(f64),
+    Text(String),
 }
 
 /// The report of a call.
@@ -63,8 +66,9 @@ pub(crate) fn mesh<'py>(
         .iter()
         .map(|(mesh, name, is_membrane)| (&mesh.0, role(*is_membrane), name.as_str()))
         .collect();
+    let words = request.words().or_raise()?;
     let mut joined = Surfaces::new(&meshes).or_raise()?;
-    let sizes = match &request.size_array {
+    let sizes = match &words.size_array {
         None => None,
         Some(name) => {
             let each: Vec<Vec<f64>> =
@@ -73,7 +77,7 @@ pub(crate) fn mesh<'py>(
         }
     };
     let (repaired, options, filled) = watched(py, threads, progress, |threads| {
-        let (repaired, at_points) = match request.repairs() {
+        let (repaired, at_points) = match words.repairs() {
             Some(repairs) => {
                 let repaired = joined.repair(&repairs, threads)?;
                 let at_points = sizes.map(|sizes| repaired.at_points(&sizes));
@@ -81,7 +85,7 @@ pub(crate) fn mesh<'py>(
             }
             None => (Vec::new(), sizes),
         };
-        let options = request.options(at_points, &joined)?;
+        let options = words.options(&joined, at_points)?;
         let filled = fill(&joined, &joined.preflight(threads), &options, threads)?;
         Ok((repaired, options, filled))
     })?;
@@ -110,39 +114,31 @@ impl Caps {
 }
 
 impl Request {
-    fn options(&self, at_points: Option<Vec<f64>>, surfaces: &Surfaces) -> motet::Result<Options> {
-        let sizes = Sizes::of(self.size, self.is_graded, self.growth, at_points);
-        let seed = |(place, name): &(Point, String)| Seed { place: *place, name: name.clone() };
-        Ok(Options {
-            dividing: Dividing::of_name(&self.surface)?,
-            seeds: self.seeds.iter().map(seed).collect(),
-            holes: self.holes.clone(),
-            voids: self.voids,
-            layers: self.layers(surfaces)?,
-            ..Options::with_sizes(sizes, self.min_eas)
-        })
-    }
-
-    fn layers(&self, surfaces: &Surfaces) -> motet::Result<Option<Layers>> {
-        if self.layers.is_none() && self.layers_on.is_empty() {
-            return Ok(None);
-        }
-        let stack = |&(count, first, growth): &(u32, f64, f64)| {
+    fn words(self) -> motet::Result<MeshingWords> {
+        let size = self.size.map(|size| match size {
+            SizeArg::Length(length) => Ok(EdgeLength::Length(length)),
+            SizeArg::Text(text) => EdgeLength::of_text(&text),
+        });
+        let layers = |(patch, (count, first, growth))| {
             let stack = Stack { count, first, growth };
-            stack.check().map(|()| stack)
+            WallLayers { patch, stack }
         };
-        let mut all = Layers { keep_prisms: self.keep_prisms, ..Layers::default() };
-        all.everywhere = self.layers.as_ref().map(stack).transpose()?;
-        for (patch, layers) in &self.layers_on {
-            let id = surfaces.find_patch(patch)?;
-            all.by_patch.insert(id, stack(layers)?);
-        }
-        Ok(Some(all))
-    }
-
-    fn repairs(&self) -> Option<Repairs> {
-        let all = || Repairs::all(self.merge, self.hole_edges);
-        let repairs = if self.repair { all() } else { Repairs::default() };
-        (self.repair || self.cut).then_some(Repairs { cut: self.cut, keep_inward: self.voids, ..repairs })
+        Ok(MeshingWords {
+            size: size.transpose()?,
+            surface: Names::of(&self.surface)?,
+            growth: self.growth,
+            size_array: self.size_array,
+            seeds: self.seeds.into_iter().map(|(place, name)| Seed { place, name }).collect(),
+            holes: self.holes,
+            voids: self.voids,
+            min_eas: self.min_eas,
+            layers: self.layers.into_iter().map(layers).collect(),
+            keep_prisms: self.keep_prisms,
+            repair: self.repair,
+            cut: self.cut,
+            hole_edges: self.hole_edges,
+            merge: self.merge,
+            ..MeshingWords::default()
+        })
     }
 }

@@ -3,9 +3,7 @@
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId, Watch};
 use motet::mesh::Boundary;
-use motet::motion::{
-    self, BoundaryMotion, Extent, FacetSet, Interface, MethodName, MotionParts, Options, Prescribed,
-};
+use motet::motion::{self, BoundaryMotion, Extent, FacetSet, Interface, MotionParts, Options, Prescribed};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -14,7 +12,7 @@ use crate::convert::MeshArg;
 use crate::error::{OrRaise, call, input};
 use crate::report::{report, with_not_reached};
 use crate::watch::{run_watched, watched};
-use crate::words::{Facets, all_facets, threads};
+use crate::words::{Facets, all_facets, name_of, threads};
 
 /// Options of a mover; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
@@ -41,7 +39,7 @@ impl Request<'_> {
             None => Vec::new(),
         };
         let motion = motion::Motion {
-            method: MethodName::of(&self.method).or_raise()?,
+            method: name_of(&self.method)?,
             within_walls: self.within_walls,
             smooth: self.smooth,
             rigid_layer: extent(self.rigid_layer, self.rigid_layer_cells),

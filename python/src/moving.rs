@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use motet::Mesh;
 use motet::base::{Threads, Watch};
-use motet::motion::{MethodName, Motion, Strain};
+use motet::motion::Motion;
 use motet::moving::{self, ContactWords, Options, RepairWords};
 use motet::refine::Wanted;
 use pyo3::prelude::*;
@@ -19,7 +19,7 @@ use crate::motion::extent;
 use crate::refine::Criterion;
 use crate::report::{report, with_not_reached};
 use crate::watch::{run_watched, watched};
-use crate::words::{one_of, rules, threads};
+use crate::words::{name_of, one_of, rules, threads};
 
 /// Options of a moving mesh; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
@@ -58,9 +58,9 @@ pub(crate) struct Request {
 impl Request {
     fn options(&self, mesh: &Mesh) -> PyResult<Options> {
         let motion = Motion {
-            method: MethodName::of(&self.method).or_raise()?,
+            method: name_of(&self.method)?,
             bodies: self.bodies.clone(),
-            strain: self.strain.as_deref().map(Strain::of_name).transpose().or_raise()?,
+            strain: self.strain.as_deref().map(name_of).transpose()?,
             smooth: self.smooth,
             rigid_layer: extent(self.rigid_layer, self.rigid_layer_cells),
             rigid_layer_at: self.rigid_layer_at.clone(),
@@ -73,7 +73,7 @@ impl Request {
         let repair = RepairWords {
             off: !self.repair,
             min_eas: self.min_eas,
-            surface: self.surface.clone(),
+            surface: name_of(&self.surface)?,
             distance: self.distance,
             hold: self.hold_names.clone(),
             margin: self.margin,

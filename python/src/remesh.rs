@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use motet::remesh::{Goal, Held, MeshOutcome, Options, Sizes, SurfaceRule, remesh_mesh};
+use motet::remesh::{EdgeLengths, MeshOutcome, RemeshWords, remesh_mesh};
 use pyo3::prelude::*;
 
 use crate::convert::{MeshArg, parts};
@@ -10,12 +10,13 @@ use crate::error::OrRaise;
 use crate::history::{Changed, History};
 use crate::report::{quality, report};
 use crate::watch::watched;
-use crate::words::{one_of, rules};
+use crate::words::{name_of, rules};
 
-/// The requested edge lengths: everywhere, or at each point.
+/// The requested edge lengths: everywhere, by a point array, or at each point.
 #[derive(FromPyObject)]
 pub(crate) enum SizesArg {
     Uniform(f64),
+    Array(String),
     Points(Vec<f64>),
 }
 
@@ -39,20 +40,22 @@ pub(crate) fn remesh<'py>(
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Changed<'py>> {
-    let options = Options {
+    let words = RemeshWords {
         min_eas,
         min_dihedral_deg,
-        goal: one_of("goal", goal, &[("repair", Goal::Repair), ("best", Goal::Best)])?,
-        surface: SurfaceRule::of_name(surface, distance).or_raise()?,
+        goal: name_of(goal)?,
+        surface: name_of(surface)?,
+        distance,
         keep_layers,
-        held: Held::of_names(&mesh.0, &hold).or_raise()?,
+        hold,
         sizes: sizes.map(|sizes| match sizes {
-            SizesArg::Uniform(h) => Sizes::Uniform(h),
-            SizesArg::Points(all) => Sizes::Vertices(all),
+            SizesArg::Uniform(h) => EdgeLengths::Everywhere(h),
+            SizesArg::Array(name) => EdgeLengths::Array(name),
+            SizesArg::Points(all) => EdgeLengths::Points(all),
         }),
         rounds,
-        ..Options::default()
     };
+    let options = words.options(&mesh.0).or_raise()?;
     let rules = rules(&mesh.0, &carry)?;
     let outcome = watched(py, threads, progress, |threads| remesh_mesh(&mesh.0, &options, &rules, threads))?;
     let MeshOutcome { mesh: new, history, report: reported, .. } = outcome;

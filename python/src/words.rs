@@ -2,14 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use motet::base::Threads;
+use motet::Mesh;
+use motet::base::{Names, Threads};
 use motet::mesh::history::{Carry, Rules};
+use motet::meshing::MeshingWords;
 use motet::motion::FacetSet;
-use motet::{Error, Mesh};
+use motet::remesh::RemeshWords;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays::Ids;
-use crate::error::{OrRaise, to_exception};
+use crate::error::OrRaise;
+use crate::report::report;
 
 /// The number of threads; 0 means all cores.
 pub(crate) fn threads(n: usize) -> PyResult<Threads> {
@@ -18,13 +22,21 @@ pub(crate) fn threads(n: usize) -> PyResult<Threads> {
 
 /// The meaning of an option's value, which must be one of the known names.
 pub(crate) fn one_of<T: Copy>(option: &str, given: &str, known: &[(&str, T)]) -> PyResult<T> {
-    known.iter().find(|(name, _)| *name == given).map(|(_, value)| *value).ok_or_else(|| {
-        let names: Vec<String> = known.iter().map(|(name, _)| format!("{name:?}")).collect();
-        to_exception(
-            Error::options(format!("{option}={given:?} is not a known value"))
-                .remedy(format!("choose one of {}", names.join(", "))),
-        )
-    })
+    motet::base::one_of(option, given, known).or_raise()
+}
+
+/// The value of an option that has this name in the library.
+pub(crate) fn name_of<T: Names>(given: &str) -> PyResult<T> {
+    T::of(given).or_raise()
+}
+
+/// The defaults of the library, by function and argument.
+#[pyfunction]
+pub(crate) fn defaults(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    all.set_item("remesh", report(py, &RemeshWords::default())?)?;
+    all.set_item("mesh", report(py, &MeshingWords::default())?)?;
+    Ok(all)
 }
 
 /// The rules by which arrays are carried, by name: "mean", "linear", "inherit" or "drop".

@@ -5,10 +5,10 @@ use std::ffi::{CString, c_char};
 
 use motet::implant::{Device, Implanted, Inside, Interface, Outside, implant};
 use motet::mesh::history::{History, Rules};
-use motet::meshing::layers::{Layers, Stack};
-use motet::meshing::{self, Surfaces, fill};
-use motet::preflight::{Repairs, Role};
-use motet::remesh::{Goal, MeshOutcome, remesh_mesh};
+use motet::meshing::layers::Stack;
+use motet::meshing::{EdgeLength, Grading, MeshingWords, Surfaces, WallLayers, fill};
+use motet::preflight::Role;
+use motet::remesh::{EdgeLengths, GoalName, MeshOutcome, RemeshWords, remesh_mesh};
 use motet::{Error, Mesh, Result, implant, remesh};
 use serde_json::json;
 
@@ -141,23 +141,24 @@ versioned! {
 }
 
 impl MotetRemeshOptions {
-    fn options(&self, mesh: &Mesh) -> Result<remesh::Options> {
-        Ok(remesh::Options {
+    fn words(&self) -> Result<RemeshWords> {
+        let (surface, distance) = constants::surface_rule(self.surface, self.distance)?;
+        Ok(RemeshWords {
             min_eas: self.min_eas,
             min_dihedral_deg: self.min_dihedral_deg,
-            goal: if self.best != 0 { Goal::Best } else { Goal::Repair },
-            surface: constants::surface_rule(self.surface, optional(self.distance))?,
+            goal: if self.best != 0 { GoalName::Best } else { GoalName::Repair },
+            surface,
+            distance,
             keep_layers: self.repair_layers == 0,
-            held: remesh::Held::of_names(mesh, &owned(self.hold, self.n_hold, "hold")?)?,
-            sizes: match (self.sizes.is_null(), optional(self.edge_length)) {
-                (true, length) => length.map(remesh::Sizes::Uniform),
-                (false, _) => {
+            hold: owned(self.hold, self.n_hold, "hold")?,
+            sizes: match self.sizes.is_null() {
+                true => optional(self.edge_length).map(EdgeLengths::Everywhere),
+                false => {
                     let sizes = values(self.sizes, count(self.n_sizes, "sizes")?, "sizes")?;
-                    Some(remesh::Sizes::Vertices(sizes.to_vec()))
+                    Some(EdgeLengths::Points(sizes.to_vec()))
                 }
             },
             rounds: count(self.rounds.into(), "rounds")?,
-            ..remesh::Options::default()
         })
     }
 }
@@ -173,7 +174,8 @@ pub(crate) unsafe extern "C" fn motet_remesh(
         let place = out_handle(outcome, "outcome")?;
         let mesh = &handle(mesh, "mesh")?.0;
         let given = read_versioned(options)?;
-        let done = remesh_mesh(mesh, &given.options(mesh)?, &Rules::default(), &threads(given.threads)?)?;
+        let options = given.words()?.options(mesh)?;
+        let done = remesh_mesh(mesh, &options, &Rules::default(), &threads(given.threads)?)?;
         let MeshOutcome { mesh, history, report, .. } = done;
         set_handle(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
         Ok(())
@@ -273,23 +275,27 @@ versioned! {
 }
 
 impl MotetFillOptions {
-    fn options(&self) -> Result<meshing::Options> {
-        let (largest, growth) = (optional(self.edge_length), optional(self.growth));
-        let sizes = meshing::Sizes::of(largest, self.graded != 0, growth, None);
-        let layers = self.layers()?;
-        let voids = self.voids != 0;
-        Ok(meshing::Options { layers, voids, ..meshing::Options::with_sizes(sizes, optional(self.min_eas)) })
+    fn words(&self) -> Result<MeshingWords> {
+        let is_graded = self.graded != 0;
+        let size = optional(self.edge_length).map(EdgeLength::Length);
+        Ok(MeshingWords {
+            size: size.or(is_graded.then_some(EdgeLength::Auto)),
+            growth: optional(self.growth).or(is_graded.then_some(Grading::default().growth)),
+            voids: self.voids != 0,
+            min_eas: optional(self.min_eas),
+            layers: self.layers()?.into_iter().collect(),
+            keep_prisms: self.keep_prisms != 0,
+            repair: self.repair != 0,
+            cut: self.cut != 0,
+            ..MeshingWords::default()
+        })
     }
 
-    fn layers(&self) -> Result<Option<Layers>> {
+    fn layers(&self) -> Result<Option<WallLayers>> {
         let count = u32::try_from(self.layers)
             .map_err(|_| Error::options(format!("{} layers, expected 0 or more", self.layers)))?;
-        if count == 0 {
-            return Ok(None);
-        }
         let stack = Stack { count, first: self.first_layer, growth: self.layer_growth };
-        stack.check()?;
-        Ok(Some(Layers { everywhere: Some(stack), keep_prisms: self.keep_prisms != 0, ..Layers::default() }))
+        Ok((count > 0).then_some(WallLayers { patch: None, stack }))
     }
 }
 
@@ -317,14 +323,12 @@ pub(crate) unsafe extern "C" fn motet_fill(
         };
         let all: Vec<(&Mesh, Role, &str)> = (0..n).map(one).collect::<Result<_>>()?;
         let mut surfaces = Surfaces::new(&all)?;
-        if given.repair != 0 || given.cut != 0 {
-            let all = || Repairs::all(0.0, MAX_HOLE_EDGES);
-            let repairs = if given.repair != 0 { all() } else { Repairs::default() };
-            let repairs = Repairs { cut: given.cut != 0, keep_inward: given.voids != 0, ..repairs };
+        let words = given.words()?;
+        if let Some(repairs) = words.repairs() {
             surfaces.repair(&repairs, &threads)?;
         }
         let preflight = surfaces.preflight(&threads);
-        let options = given.options()?;
+        let options = words.options(&surfaces, None)?;
         let filled = fill(&surfaces, &preflight, &options, &threads)?;
         let not_reached = filled.not_reached(&options);
         let report = json!({ "filled": filled.report, "improved": filled.improved, "layers": filled.layers });
@@ -333,5 +337,16 @@ pub(crate) unsafe extern "C" fn motet_fill(
     })
 }
 
-/// Holes with more edges than this are not closed as small ones.
-const MAX_HOLE_EDGES: usize = 32;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::memory::Versioned;
+
+    #[test]
+    fn the_defaults_are_those_of_the_library() {
+        let remesh = MotetRemeshOptions::DEFAULT.words().unwrap();
+        assert_eq!(json(&remesh).unwrap(), json(&RemeshWords::default()).unwrap());
+        let fill = MotetFillOptions::DEFAULT.words().unwrap();
+        assert_eq!(json(&fill).unwrap(), json(&MeshingWords::default()).unwrap());
+    }
+}

@@ -5,8 +5,10 @@ use motet::contact::Room;
 use motet::implant::{Adapt, Inside};
 use motet::mesh::history::Rule;
 use motet::motion::MethodName;
-use motet::remesh::SurfaceRule;
+use motet::remesh::SurfaceName;
 use motet::{Error, Result};
+
+use crate::memory::optional;
 
 /// A constant of the header.
 pub(crate) struct Constant<T> {
@@ -64,13 +66,10 @@ pub(crate) const RULES: &[Constant<TransferRule>] = &[
     constant("MOTET_RULE_LINEAR", 2, TransferRule { on_points: Rule::Linear, on_cells: Rule::Conserve }),
 ];
 
-/// The surface rule for a distance that walls may stray.
-type RuleOfDistance = fn(Option<f64>) -> SurfaceRule;
-
-pub(crate) const SURFACE_RULES: &[Constant<RuleOfDistance>] = &[
-    constant("MOTET_SURFACE_KEEP", 0, |_| SurfaceRule::Keep),
-    constant("MOTET_SURFACE_ADAPT", 1, |distance| SurfaceRule::Adapt { distance }),
-    constant("MOTET_SURFACE_LOOSE", 2, |distance| SurfaceRule::Loose { distance }),
+pub(crate) const SURFACE_RULES: &[Constant<SurfaceName>] = &[
+    constant("MOTET_SURFACE_KEEP", 0, SurfaceName::Keep),
+    constant("MOTET_SURFACE_ADAPT", 1, SurfaceName::Adapt),
+    constant("MOTET_SURFACE_LOOSE", 2, SurfaceName::Loose),
 ];
 
 pub(crate) const INSIDES: &[Constant<Inside>] = &[
@@ -120,9 +119,11 @@ pub(crate) fn transfer_rule(number: i32, on: On) -> Result<Rule> {
     })
 }
 
-/// What a repair may do to walls, with the distance that they may stray.
-pub(crate) fn surface_rule(number: i32, distance: Option<f64>) -> Result<SurfaceRule> {
-    meaning(SURFACE_RULES, number, "surface rule").map(|of| of(distance))
+/// What a repair may do to walls, and how far they may stray by it; of walls that are kept the distance means
+/// nothing.
+pub(crate) fn surface_rule(number: i32, distance: f64) -> Result<(SurfaceName, Option<f64>)> {
+    let rule = *meaning(SURFACE_RULES, number, "surface rule")?;
+    Ok((rule, optional(distance).filter(|_| rule != SurfaceName::Keep)))
 }
 
 /// What becomes of the space in a device.

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use motet::base::Names;
 use motet::mesh::CellKind;
 use motet::motion::MethodName;
 
@@ -100,7 +101,7 @@ fn each_constant_of_the_header_has_the_number_of_its_table() {
 
 #[test]
 fn each_method_of_the_library_has_a_constant_with_its_name() {
-    for method in MethodName::ALL {
+    for &method in MethodName::ALL {
         let constant = constants::METHODS.iter().find(|constant| constant.meaning == method);
         let name = format!("MOTET_{}", method.as_str().to_uppercase());
         assert_eq!(constant.map(|constant| constant.name), Some(name.as_str()));
@@ -114,7 +115,7 @@ fn a_number_without_a_constant_is_refused_with_a_list_of_those_there_are() {
     for constant in constants::METHODS {
         assert!(message.contains(&format!("{} ({})", constant.name, constant.number)), "{message}");
     }
-    assert!(constants::room(2).is_err() && constants::surface_rule(-1, None).is_err());
+    assert!(constants::room(2).is_err() && constants::surface_rule(-1, 0.0).is_err());
 }
 
 /// The type in C of a member's type in Rust; the length of an array stands behind the name.

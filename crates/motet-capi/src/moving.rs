@@ -70,15 +70,17 @@ versioned! {
 
 impl MotetMovingOptions {
     fn options(&self, mesh: &Mesh) -> Result<Options> {
+        let (surface, distance) = constants::surface_rule(self.surface, self.distance)?;
         let repair = RepairWords {
             off: self.no_repair != 0,
             min_eas: self.min_eas,
+            surface,
+            distance,
             hold: owned(self.hold_names, self.n_hold_names, "hold_names")?,
             margin: self.margin,
             floor: self.floor,
             improve_below: self.improve_below,
             valid_at_start: self.valid_at_start != 0,
-            ..RepairWords::default()
         };
         let contact = ContactWords {
             patches: owned(self.watch, self.n_watch, "watch")?,
@@ -88,19 +90,14 @@ impl MotetMovingOptions {
             hold: optional(self.hold),
             ..ContactWords::default()
         };
-        let mut options = Options {
+        Ok(Options {
             motion: self.motion()?,
             returns: self.returns != 0,
             contents: owned(self.contents, self.n_contents, "contents")?,
             watch: contact.watching(mesh)?,
             remembered: count(self.remembered.into(), "changes to be remembered")?,
             ..repair.options(mesh)?
-        };
-        let surface = constants::surface_rule(self.surface, optional(self.distance))?;
-        if let Some(repair) = &mut options.repair {
-            repair.surface = surface;
-        }
-        Ok(options)
+        })
     }
 
     fn motion(&self) -> Result<Motion> {

@@ -275,7 +275,7 @@ fn words_that_mean_nothing_are_refused() {
         let words = ["remesh", "shaken.vtu", "-o", "out.vtu"].iter().chain(more).copied().collect::<Vec<_>>();
         stderr(&folder.motet(words).assert().code(2))
     };
-    assert!(call(&["--distance", "0.1"]).contains("--surface adapt"));
+    assert!(call(&["--distance", "0.1"]).contains("`adapt`"));
     assert!(call(&["--min-eas", "0"]).contains("between 0"));
     assert!(call(&["--min-eas", "1.5"]).contains("between 0"));
     assert!(call(&["--min-dihedral", "80"]).contains("70"));

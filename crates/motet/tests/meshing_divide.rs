@@ -190,11 +190,6 @@ fn the_rule_decides_and_what_means_nothing_is_refused() {
     assert!(with(None, Dividing::Always).is_err());
     let error = with(Some(Sizes::Uniform(1e-5)), Dividing::Coarse).unwrap_err();
     assert!(error.what().contains("points inside"), "{error}");
-    for (name, rule) in [("auto", Dividing::Coarse), ("divide", Dividing::Always), ("keep", Dividing::Never)]
-    {
-        assert_eq!(Dividing::of_name(name).unwrap(), rule);
-    }
-    assert!(Dividing::of_name("adapt").is_err());
 }
 
 #[test]

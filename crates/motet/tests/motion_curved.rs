@@ -1,7 +1,7 @@
 //! Motion of quadratic meshes: straight edges stay straight, curved cells are judged inside, by every method.
 
 use motet::Mesh;
-use motet::base::{Point, Threads, VertexId};
+use motet::base::{Names, Point, Threads, VertexId};
 use motet::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 use motet::mesh::shapes::{box_grid, quadratic, sphere_in_box};
 use motet::mesh::{Boundary, CellKind, Cells};

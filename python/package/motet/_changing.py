@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _motet
-from .errors import OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, named, point
 from ._report import Progress, Report, report
 from ._keywords import checked, checked_class
@@ -230,11 +229,7 @@ def remesh(
         The new mesh with its history and report; ``complete`` is False if bad tets remain.
     """
     given = as_mesh(mesh)
-    if isinstance(sizes, str):
-        if sizes not in given.point_data:
-            raise OptionsError(f"the mesh has no point array {sizes!r}; it has {', '.join(given.point_data) or 'none'}")
-        sizes = given.point_data[sizes]
-    if sizes is not None and not isinstance(sizes, (int, float)):
+    if sizes is not None and not isinstance(sizes, (int, float, str)):
         sizes = np.asarray(sizes, np.float64).ravel().tolist()
     native = _motet.remesh(
         given, min_eas=min_eas, min_dihedral_deg=min_dihedral_deg, goal=goal, surface=surface, distance=distance, keep_layers=keep_layers,
@@ -337,16 +332,14 @@ Layers = tuple[int, float, float]
 class _Filling:
     """Options of :func:`mesh` for the native module."""
 
-    size: float | None
+    size: float | str | None
     surface: str
-    is_graded: bool
     growth: float | None
     size_array: str | None
     seeds: list
     holes: list
     min_eas: float | None
-    layers: Layers | None
-    layers_on: dict
+    layers: list
     keep_prisms: bool
     repair: bool
     cut: bool
@@ -439,14 +432,12 @@ def mesh(
     InputError
         If a surface cannot be filled; the message gives the first fault and its position.
     """
-    if isinstance(size, str) and size != "auto":
-        raise OptionsError(f"size={size!r} is not valid: expected a length or 'auto'")
     given = [(as_mesh(one), name, False) for name, one in named(surfaces, "surface").items()]
     given += [(as_mesh(one), name, True) for name, one in named(list(membranes), "membrane").items()]
     request = _Filling(
-        size=None if size == "auto" else size, surface=surface, is_graded=size == "auto", growth=growth, size_array=size_array,
+        size=size, surface=surface, growth=growth, size_array=size_array,
         seeds=[(point(place), name) for name, place in (seeds or {}).items()], holes=[point(place) for place in holes], min_eas=min_eas,
-        layers=None if isinstance(layers, Mapping) else layers, layers_on=dict(layers) if isinstance(layers, Mapping) else {},
+        layers=list(layers.items()) if isinstance(layers, Mapping) else [] if layers is None else [(None, layers)],
         keep_prisms=keep_prisms, repair=repair, cut=cut, voids=voids, merge=merge, hole_edges=hole_edges,
     )  # fmt: skip
     parts, reported, not_reached = _motet.mesh(given, request, threads, progress)

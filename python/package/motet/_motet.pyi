@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 __all__ = [
     "Caps", "Contact", "bodies", "cell_kinds", "command", "formats", "is_series", "labels", "name_fields", "names_of_fields", "quality", "read", "summary", "write", "SeriesWriter", "read_nodal", "read_series", "write_nodal", "History", "implant", "mesh", "Mover", "PointMover", "choose",
     "interface_vertices", "mesh_velocity", "patch_vertices", "prescribed", "MovingMesh", "Criterion", "Refinement", "refined", "remesh", "aneurysm", "ball", "box_grid", "coil", "mixed",
-    "sphere_in_box", "stent", "tube", "__version__",
+    "sphere_in_box", "stent", "tube", "defaults", "__version__",
 ]  # fmt: skip
 __version__: str
 
@@ -33,6 +33,7 @@ def bodies(mesh: Any, name: str, patches: list[str], first: int) -> list[tuple[s
 def patch_vertices(mesh: Any, patches: list[Any]) -> _Ids: ...
 def interface_vertices(mesh: Any, displacement: NDArray[float64]) -> _Ids: ...
 def cell_kinds() -> dict[str, int]: ...
+def defaults() -> dict[str, dict[str, Any]]: ...
 def remesh(
     mesh: Any,
     *,

@@ -5,6 +5,8 @@ mod error;
 pub(crate) mod four;
 mod ids;
 mod lanewise;
+#[cfg(feature = "suite")]
+mod names;
 mod percent;
 mod pool;
 mod reasons;
@@ -20,6 +22,11 @@ pub use error::{Error, ErrorKind, Result, printable};
 pub use ids::{BodyId, CellId, Id, MaybeId, TetId, TriangleId, VertexId, rising_list};
 pub(crate) use ids::{EdgeId, ForestVertexId, LineId, NodeId, absent, id, same_orientation, sorted_ids};
 pub(crate) use lanewise::lanewise;
+#[cfg(feature = "suite")]
+#[doc(hidden)]
+pub use names::read_text;
+#[cfg(feature = "suite")]
+pub use names::{Names, one_of};
 pub use percent::percent;
 pub use reasons::reasons;
 pub(crate) use sets::DisjointSets;
@@ -28,7 +35,7 @@ pub use threads::Threads;
 pub use watch::{Progress, Watch};
 #[cfg(feature = "suite")]
 #[doc(hidden)]
-pub use words::{NoWords, read_both};
+pub use words::{NoWords, paragraph, read_both};
 #[cfg(feature = "suite")]
 pub use words::{Word, Words, nearest};
 

@@ -19,8 +19,14 @@ pub struct Word {
 impl Word {
     /// The effect as one paragraph.
     pub fn effect_text(&self) -> String {
-        self.effect.split_whitespace().collect::<Vec<_>>().join(" ")
+        paragraph(self.effect)
     }
+}
+
+/// A text of several lines as one paragraph.
+#[doc(hidden)]
+pub fn paragraph(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// A table of options, made by the macro `words!`.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::surfaces::Surfaces;
 use crate::base::{Error, Point, Result, VertexId, same_orientation, sorted_ids};
@@ -14,7 +14,7 @@ use crate::mesh::{CellKind, Mesh, bounds, unused_name};
 use crate::preflight::Role;
 
 /// A place in a body, and the name to give to the body.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Seed {
     /// Any place in the body, not on a surface.
     pub place: Point,

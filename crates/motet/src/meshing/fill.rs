@@ -20,6 +20,7 @@ use crate::geometry::quality::eas;
 use crate::geometry::rounding;
 use crate::geometry::tet::volume;
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh};
+use crate::names;
 use crate::preflight::Preflight;
 use crate::remesh::{self, Improve, SurfaceRule, remesh_labelled};
 
@@ -27,32 +28,17 @@ use crate::remesh::{self, Improve, SurfaceRule, remesh_labelled};
 /// error of a coordinate.
 const OFF_PLANE: f64 = 4.0;
 
-/// Which surfaces have their triangles divided. The shape is kept to rounding: flat parts get new triangles
-/// in their own planes, creases and borders of patches are divided into parts of about the size.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Dividing {
-    /// Only surfaces that are far coarser than the size; see [`Sizes::coarse`].
-    #[default]
-    Coarse,
-    /// All surfaces.
-    Always,
-    /// No surface: every triangle is a facet of tets.
-    Never,
-}
-
-impl Dividing {
-    /// Parses a name, `auto`, `divide` or `keep`, as on the command line.
-    ///
-    /// # Errors
-    /// When the name is unknown.
-    pub fn of_name(name: &str) -> Result<Self> {
-        match name {
-            "auto" => Ok(Self::Coarse),
-            "divide" => Ok(Self::Always),
-            "keep" => Ok(Self::Never),
-            _ => Err(Error::options(format!("unknown rule `{name}` for the surface"))
-                .remedy("use auto, divide or keep")),
-        }
+names! {
+    /// Which surfaces have their triangles divided. The shape is kept to rounding: flat parts get new
+    /// triangles in their own planes, creases and borders of patches are divided into parts of about the
+    /// size. [`Sizes::coarse`] says which are far coarser.
+    pub enum Dividing: "rule for the surface" {
+        /// Only surfaces most of whose triangles are far coarser than the size, or narrow.
+        Coarse = "auto",
+        /// All surfaces.
+        Always = "divide",
+        /// No surface: every triangle is a facet of tets.
+        Never = "keep",
     }
 }
 

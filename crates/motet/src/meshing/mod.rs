@@ -13,6 +13,7 @@
 //! | quality | [`crate::remesh`] | bad tets repaired, the surface kept |
 //! | bodies | `bodies` | numbered from the outside in, named, left out on request |
 //! | labels | `fill` | each enclosed body is a region, triangles keep their patches |
+//! | words | `words` | options as callers write them, with names of patches |
 
 mod bodies;
 mod caps;
@@ -27,6 +28,7 @@ mod shadow;
 mod size_field;
 mod sizes;
 mod surfaces;
+mod words;
 
 pub(crate) use bodies::bodies_of_mesh;
 pub use bodies::{Body, Seed};
@@ -38,3 +40,4 @@ pub(crate) use graded::points_between;
 pub(crate) use interior::EDGE_OVER_SIDE;
 pub use sizes::{Coarse, Grading, MOST_GROWTH, Sizes, sizes_by};
 pub use surfaces::Surfaces;
+pub use words::{EdgeLength, MeshingWords, WallLayers};

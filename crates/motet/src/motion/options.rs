@@ -6,6 +6,7 @@ use crate::algebra::Tolerance;
 use crate::base::{Csr, Error, Result, VertexId};
 use crate::geometry::vector::LARGEST;
 use crate::mesh::{Boundary, CellKind, Mesh, corners};
+use crate::names;
 
 /// How the interior vertices follow.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -37,30 +38,15 @@ pub enum Method {
     Radial,
 }
 
-/// Where the strain goes that bodies put on the volume around them: see [`Method::Bodies`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Strain {
-    /// Evenly over all that lies between a body and the walls that stay: no tet gets much of it. For walls
-    /// that return.
-    #[default]
-    Even,
-    /// Into a band of about one edge beside the body: what is farther away stays unchanged, to the bit. For
-    /// bodies that keep moving: a few tets become bad, again and again, and all others stay good.
-    Band,
-}
-
-impl Strain {
-    /// The strain with a name, `even` or `band`.
-    ///
-    /// # Errors
-    /// When none has that name.
-    pub fn of_name(name: &str) -> Result<Self> {
-        match name {
-            "even" => Ok(Self::Even),
-            "band" => Ok(Self::Band),
-            _ => Err(Error::options(format!("there is no strain `{name}`")).remedy("give even or band")),
-        }
+names! {
+    /// Where the strain goes that bodies put on the volume around them: see [`Method::Bodies`].
+    pub enum Strain: "strain" {
+        /// Evenly over all that lies between a body and the walls that stay: no tet gets much of it. For
+        /// walls that return.
+        Even = "even",
+        /// Into a band of about one edge beside the body: what is farther away stays unchanged, to the bit.
+        /// For bodies that keep moving: a few tets become bad, again and again, and all others stay good.
+        Band = "band",
     }
 }
 

@@ -1,16 +1,13 @@
 //! How a mesh follows its walls, in words, with patches by name: what files, Python and other callers give.
 
-use std::fmt;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use serde::de::{self, Deserializer};
-use serde::{Deserialize, Serialize, Serializer};
-
-use crate::base::{Error, Result, VertexId, nearest};
+use crate::base::{Error, Result, VertexId, read_text};
 use crate::mesh::{Boundary, Mesh};
 use crate::motion::options::{
     Elastic, Extent, FacetSet, Laplace, Limits, Method, Options, RigidLayer, SlideTolerance, Strain,
 };
-use crate::words;
+use crate::{names, words};
 
 words! {
     /// How the inside of a mesh follows its walls. Patches are given by name or number: ids of cells do not
@@ -171,58 +168,23 @@ pub struct MotionParts {
     pub also_moved: Vec<VertexId>,
 }
 
-/// The name of a [`Method`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum MethodName {
-    /// [`Method::Delaunay`].
-    #[default]
-    Delaunay,
-    /// [`Method::Bodies`].
-    Bodies,
-    /// [`Method::Guided`].
-    Guided,
-    /// [`Method::Elastic`].
-    Elastic,
-    /// [`Method::Laplace`].
-    Laplace,
-    /// [`Method::InverseDistance`].
-    Idw,
-    /// [`Method::Radial`].
-    Rbf,
-}
-
-impl MethodName {
-    /// All names, the cheapest methods first.
-    pub const ALL: [Self; 7] =
-        [Self::Delaunay, Self::Bodies, Self::Guided, Self::Elastic, Self::Laplace, Self::Idw, Self::Rbf];
-
-    /// The method with this name.
-    ///
-    /// # Errors
-    /// When there is none; the error names the nearest, or all.
-    pub fn of(name: &str) -> Result<Self> {
-        Self::ALL.into_iter().find(|method| method.as_str() == name).ok_or_else(|| {
-            let known = Self::ALL.iter().map(|method| method.as_str());
-            let remedy = match nearest(name, known.clone()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("give one of {}", known.collect::<Vec<_>>().join(", ")),
-            };
-            Error::options(format!("there is no method `{name}`")).remedy(remedy)
-        })
-    }
-
-    /// The name in files and on the command line.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Delaunay => "delaunay",
-            Self::Bodies => "bodies",
-            Self::Guided => "guided",
-            Self::Elastic => "elastic",
-            Self::Laplace => "laplace",
-            Self::Idw => "idw",
-            Self::Rbf => "rbf",
-        }
+names! {
+    /// The name of a [`Method`].
+    pub enum MethodName: "method" {
+        /// Weights in the Delaunay graph of the boundary vertices (Liu, Qin, Xia 2006).
+        Delaunay = "delaunay",
+        /// The graph, and rigid bodies that carry what is around them: for parts that rotate, or shift far.
+        Bodies = "bodies",
+        /// The graph, whose nodes turn with the walls near them: for walls that bend.
+        Guided = "guided",
+        /// An elastic body, stiff where cells are small: one linear system per step, for comparison.
+        Elastic = "elastic",
+        /// A Laplace equation for each coordinate, stiff at the moving wall: for comparison.
+        Laplace = "laplace",
+        /// The mean of the rigid motions of all boundary vertices, weighted by distance: for comparison.
+        Idw = "idw",
+        /// Radial basis functions of compact support: for comparison.
+        Rbf = "rbf",
     }
 }
 
@@ -239,42 +201,6 @@ impl Method {
             Self::Radial => MethodName::Rbf,
         }
     }
-}
-
-impl fmt::Display for MethodName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())
-    }
-}
-
-impl Serialize for MethodName {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.as_str())
-    }
-}
-
-impl<'de> Deserialize<'de> for MethodName {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        named(deserializer, Self::of)
-    }
-}
-
-impl<'de> Deserialize<'de> for Strain {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        named(deserializer, Self::of_name)
-    }
-}
-
-/// Reads a text and looks it up; an error has the remedy behind it.
-fn named<'de, T, D: Deserializer<'de>>(
-    deserializer: D,
-    of: fn(&str) -> Result<T>,
-) -> std::result::Result<T, D::Error> {
-    let text = String::deserialize(deserializer)?;
-    of(&text).map_err(|e| match e.remedy_text() {
-        Some(remedy) => de::Error::custom(format_args!("{}: {remedy}", e.what())),
-        None => de::Error::custom(e.what()),
-    })
 }
 
 impl Extent {
@@ -307,24 +233,14 @@ impl Serialize for Extent {
 
 impl<'de> Deserialize<'de> for Extent {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged)]
-        enum Written {
-            Distance(f64),
-            Text(String),
-        }
-        let text = match Written::deserialize(deserializer)? {
-            Written::Distance(distance) => distance.to_string(),
-            Written::Text(text) => text,
-        };
-        Self::of_text(&text).map_err(|e| de::Error::custom(e.what()))
+        read_text(deserializer, Self::of_text)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::Words;
+    use crate::base::{Names, Words};
     use crate::mesh::shapes;
 
     #[test]
@@ -354,9 +270,8 @@ mod tests {
     }
 
     #[test]
-    fn every_method_has_the_name_that_it_is_found_by() {
-        for name in MethodName::ALL {
-            assert_eq!(MethodName::of(name.as_str()).unwrap(), name);
+    fn every_name_gives_the_method_that_has_it() {
+        for &name in MethodName::ALL {
             let motion = Motion { method: name, ..Motion::default() };
             assert_eq!(motion.method(Vec::new(), None).unwrap().name(), name);
         }

@@ -4,7 +4,7 @@ use crate::base::Result;
 use crate::contact;
 use crate::mesh::Mesh;
 use crate::moving::options::{Options, Watching};
-use crate::remesh::{self, Held, SurfaceRule};
+use crate::remesh::{self, Held, SurfaceName};
 use crate::words;
 
 words! {
@@ -16,7 +16,7 @@ words! {
         min_eas: f64 = Options::default().limit(),
         /// What may happen to walls: `keep`, nothing; `adapt`, they may stray by `distance`, features and
         /// borders of patches are kept; `loose`, only borders of patches are kept.
-        surface: String = "keep".to_owned(),
+        surface: SurfaceName = SurfaceName::default(),
         /// How far walls may stray, in the unit of the mesh. By default a fraction of its largest extent.
         distance: Option<f64> = None,
         /// Regions and patches that repairs leave as they are.
@@ -38,12 +38,11 @@ impl RepairWords {
     /// The options that these words determine for a mesh; all others have their defaults.
     ///
     /// # Errors
-    /// If a number is not in [0, 1), a rule or a name does not exist, or a distance is given for a surface
-    /// that is kept.
+    /// If a number is not in [0, 1), a name does not exist, or a distance is given for a surface that is kept.
     pub fn options(&self, mesh: &Mesh) -> Result<Options> {
         let repair = remesh::Options {
             min_eas: self.min_eas,
-            surface: SurfaceRule::of_name(&self.surface, self.distance)?,
+            surface: self.surface.within(self.distance)?,
             held: Held::of_names(mesh, &self.hold)?,
             ..remesh::Options::default()
         };

@@ -19,6 +19,7 @@
 //! | layers | [`crate::mesh::OrientedTets`] | tets of boundary layers are thin on purpose, and stay |
 //! | explain | `left` | which bad tets are left, where, and why |
 //! | whole meshes | `whole` | cells of other kinds put back, arrays carried across |
+//! | words | `words` | options as callers write them, with names of the mesh |
 //!
 //! Every change goes through [`kernel`](crate::kernel) and is made only if it raises the worst quality of the
 //! tets it touches. The method is that of Moyle and Ventikos 2008, *Local remeshing for large amplitude grid
@@ -37,6 +38,7 @@ mod run;
 mod sizes;
 mod surface;
 mod whole;
+mod words;
 
 pub use held::Held;
 pub use left::{Left, Reason};
@@ -46,3 +48,4 @@ pub use report::{Counts, Operation, Report, Seconds, SizesReport, State, Worst};
 pub use run::{Outcome, remesh};
 pub use sizes::{LONG, SHORT, Sizes};
 pub use whole::{MeshOutcome, has_only_labels, remesh_labelled, remesh_mesh, remesh_part};
+pub use words::{EdgeLengths, GoalName, RemeshWords, SurfaceName};

@@ -205,24 +205,6 @@ pub enum SurfaceRule {
 }
 
 impl SurfaceRule {
-    /// The rule called `keep`, `adapt` or `loose`, as on the command line.
-    ///
-    /// # Errors
-    /// If no rule has this name, or the rule is `keep` and a distance is given.
-    pub fn of_name(name: &str, distance: Option<f64>) -> Result<Self> {
-        match (name, distance) {
-            ("keep", None) => Ok(Self::Keep),
-            ("keep", Some(_)) => Err(Error::options("a distance was given, but the surface is kept")
-                .remedy("use `adapt` for the surface, or leave the distance out")),
-            ("adapt", distance) => Ok(Self::Adapt { distance }),
-            ("loose", distance) => Ok(Self::Loose { distance }),
-            _ => {
-                Err(Error::options(format!("unknown surface rule `{name}`"))
-                    .remedy("use keep, adapt or loose"))
-            }
-        }
-    }
-
     /// How far a wall may stray, given the mesh's largest extent; `None` if walls may not change.
     pub(super) fn distance(self, extent: impl FnOnce() -> f64) -> Option<f64> {
         match self {

@@ -4,12 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use motet::base::Point;
-use motet::delaunay::EdgePoints;
-use motet::meshing::{Dividing, Options, Seed, Sizes, Surfaces};
-use motet::preflight::Repairs;
+use motet::meshing::{Dividing, EdgeLength, MeshingWords, Seed, WallLayers};
 
-use super::layer_args::{LayersArg, layers, stacks};
-use super::parsers::{self, Size};
+use super::parsers;
+use crate::help;
 use crate::words::positive;
 use crate::writing::WritingArgs;
 
@@ -58,67 +56,45 @@ pub(crate) struct MeshArgs {
     /// Output file, in any mesh format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
-    /// Put points inside so that edges have about this length, in units of the surface, and repair bad tets.
-    /// auto: the length of the surface's edges, growing inwards
-    #[arg(long, value_name = "H|auto", value_parser = parsers::size)]
-    pub(crate) size: Option<Size>,
-    /// Whether to divide triangles of the surface to --size H within their planes, creases kept. auto: where
-    /// most of them are far coarser, or narrow. divide: all of them. keep: none, so that every triangle is a
-    /// facet of the mesh
-    #[arg(long, value_name = "RULE", default_value = "auto", value_parser = ["auto", "divide", "keep"])]
-    pub(crate) surface: String,
-    /// Let sizes grow from the surface inwards, by G per unit of distance, up to --size; at most 0.7
-    /// [default: 0.3 with --size auto or --size-array]
-    #[arg(long, value_name = "G", value_parser = positive)]
+    #[arg(long, help = help::effect::<MeshingWords>("size"), value_name = "H|auto", value_parser = EdgeLength::of_text)]
+    pub(crate) size: Option<EdgeLength>,
+    #[arg(long, help = help::effect::<MeshingWords>("surface"), value_name = "RULE", value_parser = help::name_of::<Dividing>(),
+        default_value_t = MeshingWords::default().surface)]
+    pub(crate) surface: Dividing,
+    #[arg(long, help = help::effect::<MeshingWords>("growth"), value_name = "G", value_parser = positive)]
     pub(crate) growth: Option<f64>,
-    /// Take sizes at the surface from an array of its points or cells, growing inwards, up to --size
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, help = help::effect::<MeshingWords>("size_array"), value_name = "NAME")]
     pub(crate) size_array: Option<String>,
-    /// Name the region that contains a place. Repeatable
-    #[arg(long, value_name = "X,Y,Z=NAME", value_parser = parsers::seed, allow_hyphen_values = true)]
+    #[arg(long, help = help::repeatable::<MeshingWords>("seeds"), value_name = "X,Y,Z=NAME", value_parser = parsers::seed,
+        allow_hyphen_values = true)]
     pub(crate) seed: Vec<Seed>,
-    /// Leave out the region around a place. Repeatable
-    #[arg(long, value_name = "X,Y,Z", value_parser = parsers::place, allow_hyphen_values = true)]
+    #[arg(long, help = help::repeatable::<MeshingWords>("holes"), value_name = "X,Y,Z", value_parser = parsers::place,
+        allow_hyphen_values = true)]
     pub(crate) hole: Vec<Point>,
-    /// Leave out what closed surfaces turned inward enclose, such as the cavity of a hollow body. With
-    /// --repair such surfaces stay turned inward
-    #[arg(long)]
+    #[arg(long, help = help::effect::<MeshingWords>("voids"))]
     pub(crate) voids: bool,
-    /// Repair tets below this EAS, keeping the surface [default: 0.2 with sizes]
-    #[arg(long, value_name = "EAS")]
+    #[arg(long, help = help::effect::<MeshingWords>("min_eas"), value_name = "EAS")]
     pub(crate) min_eas: Option<f64>,
     /// A surface that may end inside the others, such as a flap. Repeatable
     #[arg(long, value_name = "SURFACE")]
     pub(crate) membrane: Vec<PathBuf>,
-    /// Put thin layers on walls: their number, the thickness of the first, and the ratio of each thickness to
-    /// the one before. They go on one patch, or on all that are neither caps (flat, with a sharp crease all
-    /// around) nor named. Where there is no space they are thinner, or absent. Repeatable
-    #[arg(long, value_name = "[PATCH=]N,FIRST,GROWTH", value_parser = layers)]
-    pub(crate) layers: Vec<LayersArg>,
-    /// Put the --layers without a patch only on this one, and on others named so. Repeatable
-    #[arg(long, value_name = "PATCH", requires = "layers")]
+    #[arg(long, help = help::repeatable::<MeshingWords>("layers"), value_name = "[PATCH=]N,FIRST,GROWTH",
+        value_parser = WallLayers::of_text)]
+    pub(crate) layers: Vec<WallLayers>,
+    #[arg(long, help = help::repeatable::<MeshingWords>("layers_on"), value_name = "PATCH", requires = "layers")]
     pub(crate) layers_on: Vec<String>,
-    /// Keep layers as wedges and pyramids instead of dividing them into tets: for formats that hold these,
-    /// such as VTU, VTK and MSH
-    #[arg(long, requires = "layers")]
+    #[arg(long, help = help::effect::<MeshingWords>("keep_prisms"), requires = "layers")]
     pub(crate) keep_prisms: bool,
-    /// Repair the surfaces first: divide edges at vertices on them (T-junctions), divide faces that lie on
-    /// each other alike, drop triangles without area and duplicates, turn all outward, close small holes
-    #[arg(long)]
+    #[arg(long, help = help::effect::<MeshingWords>("repair"))]
     pub(crate) repair: bool,
-    /// Divide surfaces that cross along the lines where they do, and those that touch: each space between
-    /// them is a region. Alone, or with --repair
-    #[arg(long)]
+    #[arg(long, help = help::effect::<MeshingWords>("cut"))]
     pub(crate) cut: bool,
-    /// Close holes of at most this many edges
-    #[arg(long, value_name = "N", default_value_t = 32, requires = "repair")]
+    #[arg(long, help = help::effect::<MeshingWords>("hole_edges"), value_name = "N",
+        default_value_t = MeshingWords::default().hole_edges, requires = "repair")]
     pub(crate) hole_edges: usize,
-    /// Merge points nearer than this, in units of the surface
-    #[arg(long, value_name = "DISTANCE", requires = "repair")]
+    #[arg(long, help = help::effect::<MeshingWords>("merge"), value_name = "DISTANCE", requires = "repair")]
     pub(crate) merge: Option<f64>,
-    /// Allow points on edges of the surface: its triangles are then in pieces, and the tets are Delaunay as
-    /// far as the triangles allow
-    #[arg(long)]
+    #[arg(long, help = help::effect::<MeshingWords>("delaunay"))]
     pub(crate) delaunay: bool,
     /// Write what is wrong to this file, as a surface to inspect
     #[arg(long, value_name = "FILE")]
@@ -128,30 +104,26 @@ pub(crate) struct MeshArgs {
 }
 
 impl MeshArgs {
-    /// What the call requests; `at_points` are the sizes from its array, one per point.
-    ///
-    /// # Errors
-    /// When layers are requested twice for a patch, or for one that does not exist.
-    pub(super) fn options(&self, at_points: Option<Vec<f64>>, surfaces: &Surfaces) -> motet::Result<Options> {
-        let largest = match self.size {
-            Some(Size::Length(h)) => Some(h),
-            _ => None,
-        };
-        let sizes = Sizes::of(largest, self.size == Some(Size::Auto), self.growth, at_points);
-        Ok(Options {
-            edge_points: if self.delaunay { EdgePoints::Stay } else { EdgePoints::MoveInside },
-            dividing: Dividing::of_name(&self.surface)?,
+    /// What the call requests.
+    pub(super) fn words(&self) -> MeshingWords {
+        let usual = MeshingWords::default();
+        MeshingWords {
+            size: self.size,
+            surface: self.surface,
+            growth: self.growth,
+            size_array: self.size_array.clone(),
             seeds: self.seed.clone(),
             holes: self.hole.clone(),
             voids: self.voids,
-            layers: stacks(&self.layers, &self.layers_on, self.keep_prisms, surfaces)?,
-            ..Options::with_sizes(sizes, self.min_eas)
-        })
-    }
-
-    pub(super) fn repairs(&self) -> Option<Repairs> {
-        let all = || Repairs::all(self.merge.unwrap_or(0.0), self.hole_edges);
-        let repairs = if self.repair { all() } else { Repairs::default() };
-        (self.repair || self.cut).then_some(Repairs { cut: self.cut, keep_inward: self.voids, ..repairs })
+            min_eas: self.min_eas,
+            layers: self.layers.clone(),
+            layers_on: self.layers_on.clone(),
+            keep_prisms: self.keep_prisms,
+            repair: self.repair,
+            cut: self.cut,
+            hole_edges: self.hole_edges,
+            merge: self.merge.unwrap_or(usual.merge),
+            delaunay: self.delaunay,
+        }
     }
 }

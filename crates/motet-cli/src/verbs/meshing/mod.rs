@@ -1,7 +1,6 @@
 //! `motet mesh`: closed surfaces in, volume mesh out.
 
 mod args;
-mod layer_args;
 mod parsers;
 mod report;
 
@@ -25,6 +24,7 @@ use crate::words::stem;
 
 pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
+    let words = args.words();
     let inputs = || args.surfaces.iter().chain(&args.membrane).map(PathBuf::as_path);
     outputs::check(&args.output, inputs(), "a surface")?;
     if let Some(file) = &args.culprits {
@@ -36,7 +36,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     let (mut surfaces, sizes) = read(args, console)?;
     let read = begin.elapsed().as_secs_f64();
     meter.stage("checking surfaces");
-    let done = args.repairs().map(|repairs| surfaces.repair(&repairs, &threads)).transpose()?;
+    let done = words.repairs().map(|repairs| surfaces.repair(&repairs, &threads)).transpose()?;
     let sizes = match (&done, sizes) {
         (Some(done), Some(sizes)) => Some(done.at_points(&sizes)),
         (_, sizes) => sizes,
@@ -57,7 +57,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
         return Err(refused(args, &surfaces, &report, &preflight, console));
     }
     let filling = Instant::now();
-    let options = args.options(sizes, &surfaces)?;
+    let options = words.options(&surfaces, sizes)?;
     if let Some(coarse) = options.sizes.as_ref().and_then(|sizes| sizes.coarse(&surfaces)) {
         console.warn(match options.dividing {
             Dividing::Never => format!("{coarse}. They are kept, so tets on them are bad, and one round of repair is made; give a larger --size, or leave out --surface keep"),

@@ -3,21 +3,7 @@
 use motet::base::Point;
 use motet::meshing::Seed;
 
-use crate::words::{numbers, positive};
-
-/// A parsed `H` or `auto`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Size {
-    Length(f64),
-    Auto,
-}
-
-pub(super) fn size(text: &str) -> Result<Size, String> {
-    match text {
-        "auto" => Ok(Size::Auto),
-        _ => positive(text).map(Size::Length).map_err(|_| "a positive number is expected, or auto".into()),
-    }
-}
+use crate::words::numbers;
 
 /// Parses `X,Y,Z`.
 pub(super) fn place(text: &str) -> Result<Point, String> {
@@ -41,8 +27,6 @@ mod tests {
 
     #[test]
     fn words_mean_what_the_help_says() {
-        assert_eq!(size("auto"), Ok(Size::Auto));
-        assert_eq!(size("0.3"), Ok(Size::Length(0.3)));
         assert_eq!(place("-1,2.5,3e-1"), Ok([-1.0, 2.5, 0.3]));
         let parsed = seed("0,0,1=the=lumen").unwrap();
         assert_eq!((parsed.place, parsed.name.as_str()), ([0.0, 0.0, 1.0], "the=lumen"));
@@ -50,9 +34,6 @@ mod tests {
 
     #[test]
     fn what_is_off_is_reported() {
-        for text in ["0", "-1", "nan", "inf", "", "Auto"] {
-            assert!(size(text).unwrap_err().contains("or auto"), "{text}");
-        }
         assert!(place("1,2").unwrap_err().contains("3 numbers; got 2"));
         assert!(place("1,2,x").unwrap_err().contains("`x`"));
         for text in ["1,2,3", "1,2,3=", "1,2=a", "=a", ""] {

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueEnum};
-use motet::base::Words;
 use motet::motion::{Extent, MethodName, Motion};
 
 use super::parsers::{self, PatchFile, Rotate, Translate};
+use crate::help;
 use crate::words::positive;
 use crate::writing::WritingArgs;
 
@@ -93,9 +93,9 @@ pub(crate) struct MoveArgs {
     /// Keep a patch in place, even where it meets one that moves. Repeatable
     #[arg(long, value_name = "PATCH", help_heading = "Boundary")]
     pub(crate) fixed: Vec<String>,
-    #[arg(long, help = repeatable("slide"), value_name = "PATCH", help_heading = "Boundary")]
+    #[arg(long, help = help::repeatable::<Motion>("slide"), value_name = "PATCH", help_heading = "Boundary")]
     pub(crate) slide: Vec<String>,
-    #[arg(long, help = effect("slide_tolerance"), value_name = "PART", value_parser = crate::words::part,
+    #[arg(long, help = help::effect::<Motion>("slide_tolerance"), value_name = "PART", value_parser = crate::words::part,
         default_value_t = Motion::default().slide_tolerance, help_heading = "Boundary")]
     pub(crate) slide_tolerance: f64,
 
@@ -106,19 +106,19 @@ pub(crate) struct MoveArgs {
     /// worst of the input mesh, at most 0.1]
     #[arg(long, value_name = "EAS", value_parser = positive, help_heading = "Volume")]
     pub(crate) least: Option<f64>,
-    #[arg(long, help = effect("within_walls"), help_heading = "Volume")]
+    #[arg(long, help = help::effect::<Motion>("within_walls"), help_heading = "Volume")]
     pub(crate) within_walls: bool,
-    #[arg(long, help = repeatable("bodies"), value_name = "PATCH", help_heading = "Volume")]
+    #[arg(long, help = help::repeatable::<Motion>("bodies"), value_name = "PATCH", help_heading = "Volume")]
     pub(crate) body: Vec<String>,
-    #[arg(long, help = effect("smooth"), value_name = "SWEEPS", value_parser = clap::value_parser!(u8), default_value_t = 0,
+    #[arg(long, help = help::effect::<Motion>("smooth"), value_name = "SWEEPS", value_parser = clap::value_parser!(u8), default_value_t = 0,
         help_heading = "Volume")]
     pub(crate) smooth: u8,
-    #[arg(long, help = effect("residual"), value_name = "RESIDUAL", value_parser = positive,
+    #[arg(long, help = help::effect::<Motion>("residual"), value_name = "RESIDUAL", value_parser = positive,
         default_value_t = Motion::default().residual, help_heading = "Volume")]
     pub(crate) residual: f64,
-    #[arg(long, help = effect("factor_gib"), value_name = "GIB", value_parser = positive, help_heading = "Volume")]
+    #[arg(long, help = help::effect::<Motion>("factor_gib"), value_name = "GIB", value_parser = positive, help_heading = "Volume")]
     pub(crate) factor: Option<f64>,
-    #[arg(long, help = effect("rigid_layer"), value_name = "DISTANCE|Nlayers", value_parser = parsers::layer,
+    #[arg(long, help = help::effect::<Motion>("rigid_layer"), value_name = "DISTANCE|Nlayers", value_parser = parsers::layer,
         help_heading = "Volume")]
     pub(crate) rigid_layer: Option<Extent>,
     /// Patches that have the rigid layer [default: the moving ones]. Repeatable
@@ -127,16 +127,6 @@ pub(crate) struct MoveArgs {
 
     #[command(flatten)]
     pub(crate) writing: WritingArgs,
-}
-
-/// The effect of an option, as the library says it.
-fn effect(word: &str) -> String {
-    Motion::effect(word).trim_end_matches('.').to_owned()
-}
-
-/// The effect of an option that may be given several times.
-fn repeatable(word: &str) -> String {
-    format!("{} Repeatable", Motion::effect(word))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

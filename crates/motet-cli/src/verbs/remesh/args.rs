@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
-use motet::Error;
-use motet::Mesh;
-use motet::remesh::{self, Held, Options, Sizes, SurfaceRule};
+use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
+use clap::{ArgAction, Args};
+use motet::remesh::{EdgeLengths, GoalName, RemeshWords, SurfaceName};
 
 use crate::arrays::ArrayArgs;
+use crate::help;
 use crate::words::positive;
 use crate::writing::WritingArgs;
 
@@ -57,36 +57,31 @@ pub(crate) struct RemeshArgs {
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// Tets below this EAS are bad
-    #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = eas, help_heading = "Repair")]
-    pub(crate) min_eas: f64,
-    /// Tets with a dihedral angle below this are bad, too: --min-eas is raised to the EAS that guarantees it,
-    /// 0.014 per degree
-    #[arg(long, value_name = "DEG", value_parser = degrees, help_heading = "Repair")]
-    pub(crate) min_dihedral: Option<f64>,
-    /// What may change on the boundary, on interfaces of regions and on surface cells
-    #[arg(long, value_name = "RULE", default_value = "keep", help_heading = "Repair")]
-    pub(crate) surface: Surface,
-    /// How far an adapting surface may stray from where it was, in units of the mesh [default: a
-    /// thousandth of the largest extent]
-    #[arg(long, value_name = "D", value_parser = positive, help_heading = "Repair")]
+    #[arg(long, help = help::effect::<RemeshWords>("min_eas"), value_name = "EAS", value_parser = eas,
+        default_value_t = RemeshWords::default().min_eas, help_heading = "Repair")]
+    min_eas: f64,
+    #[arg(long, help = help::effect::<RemeshWords>("min_dihedral_deg"), value_name = "DEG", value_parser = degrees,
+        help_heading = "Repair")]
+    min_dihedral: Option<f64>,
+    #[arg(long, help = help::effect::<RemeshWords>("surface"), value_name = "RULE", value_parser = help::name_of::<SurfaceName>(),
+        default_value_t = RemeshWords::default().surface, help_heading = "Repair")]
+    pub(crate) surface: SurfaceName,
+    #[arg(long, help = help::effect::<RemeshWords>("distance"), value_name = "D", value_parser = positive, help_heading = "Repair")]
     distance: Option<f64>,
-    /// Bring edges to this length, or to the value of a point array
-    #[arg(long, value_name = "H|ARRAY", value_parser = sizes, help_heading = "Repair")]
-    sizes: Option<SizesArg>,
-    /// Keep the tets of this region, or the triangles of this patch, and their vertices as they are, to the
-    /// bit; by name or number. Repeatable
-    #[arg(long, value_name = "NAME", help_heading = "Repair")]
+    #[arg(long, help = help::effect::<RemeshWords>("sizes"), value_name = "H|ARRAY", value_parser = EdgeLengths::of_text,
+        help_heading = "Repair")]
+    sizes: Option<EdgeLengths>,
+    #[arg(long, help = help::repeatable::<RemeshWords>("hold"), value_name = "NAME", help_heading = "Repair")]
     hold: Vec<String>,
-    /// When to stop
-    #[arg(long, value_name = "GOAL", default_value = "repair", help_heading = "Repair")]
-    pub(crate) goal: Goal,
-    /// What to do with the thin tets of boundary layers at walls, whose angles would count as bad
-    #[arg(long, value_name = "RULE", default_value = "keep", help_heading = "Repair")]
-    layers: Layers,
-    /// Maximum number of rounds over the bad tets
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "Repair")]
-    rounds: u32,
+    #[arg(long, help = help::effect::<RemeshWords>("goal"), value_name = "GOAL", value_parser = help::name_of::<GoalName>(),
+        default_value_t = RemeshWords::default().goal, help_heading = "Repair")]
+    goal: GoalName,
+    #[arg(long = "layers", help = help::effect::<RemeshWords>("keep_layers"), value_name = "RULE", action = ArgAction::Set,
+        value_parser = is_keep(), default_value = "keep", help_heading = "Repair")]
+    keep_layers: bool,
+    #[arg(long, help = help::effect::<RemeshWords>("rounds"), value_name = "N", value_parser = rounds(),
+        default_value_t = RemeshWords::default().rounds, help_heading = "Repair")]
+    rounds: usize,
 
     #[command(flatten)]
     pub(crate) arrays: ArrayArgs,
@@ -94,94 +89,20 @@ pub(crate) struct RemeshArgs {
     pub(crate) writing: WritingArgs,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Surface {
-    /// Nothing: surfaces stay to the bit
-    Keep,
-    /// They may change within --distance; creases, corners and borders of patches stay
-    Adapt,
-    /// They may change within --distance; so may creases and corners where nothing else helps
-    Loose,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Goal {
-    /// When no bad tet is left, with as few tets touched as possible
-    Repair,
-    /// When the worst tets everywhere are as good as they get
-    Best,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Layers {
-    /// They stay as they are and count as good
-    Keep,
-    /// They are repaired like any bad tet
-    Repair,
-}
-
-/// The requested sizes.
-#[derive(Clone, Debug, PartialEq)]
-enum SizesArg {
-    Length(f64),
-    /// Name of a point array.
-    Array(String),
-}
-
 impl RemeshArgs {
-    pub(crate) fn options(&self) -> motet::Result<Options> {
-        let surface = match (self.surface, self.distance) {
-            (Surface::Keep, None) => SurfaceRule::Keep,
-            (Surface::Adapt, distance) => SurfaceRule::Adapt { distance },
-            (Surface::Loose, distance) => SurfaceRule::Loose { distance },
-            (Surface::Keep, Some(_)) => {
-                return Err(Error::options(
-                    "--distance bounds how far a surface may stray, but this one is kept",
-                )
-                .remedy("add --surface adapt"));
-            }
-        };
-        Ok(Options {
+    /// What the call requests.
+    pub(super) fn words(&self) -> RemeshWords {
+        let usual = RemeshWords::default();
+        RemeshWords {
             min_eas: self.min_eas,
-            min_dihedral_deg: self.min_dihedral.unwrap_or(0.0),
-            goal: match self.goal {
-                Goal::Repair => remesh::Goal::Repair,
-                Goal::Best => remesh::Goal::Best,
-            },
-            surface,
-            keep_layers: self.layers == Layers::Keep,
-            rounds: self.rounds as usize,
-            ..Options::default()
-        })
-    }
-
-    /// The regions and patches of a mesh that the call holds.
-    pub(crate) fn held(&self, mesh: &Mesh) -> motet::Result<Held> {
-        Held::of_names(mesh, &self.hold)
-    }
-
-    /// The sizes that the call requests, possibly from an array of the mesh.
-    pub(crate) fn sizes(&self, mesh: &Mesh) -> motet::Result<Option<Sizes>> {
-        let name = match &self.sizes {
-            None => return Ok(None),
-            Some(SizesArg::Length(h)) => return Ok(Some(Sizes::Uniform(*h))),
-            Some(SizesArg::Array(name)) => name,
-        };
-        let Some(field) = mesh.point_field(name) else {
-            let known: Vec<&str> = mesh.point_data.iter().map(|f| f.name.as_str()).collect();
-            return Err(Error::options(format!(
-                "--sizes: {name} is neither a number nor a point array of the mesh"
-            ))
-            .remedy(match known[..] {
-                [] => "give a number above 0: the mesh has no point arrays".to_owned(),
-                _ => format!("give a number above 0 or one of its point arrays: {}", known.join(", ")),
-            }));
-        };
-        match field.values.to_f64().filter(|_| field.components == 1) {
-            Some(sizes) => Ok(Some(Sizes::Vertices(sizes))),
-            None => Err(Error::input("does not have one number for each point, as sizes require")
-                .at(format!("array {name}"))
-                .remedy("give --sizes an array of one component")),
+            min_dihedral_deg: self.min_dihedral.unwrap_or(usual.min_dihedral_deg),
+            goal: self.goal,
+            surface: self.surface,
+            distance: self.distance,
+            keep_layers: self.keep_layers,
+            hold: self.hold.clone(),
+            sizes: self.sizes.clone(),
+            rounds: self.rounds,
         }
     }
 }
@@ -200,12 +121,13 @@ fn degrees(text: &str) -> Result<f64, String> {
     }
 }
 
-fn sizes(text: &str) -> Result<SizesArg, String> {
-    match text.parse::<f64>() {
-        Ok(h) if 0.0 < h && h < f64::INFINITY => Ok(SizesArg::Length(h)),
-        Ok(_) => Err("a number above 0 is expected, or the name of a point array".into()),
-        Err(_) => Ok(SizesArg::Array(text.to_owned())),
-    }
+/// A parser of `keep` and `repair`; true for `keep`.
+fn is_keep() -> impl TypedValueParser<Value = bool> {
+    PossibleValuesParser::new(["keep", "repair"]).map(|rule| rule == "keep")
+}
+
+fn rounds() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..=10_000)
 }
 
 #[cfg(test)]
@@ -216,8 +138,6 @@ mod tests {
     fn words_mean_what_the_help_says() {
         assert_eq!(eas("0.25"), Ok(0.25));
         assert_eq!(degrees("14.1"), Ok(14.1));
-        assert_eq!(sizes("0.3"), Ok(SizesArg::Length(0.3)));
-        assert_eq!(sizes("h"), Ok(SizesArg::Array("h".to_owned())));
     }
 
     #[test]
@@ -225,7 +145,6 @@ mod tests {
         for text in ["0", "1", "-0.2", "nan", "x"] {
             assert!(eas(text).is_err(), "{text}");
         }
-        assert!(["0", "-0.3", "nan", "inf"].into_iter().all(|text| sizes(text).is_err()));
         assert!(degrees("70.6").is_err() && degrees("0").is_err());
     }
 }

@@ -21,7 +21,8 @@ use crate::table::seconds;
 
 pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
-    let mut options = args.options()?;
+    let words = args.words();
+    words.check()?;
     outputs::check_with_history(&args.output, &args.mesh, args.arrays.history.as_deref())?;
     let meter = console.meter("remeshing", None);
     let threads = common.threads()?.watched(meter.watch());
@@ -29,8 +30,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let (old, notes) = io::read_noted(&args.mesh)?;
     let read = begin.elapsed().as_secs_f64();
     let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
-    options.held = args.held(&old).map_err(|e| e.in_file(&args.mesh))?;
-    options.sizes = args.sizes(&old).map_err(|e| e.in_file(&args.mesh))?;
+    let options = words.options(&old).map_err(|e| e.in_file(&args.mesh))?;
     let outcome = match args.arrays.history.is_none() && has_only_labels(&old) {
         true => remesh_labelled(&old, &options, &threads).map(|(mesh, report)| (mesh, None, report)),
         false => remesh_mesh(&old, &options, &rules, &threads)

@@ -7,11 +7,11 @@ use motet::base::{Point, Threads};
 use motet::mesh::Qualities;
 use motet::mesh::history::{FieldLedger, History, Ledger, On, Rule};
 use motet::remesh::classify::DEFECT_NAMES;
-use motet::remesh::{self, Counts, LONG, Lengths, Reason, SHORT, SizesReport};
+use motet::remesh::{self, Counts, LONG, Lengths, Reason, SHORT, SizesReport, SurfaceName};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::args::{RemeshArgs, Surface};
+use super::args::RemeshArgs;
 use crate::console::Console;
 use crate::outcome::Outcome;
 use crate::quality;
@@ -149,7 +149,7 @@ impl Report {
             passed_over: Vec::new(),
             lost: Vec::new(),
             seconds: Stages { join, repair, extract, history: carried, ..Stages::default() },
-            surface_is_kept: args.surface == Surface::Keep,
+            surface_is_kept: args.surface == SurfaceName::Keep,
         }
     }
 
