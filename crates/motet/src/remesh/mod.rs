@@ -11,7 +11,7 @@
 //! | improve | `repair::improve` | swaps and moved vertices that improve tets as a whole and leave none bad |
 //! | density | `repair::density` | the number of vertices kept: long edges divided, short ones collapsed |
 //! | thin | `repair::thin` | inserted vertices that lie close to others removed again where they are not needed |
-//! | choose | `repair::candidate` | of the changes that repair a tet, the one that touches the fewest tets still untouched |
+//! | choose | `repair::trial`, `repair::score` | of the changes that repair a tet, the one that touches the fewest tets still untouched |
 //! | surface | `surface` | kept to the bit, or within a distance of the input surface |
 //! | lines | `lines` | labelled edges divided and merged along themselves, within the same distance |
 //! | hold | `held` | named regions and patches, required entities and facets with a twin kept to the bit |

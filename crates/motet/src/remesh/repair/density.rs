@@ -10,10 +10,11 @@ use std::sync::Arc;
 use crate::base::{Result, TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
-use crate::kernel::{Change, Hold};
+use crate::kernel::Hold;
 use crate::ops::{collapse, defect};
 use crate::remesh::input_mesh::InputMesh;
 use crate::remesh::repair::Repair;
+use crate::remesh::repair::trial::{Merit, Rules, Trial};
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{SHORT, SizeField, Sizes};
 
@@ -75,14 +76,19 @@ impl Repair {
         } else {
             self.sorted_edges(zone.iter().copied().filter(|&t| self.complex.is_alive(t)), &mut density.field)
         };
+        let mut trial = Trial::new();
         for (i, edge) in edges.iter().enumerate() {
             let shortest = if lack < -TOLERANCE { SHORT_IF_CROWDED } else { SHORT };
             if edge.ratio >= shortest {
                 break;
             }
             self.watch.report_and_check("collapsing short edges", i, edges.len())?;
-            lack += isize::from(self.collapse_crowded(edge, floor, &mut density.field, zone));
+            if self.collapse_crowded(edge, floor, &mut density.field, &mut trial) {
+                lack += 1;
+                zone.extend_from_slice(trial.inserted());
+            }
         }
+        let mut trial = Trial::new();
         for (i, edge) in edges.iter().rev().enumerate() {
             let longest = match lack {
                 _ if lack > TOLERANCE => LONG_IF_LACKING,
@@ -93,7 +99,10 @@ impl Repair {
                 break;
             }
             self.watch.report_and_check("splitting long edges", i, edges.len())?;
-            lack -= isize::from(self.insert_on(edge, floor, zone));
+            if self.insert_on(edge, floor, &mut trial) {
+                lack -= 1;
+                zone.extend_from_slice(trial.inserted());
+            }
         }
         Ok(())
     }
@@ -125,58 +134,51 @@ impl Repair {
         edge: &Edge,
         floor: f64,
         field: &mut SizeField,
-        zone: &mut Vec<TetId>,
+        trial: &mut Trial,
     ) -> bool {
         if !self.has(edge) {
             return false;
         }
         let [a, b] = edge.ends;
-        let mut best: Option<(f64, Change)> = None;
         for [removed, kept] in [[a, b], [b, a]] {
             if self.complex.hold(removed) != Hold::Free {
                 continue;
             }
             self.star.gather(&self.complex, removed);
             let bar = self.complex.worst_of(&self.star.tets).min(floor).next_down();
-            let mut change = Change::default();
-            if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut change)
-                && field.lengthens_none(&self.complex, &change)
-                && self.complex.check_against(&change, bar).is_ok()
-            {
-                let sum: f64 = change.fill.iter().map(|tet| defect(tet.quality)).sum();
-                let defects = sum / change.fill.len() as f64;
-                if best.as_ref().is_none_or(|(least, _)| defects < *least) {
-                    best = Some((defects, change));
-                }
+            if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut trial.proposal) {
+                trial.offer(Rules::of(&self.complex).not_longer(field), |proposal, least| {
+                    let sum: f64 = proposal.fill.iter().map(|tet| defect(tet.quality)).sum();
+                    let score = sum / proposal.fill.len() as f64;
+                    let is_better = least.is_none_or(|least| score < least);
+                    is_better.then_some(Merit { operation: Operation::Collapse, score, bar })
+                });
             }
         }
-        let is_made = best.is_some_and(|(_, change)| self.commit_above(&change, floor, zone));
-        if is_made {
-            self.operations.add(Operation::Collapse);
-        }
-        is_made
+        trial.commit(&mut self.complex, &mut self.operations, None)
     }
 
     /// Inserts a vertex near the midpoint of an edge inside the volume.
-    fn insert_on(&mut self, edge: &Edge, floor: f64, zone: &mut Vec<TetId>) -> bool {
+    fn insert_on(&mut self, edge: &Edge, floor: f64, trial: &mut Trial<()>) -> bool {
         let [a, b] = edge.ends;
         if !self.has(edge) || !self.complex.may_divide(a, b) {
             return false;
         }
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let is_made = self.around(edge.tet, [a, b], |repair, shell| {
+        self.around(edge.tet, [a, b], |repair, shell| {
             if !shell.is_free() {
                 return false;
             }
-            let (complex, mut change) = (&repair.complex, Change::default());
-            let bar = complex.worst_of(&shell.tets).min(floor).next_down();
-            let bars = [bar, GOOD.max(floor)];
-            repair.insertion.propose(complex, &shell.tets, middle, bars, &mut change)
-                && repair.commit_above(&change, floor, zone)
-        });
-        if is_made {
-            self.operations.add(Operation::Insertion);
-        }
-        is_made
+            let complex = &repair.complex;
+            let bar_of = |tets: &[TetId]| complex.worst_of(tets).min(floor).next_down();
+            let bars = [bar_of(&shell.tets), GOOD.max(floor)];
+            if repair.insertion.propose(complex, &shell.tets, middle, bars, &mut trial.proposal) {
+                trial.offer(Rules::at_commit(complex), |proposal, _| {
+                    let bar = bar_of(&proposal.cavity);
+                    Some(Merit { operation: Operation::Insertion, score: (), bar })
+                });
+            }
+            trial.commit(&mut repair.complex, &mut repair.operations, None)
+        })
     }
 }

@@ -6,6 +6,7 @@ use crate::geometry::vector::{add, distance, scale};
 use crate::kernel::Shell;
 use crate::ops::split_edge;
 use crate::remesh::repair::Repair;
+use crate::remesh::repair::trial::{Merit, Rules, Trial};
 use crate::remesh::report::Operation;
 
 /// How many rounds of splits in a row may end without progress.
@@ -25,13 +26,13 @@ impl Repair {
         let n_bad = |repair: &Self, left: &[TetId]| left.len() + repair.complex.n_exempt();
         let mut n_least = n_bad(self, &left);
         let mut best = (left.clone(), self.complex.mark(), self.operations);
-        let mut n_failed = 0;
+        let (mut n_failed, mut trial) = (0, Trial::new());
         let max_tets = MAX_GROWTH * self.complex.n_tets();
         while !left.is_empty() && n_failed < MAX_FAILED_ROUNDS && self.complex.n_tets() < max_tets {
             let mut bad = Vec::new();
             for &tet in &left {
                 if self.is_bad(tet) {
-                    self.split_longest(tet);
+                    self.split_longest(tet, &mut trial);
                 }
                 bad.append(&mut self.inserted_bad);
             }
@@ -55,13 +56,13 @@ impl Repair {
     /// Splits the edge at the end of the longest-edge path from a tet: one that is the longest edge of every
     /// tet around it (Rivara 1984 and 1997, *New longest-edge algorithms for the refinement and/or
     /// improvement of unstructured triangulations*).
-    fn split_longest(&mut self, mut tet: TetId) {
+    fn split_longest(&mut self, mut tet: TetId, trial: &mut Trial<()>) {
         loop {
             let (edge, length) = self.longest_edge(tet);
             let next = self.around(tet, edge, |repair, shell| {
                 let next = shell.tets.iter().copied().find(|&t| repair.longest_edge(t).1 > length);
                 if next.is_none() {
-                    repair.split_unjudged(shell, edge);
+                    repair.split_unjudged(shell, edge, trial);
                 }
                 next
             });
@@ -86,21 +87,21 @@ impl Repair {
 
     /// Splits an edge with the tets `shell` around it, whatever the quality, if every tet stays positive and
     /// the surface allows it.
-    fn split_unjudged(&mut self, shell: &Shell, edge: [VertexId; 2]) {
+    fn split_unjudged(&mut self, shell: &Shell, edge: [VertexId; 2], trial: &mut Trial<()>) {
         let [a, b] = edge;
         if !self.complex.may_divide(a, b) {
             return;
         }
         let hold = self.hold_on(shell, edge);
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let mut inserted = Vec::new();
-        let proposal = &mut self.candidate.proposal;
-        let is_fit = split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal)
-            && self.surface.as_ref().is_none_or(|s| s.accepts_in_place(proposal));
-        if let Some(checked) = self.complex.check_against(proposal, 0.0).ok().filter(|_| is_fit) {
-            self.complex.commit(checked, &mut inserted);
-            self.operations.add(Operation::SplitEdge);
+        let bar = 0.0;
+        if split_edge(&self.complex, shell, edge, (middle, hold), bar, &mut trial.proposal) {
+            let rules = Rules::at_commit(&self.complex).in_place(self.surface.as_ref());
+            trial.offer(rules, |_, _| Some(Merit { operation: Operation::SplitEdge, score: (), bar }));
         }
-        self.inserted_bad.extend(inserted.into_iter().filter(|&t| self.complex.quality(t) < self.target));
+        if trial.commit(&mut self.complex, &mut self.operations, None) {
+            let inserted = trial.inserted().iter().copied();
+            self.inserted_bad.extend(inserted.filter(|&t| self.complex.quality(t) < self.target));
+        }
     }
 }

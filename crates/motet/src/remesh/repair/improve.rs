@@ -17,6 +17,8 @@ use crate::geometry::tet::EDGES;
 use crate::kernel::{Behind, Change, Complex, Fill, Hold};
 use crate::ops::{Anywhere, Objective, Reach, defect};
 use crate::remesh::input_mesh::Pose;
+use crate::remesh::repair::score::adds_below;
+use crate::remesh::repair::trial::{Merit, Rules, Trial};
 use crate::remesh::repair::tried::Settled;
 use crate::remesh::repair::{Repair, Sizing};
 use crate::remesh::report::Operation;
@@ -135,18 +137,11 @@ impl Objective for CostModel<'_> {
     }
 }
 
-/// The best change found for a tet.
-#[derive(Debug, Default)]
-struct Best {
-    gain: Option<f64>,
-    operation: Operation,
-    change: Change,
-}
-
-/// The best change found for a tet, and the constraints on it.
+/// The search for the best change at a tet, and the constraints on it.
 #[derive(Debug)]
-struct Found {
-    best: Best,
+struct Search {
+    /// Changes are compared by how much they lower the cost.
+    trial: Trial,
     /// The requested sizes, if any: no change may make an edge too long or too short.
     sizing: Option<Sizing>,
 }
@@ -157,7 +152,7 @@ struct Progress {
     aim: Aim,
     /// The mean cost over the mesh.
     mean: f64,
-    found: Found,
+    search: Search,
     settled: Settled,
     inserted: Vec<TetId>,
 }
@@ -170,8 +165,8 @@ impl Repair {
             pose.update(&self.complex);
         }
         let mean = self.mean_cost(aim);
-        let found = Found { best: Best::default(), sizing: self.sizing.take() };
-        let mut progress = Progress { aim, mean, found, settled: Settled::default(), inserted: Vec::new() };
+        let search = Search { trial: Trial::new(), sizing: self.sizing.take() };
+        let mut progress = Progress { aim, mean, search, settled: Settled::default(), inserted: Vec::new() };
         for _ in 0..ROUNDS {
             self.swap_low(&mut zone, &mut progress)?;
             self.move_low(&mut zone, &mut progress)?;
@@ -180,7 +175,7 @@ impl Repair {
                 break;
             }
         }
-        self.sizing = progress.found.sizing;
+        self.sizing = progress.search.sizing;
         Ok(())
     }
 
@@ -244,23 +239,18 @@ impl Repair {
 
     /// Commits the best change found, if there is one and the kernel allows it, and forgets it.
     fn make_best(&mut self, progress: &mut Progress) {
-        let Progress { aim, found: Found { best, .. }, inserted, .. } = progress;
-        let n_before = inserted.len();
-        let is_made = best.gain.take().is_some() && self.commit_above(&best.change, aim.floor, inserted);
-        if is_made {
-            let inserted = &inserted[n_before..];
-            self.operations.add(best.operation);
-            self.changes.inserted(&self.complex, inserted);
+        let Progress { search: Search { trial, .. }, inserted, .. } = progress;
+        if trial.commit(&mut self.complex, &mut self.operations, Some(&mut self.changes)) {
+            inserted.extend_from_slice(trial.inserted());
             if let Some(pose) = &mut self.pose {
-                pose.follow(&self.complex, best.change.vertex, inserted);
+                pose.follow(&self.complex, trial.vertex(), trial.inserted());
             }
         }
     }
 
-    fn weigh_swaps(&mut self, tet: TetId, Progress { aim, mean, found, settled, .. }: &mut Progress) {
+    fn weigh_swaps(&mut self, tet: TetId, Progress { aim, mean, search, settled, .. }: &mut Progress) {
         let mut model = CostModel::new(*aim, *mean, self.pose.as_ref());
         let vertices = self.complex.vertices(tet);
-        let mut change = std::mem::take(&mut self.candidate.proposal);
         let mut shell = self.shells.pop().unwrap_or_default();
         for (place, edge) in EDGES.map(|e| e.map(|i| vertices[i])).into_iter().enumerate() {
             if settled.has_edge(&self.changes, &self.complex, tet, place) {
@@ -270,8 +260,14 @@ impl Repair {
             // Walls change to repair tets, not to improve them.
             let may_go = self.surface.is_none() || self.hold_on(&shell, edge) == Hold::Free;
             let is_better = may_go
-                && self.edge_removal.propose_for(&self.complex, &shell, edge, &mut model, &mut change)
-                && self.weigh(&mut change, (Operation::EdgeRemoval, None), model, found);
+                && self.edge_removal.propose_for(
+                    &self.complex,
+                    &shell,
+                    edge,
+                    &mut model,
+                    &mut search.trial.proposal,
+                )
+                && self.weigh((Operation::EdgeRemoval, None), model, search);
             if !is_better {
                 settled.settle_edge(&self.changes, &self.complex, &shell.tets, edge);
             }
@@ -290,20 +286,19 @@ impl Repair {
             };
             let worst = self.complex.quality(tet).min(self.complex.quality(behind.tet()));
             let bar = worst.min(aim.floor).next_down();
-            let is_better = self.face_removal.propose(&self.complex, tet, facet, bar, &mut change)
-                && self.weigh(&mut change, (Operation::FaceRemoval, None), model, found);
+            let proposal = &mut search.trial.proposal;
+            let is_better = self.face_removal.propose(&self.complex, tet, facet, bar, proposal)
+                && self.weigh((Operation::FaceRemoval, None), model, search);
             if !is_better {
                 settled.settle_facet(&self.changes, tet, facet);
                 settled.settle_facet(&self.changes, behind.tet(), behind.facet());
             }
         }
-        self.candidate.proposal = change;
     }
 
-    fn weigh_move(&mut self, vertex: VertexId, Progress { aim, mean, found, .. }: &mut Progress) -> bool {
+    fn weigh_move(&mut self, vertex: VertexId, Progress { aim, mean, search, .. }: &mut Progress) -> bool {
         let mut model = CostModel::new(*aim, *mean, self.pose.as_ref());
         let pose = self.pose.as_ref().map(|pose| |v: VertexId| pose.point(v));
-        let mut change = std::mem::take(&mut self.candidate.proposal);
         self.star.gather(&self.complex, vertex);
         let star = &self.star.tets;
         model.set_bars(&self.complex, star);
@@ -314,42 +309,35 @@ impl Repair {
             vertex,
             Reach { floor: model.bars[0], gain: least },
             &Anywhere,
-            &mut change,
+            &mut search.trial.proposal,
         );
         let moved = self.relaxation.place_in_pose().map(|place| (vertex, place));
-        let is_better = is_proposed && self.weigh(&mut change, (Operation::Smoothing, moved), model, found);
-        self.candidate.proposal = change;
-        is_better
+        is_proposed && self.weigh((Operation::Smoothing, moved), model, search)
     }
 
-    /// Takes a change as the best if it gains enough, and more than the best so far; the previous best is
-    /// left in `change`. `moved` is a vertex that moves, and its place in the other pose, if there is one.
-    /// Returns whether the change gains enough.
+    /// Keeps the proposal as the best change if it gains enough, and more than the best so far. `moved` is a
+    /// vertex that moves, and its place in the other pose, if there is one. Returns whether the proposal
+    /// gains enough.
     fn weigh(
         &self,
-        change: &mut Change,
         (operation, moved): (Operation, Option<(VertexId, Point)>),
         mut model: CostModel,
-        found: &mut Found,
+        Search { trial, sizing }: &mut Search,
     ) -> bool {
-        let Found { best, sizing } = found;
+        let change = &trial.proposal;
         model.set_bars(&self.complex, &change.cavity);
         let (least, before) = model.of_cavity(&self.complex, &change.cavity);
         let gain = before - model.of_fill(change, moved);
-        let has_kept = || change.cavity.iter().any(|&t| self.is_kept(t));
-        if gain <= least || self.adds_low(change, model.aim) || has_kept() {
+        if gain <= least || self.adds_low(change, model.aim) || self.touches_kept(change) {
             return false;
         }
-        if best.gain.is_some_and(|known| gain <= known) {
+        // Sizes are checked only for a change that would be the best.
+        if trial.score().is_some_and(|known| gain <= known) {
             return true;
         }
-        // Sizes are checked only for a change that would be the best.
-        let is_allowed = sizing.as_mut().is_none_or(|sizing| sizing.field.accepts(&self.complex, change));
-        if is_allowed {
-            std::mem::swap(change, &mut best.change);
-            (best.gain, best.operation) = (Some(gain), operation);
-        }
-        is_allowed
+        let field = sizing.as_mut().map(|sizing| &mut sizing.field);
+        let merit = Merit { operation, score: gain, bar: model.bars[0] };
+        trial.offer(Rules::at_commit(&self.complex).fit(field), |_, _| Some(merit))
     }
 
     /// Whether a change leaves more tets below the floor or the limit than it found without raising the worst
@@ -357,22 +345,8 @@ impl Repair {
     /// where walls leave little space for a while, two tets that are hardly bad are better than one that is
     /// nearly flat.
     fn adds_low(&self, change: &Change, aim: Aim) -> bool {
-        let adds = |bar: f64| {
-            let n_after = change.fill.iter().filter(|tet| tet.quality < bar).count();
-            n_after > 0 && n_after > change.cavity.iter().filter(|&&t| self.complex.quality(t) < bar).count()
-        };
+        let adds = |bar: f64| adds_below(&self.complex, change, bar);
         let raises_worst = || change.worst() > self.complex.worst_of(&change.cavity);
         (adds(aim.floor) || aim.limit < aim.floor && adds(aim.limit)) && !raises_worst()
-    }
-
-    /// Commits a change that leaves no tet below a floor, nor the worst quality it touches any lower, and
-    /// adds the inserted tets to `inserted`. Returns whether it was made.
-    pub(super) fn commit_above(&mut self, change: &Change, floor: f64, inserted: &mut Vec<TetId>) -> bool {
-        let bar = self.complex.worst_of(&change.cavity).min(floor).next_down();
-        let Ok(checked) = self.complex.check_against(change, bar) else { return false };
-        let mut tets = Vec::new();
-        self.complex.commit(checked, &mut tets);
-        inserted.append(&mut tets);
-        true
     }
 }

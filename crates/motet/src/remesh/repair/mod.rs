@@ -1,13 +1,14 @@
 //! The repair of bad tets one by one, worst first.
 
 mod by_length;
-mod candidate;
 mod density;
 mod divide;
 mod improve;
+mod score;
 mod sizing;
 mod stages;
 mod thin;
+mod trial;
 mod tried;
 
 pub(super) use density::Density;
@@ -15,13 +16,14 @@ pub(super) use improve::Aim;
 pub(super) use sizing::Sizing;
 
 use crate::base::{Result, TetId, VertexId, Watch};
-use crate::kernel::{Complex, Shell, Star};
+use crate::kernel::{Change, Complex, Shell, Star};
 use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Relaxation, Smoothing};
 use crate::remesh::input_mesh::Pose;
 use crate::remesh::left::{forced, is_forced};
 use crate::remesh::options::SurfaceRule;
-use crate::remesh::repair::candidate::Candidate;
+use crate::remesh::repair::score::{Limits, Score, worth_more_bad};
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
+use crate::remesh::repair::trial::{Merit, Rules, Trial};
 use crate::remesh::repair::tried::{Changes, Tried};
 use crate::remesh::report::{Counts, Operation};
 use crate::remesh::surface::{Crease, Surface};
@@ -91,7 +93,10 @@ pub(super) struct Repair {
     pub(super) kept: Vec<bool>,
     target: f64,
     n_stages: usize,
-    candidate: Candidate,
+    /// The search for the change that repairs one bad tet.
+    trial: Trial<Score>,
+    /// The worst quality from which that change may leave more bad tets than it found.
+    worth_more_bad: f64,
     edge_removal: EdgeRemoval,
     face_removal: FaceRemoval,
     smoothing: Smoothing,
@@ -128,7 +133,8 @@ impl Repair {
             kept: Vec::new(),
             target,
             n_stages: FIRST_STAGES,
-            candidate: Candidate::default(),
+            trial: Trial::new(),
+            worth_more_bad: f64::INFINITY,
             edge_removal: EdgeRemoval::default(),
             face_removal: FaceRemoval::default(),
             smoothing: Smoothing::default(),
@@ -417,23 +423,22 @@ impl Repair {
             return false;
         }
         let (complex, is_last) = (&self.complex, self.n_stages == STAGES.len());
-        self.candidate.begin(is_last.then(|| complex.quality(tet)));
+        self.worth_more_bad = worth_more_bad(is_last.then(|| complex.quality(tet)));
         for stage in &STAGES[..self.n_stages] {
             stage(self, tet);
-            if self.candidate.reaches(self.target) {
+            if self.trial.reaches(self.target) {
                 break;
             }
         }
-        let Some((operation, inserted)) = self.candidate.commit(&mut self.complex) else {
+        if !self.trial.commit(&mut self.complex, &mut self.operations, Some(&mut self.changes)) {
             if is_last {
                 self.tried.note_failure(&self.changes, tet, self.target);
             }
             return false;
-        };
-        self.operations.add(operation);
-        self.changes.inserted(&self.complex, inserted);
+        }
         let (complex, target) = (&self.complex, self.target);
-        self.inserted_bad.extend(inserted.iter().copied().filter(|&t| complex.quality(t) < target));
+        let inserted = self.trial.inserted().iter().copied();
+        self.inserted_bad.extend(inserted.filter(|&t| complex.quality(t) < target));
         true
     }
 
@@ -459,19 +464,26 @@ impl Repair {
     }
 
     fn bar(&self, tet: TetId) -> f64 {
-        self.candidate.bar(self.complex.quality(tet), self.target)
+        self.trial.bar(self.complex.quality(tet), self.target)
     }
 
+    /// Offers the proposal for the bad tet whose repair is searched for.
     fn offer(&mut self, operation: Operation) {
-        if !self.kept.is_empty() && self.candidate.proposal.cavity.iter().any(|&t| self.is_kept(t)) {
+        if self.touches_kept(&self.trial.proposal) {
             return;
         }
-        if let Some(sizing) = &mut self.sizing
-            && !sizing.field.accepts(&self.complex, &self.candidate.proposal)
-        {
-            return;
-        }
-        self.candidate.offer(&self.complex, self.surface.as_ref(), operation, self.target);
+        let (complex, surface) = (&self.complex, self.surface.as_ref());
+        let limits = Limits { target: self.target, worth_more_bad: self.worth_more_bad };
+        let field = self.sizing.as_mut().map(|sizing| &mut sizing.field);
+        self.trial.offer(Rules::of(complex).near(surface).fit(field), |proposal, best| {
+            let score = Score::of_better(complex, proposal, best, limits)?;
+            Some(Merit { operation, score, bar: complex.worst_of(&proposal.cavity) })
+        });
+    }
+
+    /// Whether a change removes a tet that is to stay.
+    fn touches_kept(&self, change: &Change) -> bool {
+        !self.kept.is_empty() && change.cavity.iter().any(|&t| self.is_kept(t))
     }
 }
 

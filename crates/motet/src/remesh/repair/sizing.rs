@@ -7,15 +7,15 @@ use std::collections::BinaryHeap;
 use crate::base::{Point, Result, TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
-use crate::kernel::{Change, Hold, Shell};
+use crate::kernel::{Hold, Shell};
 use crate::ops::{collapse, split_edge};
 use crate::remesh::lengths::locked_edges;
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
+use crate::remesh::repair::trial::{Merit, Rules, Trial};
 use crate::remesh::repair::tried::Tried;
 use crate::remesh::repair::{RAISES, Repair};
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{LONG, SHORT, SizeField};
-use crate::remesh::surface::Surface;
 
 /// Short edges are searched for once more if this fraction of them has been collapsed.
 const ENOUGH: f64 = 0.02;
@@ -152,7 +152,7 @@ impl Repair {
     fn split_long(&mut self, sizing: &mut Sizing) -> Result<usize> {
         let too_long = sizing.field.long_limit;
         let mut long = BinaryHeap::from(self.edges(&mut sizing.field, |ratio, _| ratio > too_long));
-        let (mut n_split, mut change, mut inserted) = (0, Change::default(), Vec::new());
+        let (mut n_split, mut trial) = (0, Trial::new());
         while let Some(edge) = long.pop() {
             if self.complex.n_tets() > sizing.max_tets {
                 break;
@@ -160,12 +160,9 @@ impl Repair {
             self.watch.report_and_check("splitting long edges", n_split, n_split + long.len())?;
             // An edge is removed only by its own split.
             let Some(tet) = self.tet_at(edge) else { continue };
-            let Some(middle) = self.split(tet, edge.ends, &mut sizing.field, &mut change, &mut inserted)
-            else {
-                continue;
-            };
+            let Some(middle) = self.split(tet, edge.ends, &mut sizing.field, &mut trial) else { continue };
             n_split += 1;
-            for &tet in &inserted {
+            for &tet in trial.inserted() {
                 for other in self.complex.vertices(tet).into_iter().filter(|&v| v != middle) {
                     let ends = [middle.min(other), middle.max(other)];
                     let ratio = sizing.field.of_edge(&self.complex, ends);
@@ -186,10 +183,9 @@ impl Repair {
         tet: TetId,
         ends: [VertexId; 2],
         field: &mut SizeField,
-        change: &mut Change,
-        inserted: &mut Vec<TetId>,
+        trial: &mut Trial<()>,
     ) -> Option<VertexId> {
-        self.around(tet, ends, |repair, shell| repair.split_around(shell, ends, field, change, inserted))
+        self.around(tet, ends, |repair, shell| repair.split_around(shell, ends, field, trial))
     }
 
     /// Splits an edge with the tets `shell` around it; see [`Self::split`].
@@ -198,8 +194,7 @@ impl Repair {
         shell: &Shell,
         ends: [VertexId; 2],
         field: &mut SizeField,
-        change: &mut Change,
-        inserted: &mut Vec<TetId>,
+        trial: &mut Trial<()>,
     ) -> Option<VertexId> {
         let [a, b] = ends;
         if !self.complex.may_divide(a, b) || self.surface.is_none() && !shell.is_free() {
@@ -211,16 +206,14 @@ impl Repair {
         let bar = self.bar_of_split(shell, ends, field);
         for (point, is_middle) in [(self.on_surface(shell, middle, hold), false), (Some(middle), true)] {
             let Some(point) = point else { continue };
-            let accepts = |surface: &Surface, change: &Change| match is_middle {
-                true => surface.accepts_in_place(change),
-                false => surface.accepts(&self.complex, change),
-            };
-            let is_good = split_edge(&self.complex, shell, ends, (point, hold), bar, change)
-                && self.surface.as_ref().is_none_or(|surface| accepts(surface, change));
-            if is_good && let Ok(checked) = self.complex.check_against(change, bar) {
-                self.complex.commit(checked, inserted);
-                self.operations.add(Operation::SplitEdge);
-                self.changes.inserted(&self.complex, inserted);
+            let (complex, surface) = (&self.complex, self.surface.as_ref());
+            if !split_edge(complex, shell, ends, (point, hold), bar, &mut trial.proposal) {
+                continue;
+            }
+            let rules = Rules::at_commit(complex);
+            let rules = if is_middle { rules.in_place(surface) } else { rules.near(surface) };
+            trial.offer(rules, |_, _| Some(Merit { operation: Operation::SplitEdge, score: (), bar }));
+            if trial.commit(&mut self.complex, &mut self.operations, Some(&mut self.changes)) {
                 return Some(vertex);
             }
         }
@@ -259,7 +252,7 @@ impl Repair {
     /// Collapses edges that are too short, shortest first, if that makes no edge too long and no tet that is
     /// bad and worse than the worst that was there; returns how many were collapsed.
     fn collapse_short(&mut self, sizing: &mut Sizing) -> Result<usize> {
-        let (mut n_collapsed, mut inserted) = (0, Vec::new());
+        let (mut n_collapsed, mut trial) = (0, Trial::new());
         // Whether a tet at a vertex was inserted since all edges were last tried: elsewhere a refused
         // collapse would be refused again.
         let mut is_changed = vec![true; self.complex.n_vertex_slots()];
@@ -275,9 +268,9 @@ impl Repair {
                 self.watch.report_and_check("collapsing short edges", i, short.len())?;
                 // An earlier collapse may have removed this edge.
                 let Some(tet) = self.tet_at(edge) else { continue };
-                if self.collapse_to_size(tet, edge.ends, &mut sizing.field, &mut inserted) {
+                if self.collapse_to_size(tet, edge.ends, &mut sizing.field, &mut trial) {
                     n_now += 1;
-                    let vertices = inserted.iter().flat_map(|&t| self.complex.vertices(t));
+                    let vertices = trial.inserted().iter().flat_map(|&t| self.complex.vertices(t));
                     vertices.for_each(|v| is_changed[v.index()] = true);
                 }
             }
@@ -310,31 +303,24 @@ impl Repair {
         tet: TetId,
         [a, b]: [VertexId; 2],
         field: &mut SizeField,
-        inserted: &mut Vec<TetId>,
+        trial: &mut Trial,
     ) -> bool {
-        let mut best: Option<(f64, Change)> = None;
         for [removed, kept] in [[a, b], [b, a]] {
             if !self.may_collapse(tet, removed, kept) {
                 continue;
             }
             self.star.gather(&self.complex, removed);
             let bar = self.complex.worst_of(&self.star.tets).min(self.target);
-            let bar = best.as_ref().map_or(bar.max(0.0), |b| b.0.max(bar)).next_down();
-            let mut change = Change::default();
-            if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut change)
-                && field.lengthens_none(&self.complex, &change)
-                && self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, &change))
-                && self.complex.check_against(&change, bar).is_ok()
-            {
-                best = Some((change.worst(), change));
+            // Of two equally good ones, the second is taken.
+            let bar = trial.score().map_or(bar.max(0.0), |best| best.max(bar)).next_down();
+            if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut trial.proposal) {
+                let rules = Rules::of(&self.complex).near(self.surface.as_ref()).not_longer(field);
+                trial.offer(rules, |proposal, _| {
+                    Some(Merit { operation: Operation::Collapse, score: proposal.worst(), bar })
+                });
             }
         }
-        let Some((worst, change)) = best else { return false };
-        let Ok(checked) = self.complex.check_against(&change, worst.next_down()) else { return false };
-        self.complex.commit(checked, inserted);
-        self.operations.add(Operation::Collapse);
-        self.changes.inserted(&self.complex, inserted);
-        true
+        trial.commit(&mut self.complex, &mut self.operations, Some(&mut self.changes))
     }
 
     /// The edges for which `is_such` holds, given their ratio of length to size and one of their tets,

@@ -38,13 +38,13 @@ impl Repair {
             if self.surface.is_some() && self.around(tet, edge, is_feature) {
                 continue;
             }
-            if self.edge_removal.propose(&self.complex, tet, edge, bar, &mut self.candidate.proposal) {
+            if self.edge_removal.propose(&self.complex, tet, edge, bar, &mut self.trial.proposal) {
                 self.offer(Operation::EdgeRemoval);
             }
         }
         for facet in 0..4 {
             let bar = self.bar(tet);
-            if self.face_removal.propose(&self.complex, tet, facet, bar, &mut self.candidate.proposal) {
+            if self.face_removal.propose(&self.complex, tet, facet, bar, &mut self.trial.proposal) {
                 self.offer(Operation::FaceRemoval);
             }
         }
@@ -69,7 +69,7 @@ impl Repair {
             }
             Defect::VertexAtEdge { vertex, edge } => {
                 self.around(tet, EDGES[edge].map(|i| vertices[i]), |repair, shell| {
-                    let (bar, proposal) = (repair.bar(tet), &mut repair.candidate.proposal);
+                    let (bar, proposal) = (repair.bar(tet), &mut repair.trial.proposal);
                     if split_onto(&repair.complex, shell, vertices[vertex], bar, proposal) {
                         repair.offer(Operation::SplitOnto);
                     }
@@ -95,7 +95,7 @@ impl Repair {
         let middle = scale(sum, 0.25);
         self.around(tet, [a, b], |repair, first| {
             repair.around(tet, [c, d], |repair, second| {
-                let (bar, proposal) = (repair.bar(tet), &mut repair.candidate.proposal);
+                let (bar, proposal) = (repair.bar(tet), &mut repair.trial.proposal);
                 if split_crossed(&repair.complex, [first, second], middle, bar, proposal) {
                     repair.offer(Operation::SplitCrossed);
                 }
@@ -109,7 +109,7 @@ impl Repair {
         }
         self.star.gather(&self.complex, removed);
         let bar = self.bar(tet);
-        if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut self.candidate.proposal) {
+        if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut self.trial.proposal) {
             self.offer(Operation::Collapse);
         }
     }
@@ -148,7 +148,7 @@ impl Repair {
             let Some(track) = track else { continue };
             let limits = [self.bar(tet), self.target];
             let (complex, star) = (&self.complex, &self.star.tets);
-            if self.smoothing.propose(complex, star, vertex, limits, &track, &mut self.candidate.proposal) {
+            if self.smoothing.propose(complex, star, vertex, limits, &track, &mut self.trial.proposal) {
                 self.offer(Operation::Smoothing);
             }
         }
@@ -178,7 +178,7 @@ impl Repair {
             return;
         }
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let (bar, proposal) = (self.bar(tet), &mut self.candidate.proposal);
+        let (bar, proposal) = (self.bar(tet), &mut self.trial.proposal);
         if split_edge(&self.complex, shell, edge, (middle, hold), bar, proposal) {
             self.offer(Operation::SplitEdge);
         }
@@ -240,7 +240,7 @@ impl Repair {
 
     fn insert_at(&mut self, tet: TetId, seed: &[TetId], point: Point) {
         let limits = [self.bar(tet), self.target];
-        if self.insertion.propose(&self.complex, seed, point, limits, &mut self.candidate.proposal) {
+        if self.insertion.propose(&self.complex, seed, point, limits, &mut self.trial.proposal) {
             self.offer(Operation::Insertion);
         }
     }

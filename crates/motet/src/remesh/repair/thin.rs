@@ -3,12 +3,12 @@
 //! A repair may split an edge that a later one could have done without. If such vertices were left, a mesh
 //! that is moved and repaired again and again would grow faster than necessary.
 
-use crate::base::{Result, TetId, VertexId};
+use crate::base::{Result, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::distance;
-use crate::kernel::Change;
 use crate::ops::collapse;
 use crate::remesh::repair::Repair;
+use crate::remesh::repair::trial::{Merit, Rules, Trial};
 use crate::remesh::report::Operation;
 
 /// A vertex is close to others if its edges are shorter, on average, than this fraction of the edges around
@@ -20,7 +20,7 @@ impl Repair {
     /// Collapses each inserted vertex that is close to others, latest first, where that leaves no bad tet.
     /// Returns whether there were any.
     pub(in crate::remesh) fn thin(&mut self) -> Result<bool> {
-        let mut inserted = Vec::new();
+        let (mut trial, mut were_any) = (Trial::new(), false);
         let n_slots = self.complex.n_vertex_slots();
         for vertex in (0..n_slots).rev().map(VertexId::new) {
             self.watch.report_and_check(
@@ -32,10 +32,10 @@ impl Repair {
                 && self.complex.is_used(vertex)
                 && self.closeness(vertex) < CLOSE
             {
-                self.collapse_into_best(vertex, &mut inserted);
+                were_any |= self.collapse_into_best(vertex, &mut trial);
             }
         }
-        Ok(!inserted.is_empty())
+        Ok(were_any)
     }
 
     /// The mean length of the edges at a vertex, divided by that of the edges around it.
@@ -51,34 +51,28 @@ impl Repair {
         (at.0 / f64::from(at.1)) / (round.0 / f64::from(round.1))
     }
 
-    /// Collapses a vertex into the neighbour that gives the best tets.
-    fn collapse_into_best(&mut self, vertex: VertexId, inserted: &mut Vec<TetId>) {
+    /// Collapses a vertex into the neighbour that gives the best tets; returns whether one was allowed.
+    fn collapse_into_best(&mut self, vertex: VertexId, trial: &mut Trial) -> bool {
         self.star.gather(&self.complex, vertex);
         let mut ends: Vec<_> =
             self.star.tets.iter().flat_map(|&t| self.complex.vertices(t).map(|v| (v, t))).collect();
         ends.sort_unstable();
         ends.dedup_by_key(|end| end.0);
-        let mut best = Change::default();
-        let mut bar = self.target.next_down();
         for (kept, tet) in ends {
             if kept == vertex || !self.may_collapse(tet, vertex, kept) {
                 continue;
             }
-            let proposal = &mut self.candidate.proposal;
-            if collapse(&self.complex, &self.star.tets, vertex, kept, bar, proposal)
-                && self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, proposal))
-                && self.complex.check_against(proposal, bar).is_ok()
-            {
-                bar = proposal.worst();
-                std::mem::swap(proposal, &mut best);
+            let bar = trial.score().unwrap_or(self.target.next_down());
+            if collapse(&self.complex, &self.star.tets, vertex, kept, bar, &mut trial.proposal) {
+                trial.offer(Rules::of(&self.complex).near(self.surface.as_ref()), |proposal, _| {
+                    Some(Merit { operation: Operation::Collapse, score: proposal.worst(), bar })
+                });
             }
         }
-        if best.fill.is_empty() {
-            return;
+        // A vertex all of whose tets would go stays.
+        if trial.best().is_some_and(|best| best.fill.is_empty()) {
+            trial.give_up();
         }
-        if let Ok(checked) = self.complex.check_against(&best, self.target.next_down()) {
-            self.complex.commit(checked, inserted);
-            self.operations.add(Operation::Collapse);
-        }
+        trial.commit(&mut self.complex, &mut self.operations, None)
     }
 }

@@ -13,7 +13,8 @@ pub(super) struct Changes {
 }
 
 impl Changes {
-    /// A clock that starts now. Every later change must be reported to it.
+    /// A clock that starts now. Every change must be reported to it that is made while a record of failed
+    /// operations is in use.
     pub(super) fn new() -> Self {
         Self { now: 1, of_vertex: Vec::new() }
     }
