@@ -12,7 +12,7 @@ use crate::words::one_of;
 use motet::mesh::history::Rule;
 
 /// A new mesh, its history, the report, and why the requested result was not reached.
-pub(crate) type Changed<'py> = (Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>);
+pub(crate) type ChangedParts<'py> = (Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>);
 
 /// A history.
 #[pyclass(frozen, module = "motet._motet")]

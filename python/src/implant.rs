@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use motet::base::Threads;
-use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Options, Outside};
+use motet::implant::{Adapt, Device, Inside, Interface, Options, Outside};
+use motet::mesh::history::Changed;
 use motet::remesh;
 use pyo3::prelude::*;
 
 use crate::convert::{MeshArg, parts};
-use crate::history::{Changed, History};
+use crate::history::{ChangedParts, History};
 use crate::report::{quality, report};
 use crate::watch::watched;
 use crate::words::{one_of, rules};
@@ -38,7 +39,7 @@ pub(crate) fn implant<'py>(
     carry: BTreeMap<String, String>,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Changed<'py>> {
+) -> PyResult<ChangedParts<'py>> {
     let insides = [("own", None), ("fill", Some(Inside::Filled)), ("hollow", Some(Inside::Hollow))];
     let inside = one_of("inside", inside, &insides)?;
     let device = |(mesh, name): (MeshArg, String)| {
@@ -62,7 +63,7 @@ pub(crate) fn implant<'py>(
     let rules = rules(&host.0, &carry)?;
     let put = |threads: &Threads| motet::implant::implant(&host.0, &devices, &options, &rules, threads);
     let made = watched(py, threads, progress, put)?;
-    let Implanted { mesh, history, report: reported } = made;
+    let Changed { mesh, history, report: reported, .. } = made;
     let not_reached = reported.not_reached();
     let reported = report(py, &reported)?;
     reported.set_item("quality", [quality(py, &host.0)?, quality(py, &mesh)?])?;

@@ -19,7 +19,7 @@ use serde::Serialize;
 use crate::arrays::Read;
 use crate::convert::{MeshArg, parts};
 use crate::error::{OrRaise, call, input, options};
-use crate::history::{Changed, History};
+use crate::history::{ChangedParts, History};
 use crate::report::report;
 use crate::watch::watched;
 use crate::words::{rules, threads};
@@ -205,7 +205,7 @@ pub(crate) fn refined<'py>(
     request: Request,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Changed<'py>> {
+) -> PyResult<ChangedParts<'py>> {
     let mut mesh = if request.forget { MeshRefinement::forget(&mesh.0) } else { mesh.0 };
     let rules = rules(&mesh, &request.carry)?;
     let conditions =
@@ -294,9 +294,12 @@ impl Refinement {
             .filter(|(_, cell)| is_marked[cell.index()])
             .map(|(t, _)| TetId::new(t))
             .collect();
-        let (summary, history): (_, history::History) = call(py, || match is_back {
-            false => self.refinement.refine(&marked, &rules, &self.threads),
-            true => self.refinement.coarsen(&marked, &rules, &self.threads),
+        let (summary, history): (_, history::History) = call(py, || {
+            let done = match is_back {
+                false => self.refinement.refine(&marked, &rules, &self.threads),
+                true => self.refinement.coarsen(&marked, &rules, &self.threads),
+            };
+            done.map(|done| (done.report, done.history))
         })?;
         Ok((History(history), report(py, &Done::of(&summary))?))
     }

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use motet::remesh::{EdgeLengths, MeshOutcome, RemeshWords, remesh_mesh};
+use motet::mesh::history::Changed;
+use motet::remesh::{EdgeLengths, RemeshWords, remesh_mesh};
 use pyo3::prelude::*;
 
 use crate::convert::{MeshArg, parts};
 use crate::error::OrRaise;
-use crate::history::{Changed, History};
+use crate::history::{ChangedParts, History};
 use crate::report::{quality, report};
 use crate::watch::watched;
 use crate::words::{name_of, rules};
@@ -39,7 +40,7 @@ pub(crate) fn remesh<'py>(
     carry: BTreeMap<String, String>,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Changed<'py>> {
+) -> PyResult<ChangedParts<'py>> {
     let words = RemeshWords {
         min_eas,
         min_dihedral_deg,
@@ -58,7 +59,7 @@ pub(crate) fn remesh<'py>(
     let options = words.options(&mesh.0).or_raise()?;
     let rules = rules(&mesh.0, &carry)?;
     let outcome = watched(py, threads, progress, |threads| remesh_mesh(&mesh.0, &options, &rules, threads))?;
-    let MeshOutcome { mesh: new, history, report: reported, .. } = outcome;
+    let Changed { mesh: new, history, report: reported, .. } = outcome;
     let not_reached = reported.not_reached();
     let reported = report(py, &reported)?;
     for (state, mesh) in [("before", &mesh.0), ("after", &new)] {

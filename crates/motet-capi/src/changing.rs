@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 
-use motet::implant::{Device, Implanted, Inside, Interface, Outside, implant};
-use motet::mesh::history::{History, Rules};
+use motet::implant::{Device, Inside, Interface, Outside, implant};
+use motet::mesh::history::{Changed, History, Rules};
 use motet::meshing::layers::Stack;
 use motet::meshing::{EdgeLength, Grading, MeshingWords, Surfaces, WallLayers, fill};
 use motet::preflight::Role;
-use motet::remesh::{EdgeLengths, GoalName, MeshOutcome, RemeshWords, remesh_mesh};
+use motet::remesh::{EdgeLengths, GoalName, RemeshWords, remesh_mesh};
 use motet::{Error, Mesh, Result, implant, remesh};
 use serde_json::json;
 
@@ -176,7 +176,7 @@ pub(crate) unsafe extern "C" fn motet_remesh(
         let given = read_versioned(options)?;
         let options = given.words()?.options(mesh)?;
         let done = remesh_mesh(mesh, &options, &Rules::default(), &threads(given.threads)?)?;
-        let MeshOutcome { mesh, history, report, .. } = done;
+        let Changed { mesh, history, report, .. } = done;
         set_handle(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
         Ok(())
     })
@@ -250,7 +250,7 @@ pub(crate) unsafe extern "C" fn motet_implant(
             |(mesh, name): (&*const MotetMesh, &str)| given.device(&handle(*mesh, "device")?.0, name);
         let devices: Vec<Device> = meshes.iter().zip(names).map(device).collect::<Result<_>>()?;
         let made = implant(host, &devices, &given.options()?, &Rules::default(), &threads(given.threads)?)?;
-        let Implanted { mesh, history, report } = made;
+        let Changed { mesh, history, report, .. } = made;
         set_handle(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
         Ok(())
     })

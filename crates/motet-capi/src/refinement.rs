@@ -1,7 +1,7 @@
 //! Refinement: tets divided, step after step, and divisions taken back.
 
 use motet::base::{TetId, Threads};
-use motet::mesh::history::{History, Rules};
+use motet::mesh::history::{Changed, History, Rules};
 use motet::refine::{Criterion, MeshRefinement, Options, Target, Wanted};
 use motet::{Error, Result};
 use serde_json::json;
@@ -106,7 +106,7 @@ fn change(
     let marked: Vec<TetId> =
         (0..cells.len()).filter(|&t| marks[cells[t].index()] != 0).map(TetId::new).collect();
     let rules = Rules::default();
-    let (summary, history) = match change {
+    let Changed { report: summary, history, .. } = match change {
         Change::Divide => refinement.refine(&marked, &rules, threads)?,
         Change::Coarsen => refinement.coarsen(&marked, &rules, threads)?,
     };

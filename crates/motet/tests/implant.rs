@@ -12,13 +12,13 @@ use motet::base::{CellId, Point, Threads, VertexId};
 use motet::geometry::tet::{EDGES, FACETS, centroid, volume};
 use motet::geometry::triangle;
 use motet::geometry::vector::{cross, distance, dot, norm, sub};
-use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Options, implant};
+use motet::implant::{Adapt, Device, Inside, Interface, Options, Report, implant};
 use motet::mesh::check::{check, is_conforming};
-use motet::mesh::history::{Origin, Rules, field_ledger};
+use motet::mesh::history::{Changed, Origin, Rules, field_ledger};
 use motet::mesh::shapes::{Coil, ball, box_grid};
 use motet::mesh::{CellKind, Cells, Field, Mesh, Surface};
 
-fn put(host: &Mesh, devices: &[Device], options: &Options) -> motet::Result<Implanted> {
+fn put(host: &Mesh, devices: &[Device], options: &Options) -> motet::Result<Changed<Report>> {
     implant(host, devices, options, &Rules::default(), &Threads::single())
 }
 
@@ -32,7 +32,7 @@ fn surface(device: &Device) -> Surface {
 }
 
 /// The faults of a result that is reported as valid.
-fn faults(host: &Mesh, devices: &[Device], options: &Options, made: &Implanted) -> Vec<String> {
+fn faults(host: &Mesh, devices: &[Device], options: &Options, made: &Changed<Report>) -> Vec<String> {
     let mut faults = Vec::new();
     let mesh = &made.mesh;
     if mesh.validate().is_err() || !is_conforming(&check(mesh)) {
@@ -84,7 +84,12 @@ fn faults(host: &Mesh, devices: &[Device], options: &Options, made: &Implanted) 
 }
 
 /// Tets of the host farther from all devices than the reach that are no longer there.
-fn touched_beyond(host: &Mesh, devices: &[Device], options: &Options, made: &Implanted) -> Option<String> {
+fn touched_beyond(
+    host: &Mesh,
+    devices: &[Device],
+    options: &Options,
+    made: &Changed<Report>,
+) -> Option<String> {
     if options.adapt != Adapt::No {
         return None;
     }
@@ -107,7 +112,7 @@ fn touched_beyond(host: &Mesh, devices: &[Device], options: &Options, made: &Imp
     (n > 0).then(|| format!("{n} tets far from all devices are not as they were"))
 }
 
-fn sound(host: &Mesh, devices: &[Device], options: &Options) -> Implanted {
+fn sound(host: &Mesh, devices: &[Device], options: &Options) -> Changed<Report> {
     let made = put(host, devices, options).unwrap();
     let faults = faults(host, devices, options, &made);
     assert!(faults.is_empty(), "{} faults, {}", faults.len(), faults[0]);
@@ -235,7 +240,7 @@ fn a_wall_that_is_near_is_refined() {
     let plain = put(&host, std::slice::from_ref(&device), &no_adapt()).unwrap();
     let made = sound(&host, std::slice::from_ref(&device), &Options::default());
     assert!(made.report.adapted.is_some_and(|adapted| adapted.generations > 0));
-    let worst = |made: &Implanted| made.report.improved.after.worst.unwrap().eas;
+    let worst = |made: &Changed<Report>| made.report.improved.after.worst.unwrap().eas;
     assert!(made.report.is_complete() && worst(&made) > worst(&plain), "{} {}", worst(&made), worst(&plain));
     let all = Options { adapt: Adapt::All, ..Options::default() };
     let made = sound(&host, &[device], &all);

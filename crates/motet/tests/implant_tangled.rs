@@ -5,11 +5,11 @@ mod common;
 use common::Numbers;
 use common::devices::{room, small_ball};
 use motet::base::{Error, Threads};
-use motet::implant::{Device, Implanted, Options, implant};
+use motet::implant::{Device, Options, Report, implant};
 use motet::mesh::Mesh;
-use motet::mesh::history::Rules;
+use motet::mesh::history::{Changed, Rules};
 
-fn put(host: &Mesh, device: Mesh) -> Result<Implanted, Error> {
+fn put(host: &Mesh, device: Mesh) -> Result<Changed<Report>, Error> {
     let devices = [Device::new(device, "ball")];
     implant(host, &devices, &Options::default(), &Rules::default(), &Threads::single())
 }

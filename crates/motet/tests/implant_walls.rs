@@ -13,13 +13,13 @@ use motet::geometry::overlap::Solid;
 use motet::geometry::tet::{FACETS, volume};
 use motet::geometry::triangle;
 use motet::geometry::vector::distance;
-use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Options, Outside, implant};
+use motet::implant::{Adapt, Device, Inside, Interface, Options, Outside, Report, implant};
 use motet::mesh::check::{check, is_conforming};
-use motet::mesh::history::Rules;
+use motet::mesh::history::{Changed, Rules};
 use motet::mesh::shapes::{Coil, ball, box_grid};
 use motet::mesh::{CellKind, Field, Mesh, Surface};
 
-fn put(host: &Mesh, devices: &[Device], options: &Options) -> motet::Result<Implanted> {
+fn put(host: &Mesh, devices: &[Device], options: &Options) -> motet::Result<Changed<Report>> {
     implant(host, devices, options, &Rules::default(), &Threads::single())
 }
 
@@ -56,7 +56,7 @@ const HIGH: Point = [1.5; 3];
 
 /// The faults of a result: open facets that belong neither to a wall of the box nor to the device, and
 /// volumes that are not those of both.
-fn faults(device: &Device, options: &Options, made: &Implanted, stray: f64) -> Vec<String> {
+fn faults(device: &Device, options: &Options, made: &Changed<Report>, stray: f64) -> Vec<String> {
     let mut faults = Vec::new();
     let mesh = &made.mesh;
     if mesh.validate().is_err() || !is_conforming(&check(mesh)) {
@@ -126,7 +126,7 @@ fn faults(device: &Device, options: &Options, made: &Implanted, stray: f64) -> V
     faults
 }
 
-fn sound(host: &Mesh, device: &Device, options: &Options) -> Implanted {
+fn sound(host: &Mesh, device: &Device, options: &Options) -> Changed<Report> {
     let made = put(host, std::slice::from_ref(device), options).unwrap();
     let faults = faults(device, options, &made, options.stray.unwrap_or(0.05));
     assert!(faults.is_empty() && made.report.is_valid(), "{} faults, {}", faults.len(), faults[0]);

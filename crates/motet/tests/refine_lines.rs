@@ -3,7 +3,7 @@
 use motet::base::{TetId, Threads, VertexId};
 use motet::geometry::vector::distance;
 use motet::io::{self, WriteOptions};
-use motet::mesh::history::Rules;
+use motet::mesh::history::{Changed, Rules};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{CellKind, Field, Mesh};
 use motet::refine::{MeshRefinement, Options};
@@ -49,7 +49,7 @@ fn lines_are_divided_and_taken_back_with_their_edges() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("fine.vtu");
     for generation in 1..3u32 {
-        let (summary, history) = one.refine(&all(&one), &rules, &threads).unwrap();
+        let Changed { report: summary, history, .. } = one.refine(&all(&one), &rules, &threads).unwrap();
         assert_eq!(summary.n_held, 0);
         assert_eq!(one.refinement().mesh().tets.len(), 48 << (3 * generation));
         // Each part has half the length and the number of its whole, in its place and direction.

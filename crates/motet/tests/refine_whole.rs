@@ -9,7 +9,7 @@ use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::tet::{centroid, volume};
 use motet::io;
 use motet::mesh::check::{check, is_conforming};
-use motet::mesh::history::Rules;
+use motet::mesh::history::{Changed, Rules};
 use motet::mesh::shapes::{box_grid, mixed};
 use motet::mesh::{CellKind, Field, TetPart, Values};
 use motet::refine::{MeshRefinement, Options, mark};
@@ -65,7 +65,8 @@ fn labels_and_arrays_go_along_and_come_back() {
     let mut refinement = MeshRefinement::new(&first, Options::default(), &threads()).unwrap();
     for radius in [0.4, 0.2, 0.1] {
         let marked = in_ball(&refinement, [0.3, 0.0, 0.2], radius);
-        let (summary, history) = refinement.refine(&marked, &rules, &threads()).unwrap();
+        let Changed { report: summary, history, .. } =
+            refinement.refine(&marked, &rules, &threads()).unwrap();
         let mesh = refinement.mesh();
         assert_eq!(summary.n_held, 0);
         assert!(check(mesh).is_empty());
@@ -112,7 +113,7 @@ fn a_file_remembers() {
             MeshRefinement::new(&io::read(&file).unwrap(), Options::default(), &threads()).unwrap();
         assert!(one.mesh() == other.mesh() && one.refinement().mesh() == other.refinement().mesh());
         let marked = in_ball(&one, [0.8, 0.8, 0.8], 0.1);
-        let [a, b] = [&mut one, &mut other].map(|x| x.refine(&marked, &rules, &threads()).unwrap().0);
+        let [a, b] = [&mut one, &mut other].map(|x| x.refine(&marked, &rules, &threads()).unwrap().report);
         assert!(a == b && one.mesh() == other.mesh());
     }
     let mut last = MeshRefinement::new(&one.with_memory(&threads()), Options::default(), &threads()).unwrap();
@@ -176,7 +177,7 @@ fn cells_of_other_kinds_keep_their_edges() {
     let mut refinement = MeshRefinement::new(&first, Options::default(), &threads()).unwrap();
     for _ in 0..2 {
         let marked = all(&refinement);
-        let (summary, _) = refinement.refine(&marked, &Rules::default(), &threads()).unwrap();
+        let summary = refinement.refine(&marked, &Rules::default(), &threads()).unwrap().report;
         println!("{summary:?}");
         assert!(summary.n_held > 0, "those at other cells are left out");
         assert!(is_conforming(&check(refinement.mesh())), "{:?}", check(refinement.mesh()));

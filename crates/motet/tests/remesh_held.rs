@@ -5,15 +5,15 @@ use std::collections::BTreeSet;
 
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::tet::FACETS;
-use motet::mesh::history::Rules;
+use motet::mesh::history::{Changed, Rules};
 use motet::mesh::marks::{CORNER, REQUIRED};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{CellKind, Field, Mesh, Values};
-use motet::remesh::{Goal, Held, MeshOutcome, Options, Sizes, SurfaceRule, remesh_mesh};
+use motet::remesh::{Goal, Held, Options, Report, Sizes, SurfaceRule, remesh_mesh};
 
 const ADAPT: SurfaceRule = SurfaceRule::Adapt { distance: None };
 
-fn remeshed(mesh: &Mesh, options: &Options) -> MeshOutcome {
+fn remeshed(mesh: &Mesh, options: &Options) -> Changed<Report> {
     remesh_mesh(mesh, options, &Rules::default(), &Threads::single()).unwrap()
 }
 
@@ -71,7 +71,7 @@ fn a_region_and_a_patch_that_are_held_stay_to_the_bit() {
     {
         let options =
             Options { held: held.clone(), goal, sizes, surface: ADAPT, min_eas: 0.3, ..Options::default() };
-        let MeshOutcome { mesh, report, .. } = remeshed(&first, &options);
+        let Changed { mesh, report, .. } = remeshed(&first, &options);
         assert!(report.held > 0 && report.after.tets != report.before.tets, "{report:?}");
         let left = |mesh: &Mesh| {
             let regions = labels(mesh, "region");
@@ -103,7 +103,7 @@ fn what_is_required_stays_and_is_marked_once() {
     first
         .set_point_field(Field::scalars(CORNER, (0..n_points).map(|v| u8::from(v == 5)).collect::<Vec<_>>()));
     let options = Options { sizes: Some(Sizes::Uniform(0.16)), surface: ADAPT, ..Options::default() };
-    let MeshOutcome { mesh, report, .. } = remeshed(&first, &options);
+    let Changed { mesh, report, .. } = remeshed(&first, &options);
     assert!(report.after.tets > 2 * report.before.tets);
     let required = |mesh: &Mesh| {
         let marks = labels(mesh, REQUIRED);
@@ -170,7 +170,7 @@ fn facets_that_lie_on_others_stay_so() {
         sides
     };
     let options = Options { sizes: Some(Sizes::Uniform(0.2)), surface: ADAPT, ..Options::default() };
-    let MeshOutcome { mesh, .. } = remeshed(&first, &options);
+    let Changed { mesh, .. } = remeshed(&first, &options);
     let [left, right] = sides(&mesh);
     assert!(!left.is_empty());
     assert_eq!(left, right);
@@ -201,7 +201,7 @@ fn lines_that_are_required_stay_where_others_are_merged() {
     let marks: Vec<u8> = (0..n_cells).map(|c| u8::from(c >= n_cells - n)).collect();
     first.set_cell_field(Field::scalars(REQUIRED, marks));
     let options = Options { sizes: Some(Sizes::Uniform(0.5)), surface: ADAPT, ..Options::default() };
-    let MeshOutcome { mesh, .. } = remeshed(&first, &options);
+    let Changed { mesh, .. } = remeshed(&first, &options);
     let lines = |mesh: &Mesh, z: f64| {
         places(mesh, |c| {
             let (_, kind, vertices) = mesh.cells.iter().nth(c).unwrap();

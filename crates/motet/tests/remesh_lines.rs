@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use motet::base::{CellId, Threads, VertexId};
 use motet::geometry::vector::distance;
 use motet::mesh::check::check;
-use motet::mesh::history::Rules;
+use motet::mesh::history::{Changed, Rules};
 use motet::mesh::shapes::{box_grid, mixed};
 use motet::mesh::{CellKind, Field, Mesh, Values};
-use motet::remesh::{MeshOutcome, Options, Sizes, SurfaceRule, remesh_mesh};
+use motet::remesh::{Options, Report, Sizes, SurfaceRule, remesh_mesh};
 
 fn options(size: f64) -> Options {
     Options {
@@ -19,7 +19,7 @@ fn options(size: f64) -> Options {
     }
 }
 
-fn remeshed(mesh: &Mesh, options: &Options) -> MeshOutcome {
+fn remeshed(mesh: &Mesh, options: &Options) -> Changed<Report> {
     let outcome = remesh_mesh(mesh, options, &Rules::default(), &Threads::single()).unwrap();
     assert!(check(&outcome.mesh).is_empty(), "{:?}", check(&outcome.mesh));
     outcome
@@ -102,7 +102,7 @@ fn lines_are_divided_with_their_edges() {
     ];
     for asked in cases {
         let first = with_lines(cube(), &asked);
-        let MeshOutcome { mesh, report, .. } = remeshed(&first, &options(0.3));
+        let Changed { mesh, report, .. } = remeshed(&first, &options(0.3));
         assert!(report.is_complete() && report.after.bad == 0, "{:?}", report.after);
         same_lengths(&first, &mesh);
         let longest = lines(&mesh)
@@ -125,7 +125,7 @@ fn lines_are_merged_with_their_edges() {
     // Two curves along one edge of the box: the vertex where they meet stays.
     let along: Vec<_> = (0..n).map(|k| ([at(k), at(k + 1)], if k < 3 { 1 } else { 2 })).collect();
     let first = with_lines(box_grid([n; 3], [O, XYZ]), &along);
-    let MeshOutcome { mesh, report, .. } = remeshed(&first, &options(0.5));
+    let Changed { mesh, report, .. } = remeshed(&first, &options(0.5));
     assert_eq!(report.after.bad, 0);
     same_lengths(&first, &mesh);
     assert!(lines(&mesh).len() < n, "{} lines", lines(&mesh).len());
@@ -138,7 +138,7 @@ fn a_surface_that_is_kept_keeps_its_lines() {
     let inner =
         (0..first.points.len()).find(|&v| first.points[v].iter().all(|&x| x > 0.1 && x < 0.5)).unwrap();
     first.points[inner] = [0.34, 0.34, 0.02];
-    let MeshOutcome { mesh, .. } = remeshed(&first, &Options::default());
+    let Changed { mesh, .. } = remeshed(&first, &Options::default());
     let ends = |mesh: &Mesh| {
         lines(mesh).into_iter().map(|(l, c)| (l.map(|v| mesh.points[v.index()]), c)).collect::<Vec<_>>()
     };
@@ -149,7 +149,7 @@ fn a_surface_that_is_kept_keeps_its_lines() {
 fn beside_cells_of_other_kinds_no_tet_becomes_flat() {
     let first = mixed(2);
     let begin = std::time::Instant::now();
-    let MeshOutcome { mesh, report, .. } =
+    let Changed { mesh, report, .. } =
         remesh_mesh(&first, &options(0.08), &Rules::default(), &Threads::single()).unwrap();
     let others = |mesh: &Mesh| {
         let is_other = |kind: CellKind| kind != CellKind::TETRA && kind != CellKind::TRIANGLE;

@@ -5,10 +5,10 @@ use std::time::Instant;
 use motet::base::{CellId, Point, Threads, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::tet::centroid;
-use motet::mesh::history::Rules;
+use motet::mesh::history::{Changed, Rules};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{CellKind, Cells, Mesh};
-use motet::remesh::{MeshOutcome, Options, Report, Seconds, Sizes, SurfaceRule, remesh_mesh};
+use motet::remesh::{Options, Report, Seconds, Sizes, SurfaceRule, remesh_mesh};
 
 /// A box whose triangles come before its tets, with some inner vertices near others.
 fn triangles_first(n: [usize; 3], size: Point) -> Mesh {
@@ -27,7 +27,7 @@ fn triangles_first(n: [usize; 3], size: Point) -> Mesh {
     Mesh { points, cells, ..Mesh::default() }
 }
 
-fn remeshed(mesh: &Mesh) -> MeshOutcome {
+fn remeshed(mesh: &Mesh) -> Changed<Report> {
     remesh_mesh(mesh, &Options::default(), &Rules::default(), &Threads::single()).unwrap()
 }
 
@@ -51,12 +51,12 @@ fn assert_places(old: &Mesh, new: &Mesh, report: &Report) {
 #[test]
 fn tets_are_numbered_by_their_cells_also_where_triangles_come_first() {
     let old = triangles_first([6; 3], [1.0; 3]);
-    let MeshOutcome { mesh, report, .. } = remeshed(&old);
+    let Changed { mesh, report, .. } = remeshed(&old);
     assert!(report.before.bad > 10 && report.after.bad == 0, "{:?}", report.before);
     assert_places(&old, &mesh, &report);
     // Between two plates nothing helps: the tets left are also reported by their cells.
     let old = triangles_first([4, 4, 1], [2.0, 2.0, 0.01]);
-    let MeshOutcome { mesh, report, .. } = remeshed(&old);
+    let Changed { mesh, report, .. } = remeshed(&old);
     assert!(report.left.len() > 10);
     assert_places(&old, &mesh, &report);
 }
@@ -64,7 +64,7 @@ fn tets_are_numbered_by_their_cells_also_where_triangles_come_first() {
 #[test]
 fn counts_and_shares_are_those_of_the_meshes() {
     let old = triangles_first([6; 3], [1.0; 3]);
-    let MeshOutcome { mesh, report, history, .. } = remeshed(&old);
+    let Changed { mesh, report, history, .. } = remeshed(&old);
     let tets = |mesh: &Mesh| mesh.cells.tets().count();
     assert_eq!((report.before.tets, report.after.tets), (tets(&old), tets(&mesh)));
     assert_eq!((report.before.vertices, report.after.vertices), (old.points.len(), mesh.points.len()));

@@ -12,11 +12,11 @@ use motet::geometry::tet;
 use motet::geometry::triangle::{area, area_vector};
 use motet::geometry::vector::dot;
 use motet::mesh::check::{check, is_conforming};
-use motet::mesh::history::{On, Origin, Rule, Rules, field_ledger};
+use motet::mesh::history::{Changed, On, Origin, Rule, Rules, field_ledger};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{Boundary, CellKind, Cells, Field, Qualities, Values};
 use motet::remesh::{
-    Goal, Improve, MeshOutcome, Options, SurfaceRule, has_only_labels, remesh_labelled, remesh_mesh,
+    Goal, Improve, Options, Report, SurfaceRule, has_only_labels, remesh_labelled, remesh_mesh,
 };
 
 const N: usize = 6;
@@ -72,7 +72,7 @@ fn adapt() -> Options {
     Options { surface: SurfaceRule::Adapt { distance: None }, ..Options::default() }
 }
 
-fn remeshed(mesh: &Mesh, options: &Options) -> MeshOutcome {
+fn remeshed(mesh: &Mesh, options: &Options) -> Changed<Report> {
     let outcome = remesh_mesh(mesh, options, &Rules::default(), &Threads::single()).unwrap();
     outcome.mesh.validate().unwrap();
     outcome
@@ -92,8 +92,8 @@ fn integrals(mesh: &Mesh, name: &str) -> BTreeMap<i32, [f64; 2]> {
 
 /// Asserts that every point, cell and row of an array that the history calls kept is unchanged, to the bit,
 /// and in order.
-fn assert_kept(old: &Mesh, outcome: &MeshOutcome) {
-    let MeshOutcome { mesh: new, history, .. } = outcome;
+fn assert_kept(old: &Mesh, outcome: &Changed<Report>) {
+    let Changed { mesh: new, history, .. } = outcome;
     let kept = history.cells.kept().iter().filter_map(|cell| cell.get());
     assert!(kept.is_sorted(), "cells that stayed keep their order");
     let mut kept_points = Vec::new();
@@ -143,8 +143,8 @@ fn what_stays_stays_and_arrays_keep_what_they_mean() {
     assert!(n_changed > 0);
 }
 
-fn assert_carried(old: &Mesh, outcome: &MeshOutcome) {
-    let MeshOutcome { mesh: new, history, report, .. } = outcome;
+fn assert_carried(old: &Mesh, outcome: &Changed<Report>) {
+    let Changed { mesh: new, history, report, .. } = outcome;
     assert!(report.before.inverted == 0 && report.after.bad < report.before.bad / 4, "{report:?}");
     assert!(!history.cells.changed().is_empty());
     assert_kept(old, outcome);
@@ -203,7 +203,7 @@ fn the_ledger_of_fields_tells_integrals_by_region() {
 #[test]
 fn ids_tell_points_and_tets_apart_also_where_they_are_new() {
     let old = shaken_box(0.45, false);
-    let MeshOutcome { mesh, .. } = remeshed(&old, &Options { goal: Goal::Best, ..adapt() });
+    let Changed { mesh, .. } = remeshed(&old, &Options { goal: Goal::Best, ..adapt() });
     let all_differ = |mut ids: Vec<i64>| {
         let n = ids.len();
         ids.sort_unstable();
@@ -218,7 +218,7 @@ fn ids_tell_points_and_tets_apart_also_where_they_are_new() {
 #[test]
 fn the_report_tells_cells_of_the_mesh() {
     let old = shaken_box(0.45, false);
-    let MeshOutcome { mesh, report, .. } = remeshed(&old, &Options::default());
+    let Changed { mesh, report, .. } = remeshed(&old, &Options::default());
     for (mesh, worst) in [(&old, report.before.worst.unwrap()), (&mesh, report.after.worst.unwrap())] {
         let vertices = mesh.cells.vertices(worst.tet).try_into().unwrap();
         assert_eq!(eas(corners(mesh, vertices)), worst.eas);
@@ -233,7 +233,7 @@ fn the_report_tells_cells_of_the_mesh() {
 fn a_surface_that_adapts_keeps_its_patches() {
     let old = shaken_box(0.35, true);
     let outcome = remeshed(&old, &adapt());
-    let MeshOutcome { mesh: new, history, .. } = &outcome;
+    let Changed { mesh: new, history, .. } = &outcome;
     assert_kept(&old, &outcome);
     let is_new = |(cell, kind): (usize, &CellKind)| {
         *kind == CellKind::TRIANGLE && matches!(history.cells.of(CellId::new(cell)), Origin::Changed(_))
@@ -307,7 +307,7 @@ fn cells_of_other_kinds_stay_with_their_points() {
     let old = box_and_others();
     for options in [Options::default(), adapt()] {
         let outcome = remeshed(&old, &options);
-        let MeshOutcome { mesh: new, history, report, .. } = &outcome;
+        let Changed { mesh: new, history, report, .. } = &outcome;
         assert!(report.before.bad > report.after.bad);
         assert_kept(&old, &outcome);
         // Of the triangles, only the last two: one that is no facet, and the duplicate.
@@ -340,7 +340,7 @@ fn cells_of_other_kinds_stay_with_their_points() {
 #[test]
 fn a_good_mesh_comes_back_as_it_is() {
     let old = shaken_box(0.05, false);
-    let MeshOutcome { mesh, history, report, .. } = remeshed(&old, &Options::default());
+    let Changed { mesh, history, report, .. } = remeshed(&old, &Options::default());
     assert_eq!(mesh, old);
     assert_eq!((report.before.bad, report.kept_share), (0, 1.0));
     assert!(history.cells.changed().is_empty() && history.vertices.changed().is_empty());

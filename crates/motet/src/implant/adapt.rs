@@ -58,10 +58,10 @@ pub(super) fn adapt(
     let mut refinement = MeshRefinement::new(host, crate::refine::Options::default(), threads)?;
     let mut history = History::identity(host.points.len(), host.cells.len());
     while !marked.is_empty() {
-        let (summary, step) = refinement.refine(&marked, rules, threads)?;
-        history = history.then(&step);
+        let changed = refinement.refine(&marked, rules, threads)?;
+        history = history.then(&changed.history);
         adapted.generations += 1;
-        if summary.n_held == marked.len() {
+        if changed.report.n_held == marked.len() {
             break;
         }
         marked = marks(refinement.mesh(), &refinement.part())?;

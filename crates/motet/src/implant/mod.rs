@@ -41,5 +41,5 @@ mod starts;
 mod zone;
 
 pub use options::{Adapt, Device, Inside, Interface, Options, Outside};
-pub use pipeline::{Implanted, implant};
+pub use pipeline::implant;
 pub use report::{Adapted, DeviceReport, Fit, Report, Seconds};

@@ -20,24 +20,11 @@ use super::zone::Draft;
 use crate::base::{CellId, Error, Result, TetId, Threads, VertexId, sorted_ids};
 use crate::geometry::triangle::centroid;
 use crate::mesh::check::{Defect, check};
-use crate::mesh::history::{History, Rules};
+use crate::mesh::history::{Changed, Rules};
 use crate::mesh::{Mesh, TetPart};
 use crate::meshing;
 use crate::remesh;
 use crate::spatial::NearestTriangle;
-
-/// The result of putting devices into a host.
-#[derive(Clone, Debug)]
-pub struct Implanted {
-    /// The mesh: cells of the host that stayed, in the order that they had; then triangles of the devices,
-    /// then new tets, then tets that devices kept.
-    pub mesh: Mesh,
-    /// Where each vertex and cell came from; it carries any array of the host, of any time level. What lies
-    /// in a device comes from the host's tets there.
-    pub history: History,
-    /// What was done, and what the mesh is worth.
-    pub report: Report,
-}
 
 /// How often more of the host is carved around facets that stay but would have to be divided.
 const RETRIES: usize = 8;
@@ -47,6 +34,9 @@ const STRAY: f64 = 0.05;
 
 /// Puts devices into a mesh of tets: every triangle of the devices is a facet of the result, and every tet of
 /// the host beyond [`Options::reach`] stays, to the bit. Arrays are carried by `rules`.
+///
+/// In the result, cells of the host that stayed come first, in the order that they had; then triangles of the
+/// devices, new tets, and tets that devices kept. What lies in a device comes from the host's tets there.
 ///
 /// # Errors
 /// When the host has no tets, or the devices are not closed surfaces without fault; when a device that keeps
@@ -58,7 +48,7 @@ pub fn implant(
     options: &Options,
     rules: &Rules,
     threads: &Threads,
-) -> Result<Implanted> {
+) -> Result<Changed<Report>> {
     options.check()?;
     if devices.is_empty() {
         return Err(Error::options("there is no device to put in").remedy("give at least one device"));
@@ -112,7 +102,7 @@ pub fn implant(
              motet",
         ));
     }
-    Ok(Implanted { mesh, history, report })
+    Ok(Changed { mesh, history, report })
 }
 
 /// The devices with the surfaces that they are put in with, and how well new surfaces fit.

@@ -6,12 +6,12 @@ use std::time::Instant;
 use crate::base::{CellId, Point, Result, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::{add, norm, scale, sub};
-use crate::mesh::history::Origin;
+use crate::mesh::history::{Changed, Origin};
 use crate::moving::current::{Current, Derived, LeftBad, Records, positions_after, present_rules};
 use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Why};
 use crate::moving::step_run::{StepResult, StepRun};
-use crate::remesh::{self, Density, Goal, Improve, MeshOutcome, remesh_mesh};
+use crate::remesh::{self, Density, Goal, Improve, Report, remesh_mesh};
 
 /// Parts are halved down to this if tets would become flat: repairing more often than that makes no progress.
 const MIN_PART_IF_FLAT: f64 = 1.0 / 32.0;
@@ -316,7 +316,7 @@ enum Repaired {
 
 /// The tets of the old mesh that a repair has replaced by tets without volume at the positions that their
 /// vertices had when the step began, which were `before` for those of the old mesh.
-fn replaced_by_inverted(outcome: &MeshOutcome, before: &[Point]) -> Result<Vec<CellId>> {
+fn replaced_by_inverted(outcome: &Changed<Report>, before: &[Point]) -> Result<Vec<CellId>> {
     let start = positions_after(before, &outcome.history)?;
     let side = |tet: [VertexId; 4], points: &[Point]| {
         let [a, b, c, d] = tet.map(|v| points[v.index()]);

@@ -14,7 +14,7 @@ use super::shapes::Shapes;
 use super::true_surface::OnSurface;
 use super::whole::MeshRefinement;
 use crate::base::{Error, Result, TetId, Threads};
-use crate::mesh::history::{History, Rules};
+use crate::mesh::history::{Changed, History, Rules};
 use crate::mesh::{Qualities, TetPart};
 
 /// The goal of a refinement.
@@ -223,7 +223,8 @@ impl<T: FnMut(&Step)> Work<'_, T> {
     /// Divides the marked tets once; returns how many of them were left as they are.
     fn divide(&mut self, marks: &[TetId], generation: u32) -> Result<usize> {
         let begin = Instant::now();
-        let (summary, history) = self.refinement.refine(marks, self.rules, self.threads)?;
+        let Changed { history, report: summary, .. } =
+            self.refinement.refine(marks, self.rules, self.threads)?;
         self.put_on_surface();
         self.record(&history);
         self.report_step(&(generation + 1).to_string(), summary, marks.len(), begin);
@@ -252,7 +253,8 @@ impl<T: FnMut(&Step)> Work<'_, T> {
             let removable = self.removable(&self.refinement.part())?;
             let before = self.refinement.mesh().cells.len();
             let begin = Instant::now();
-            let (summary, history) = self.refinement.coarsen(&removable, self.rules, self.threads)?;
+            let Changed { history, report: summary, .. } =
+                self.refinement.coarsen(&removable, self.rules, self.threads)?;
             self.record(&history);
             if self.refinement.mesh().cells.len() == before {
                 return Ok(());

@@ -47,5 +47,5 @@ pub use options::{DEFAULT_DISTANCE, Density, Goal, Improve, Options, SurfaceRule
 pub use report::{Counts, Operation, Report, Seconds, SizesReport, State, Worst};
 pub use run::{Outcome, remesh};
 pub use sizes::{LONG, SHORT, Sizes};
-pub use whole::{MeshOutcome, has_only_labels, remesh_labelled, remesh_mesh, remesh_part};
+pub use whole::{has_only_labels, remesh_labelled, remesh_mesh, remesh_part};
 pub use words::{EdgeLengths, GoalName, RemeshWords, SurfaceName};

@@ -7,24 +7,12 @@ use crate::base::{CellId, Csr, MaybeId, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{dot, sub};
 use crate::kernel::Extract;
-use crate::mesh::history::{History, Origins, Rules, number_anew};
+use crate::mesh::history::{Changed, History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Cells, Field, Mesh, TetPart};
 use crate::remesh::held::{Held, Required};
 use crate::remesh::run::{Outcome, remesh_keeping};
 use crate::remesh::{Options, Report};
 use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, quadratic_rows, trace};
-
-/// A whole mesh after remeshing, with its history and a report.
-#[derive(Debug)]
-pub struct MeshOutcome {
-    /// The new mesh: the cells that stayed in their old order, then new triangles, new tets and new lines.
-    pub mesh: Mesh,
-    /// Where each vertex and cell came from; transfers any array of the old mesh, at any time level.
-    pub history: History,
-    /// What was done. Its `tet`s are cell ids: in `before` those of the old mesh, elsewhere those of the new
-    /// one.
-    pub report: Report,
-}
 
 /// Repairs the bad tets of a mesh of any cells, and carries its arrays across by `rules`. Whatever is
 /// unchanged stays to the bit: points, cells, rows of arrays.
@@ -35,7 +23,12 @@ pub struct MeshOutcome {
 /// # Errors
 /// If there is no tet, if the tets do not form a valid mesh (the error names the first offending cell), and
 /// if a rule fits no array.
-pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Threads) -> Result<MeshOutcome> {
+pub fn remesh_mesh(
+    mesh: &Mesh,
+    options: &Options,
+    rules: &Rules,
+    threads: &Threads,
+) -> Result<Changed<Report>> {
     let (part, extract_seconds) = extract_tets(mesh, options)?;
     let mut outcome = remesh_part(mesh, &part, options, rules, threads)?;
     outcome.report.seconds.join += extract_seconds;
@@ -53,8 +46,8 @@ pub fn remesh_part(
     options: &Options,
     rules: &Rules,
     threads: &Threads,
-) -> Result<MeshOutcome> {
-    let Changed { mut report, extract, joined } = changed(mesh, part, options, threads)?;
+) -> Result<Changed<Report>> {
+    let Repaired { mut report, extract, joined } = changed(mesh, part, options, threads)?;
     let begin = Instant::now();
     let history = history(mesh, part, &extract, &joined, threads)?;
     let mut new = Mesh::new(extract.mesh.points, joined.cells);
@@ -66,7 +59,7 @@ pub fn remesh_part(
     number_anew(&mut new, &new_points, &new_cells);
     new.unmark(&new_points);
     report.seconds.history = begin.elapsed().as_secs_f64();
-    Ok(MeshOutcome { mesh: new, history, report })
+    Ok(Changed { mesh: new, history, report })
 }
 
 /// Whether all arrays of a mesh are labels of its cells, so that [`remesh_labelled`] loses none.
@@ -87,7 +80,7 @@ fn labels(mesh: &Mesh) -> impl Iterator<Item = &Field> {
 /// If there is no tet, and if the tets do not form a valid mesh (the error names the first offending cell).
 pub fn remesh_labelled(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<(Mesh, Report)> {
     let (part, extract_seconds) = extract_tets(mesh, options)?;
-    let Changed { mut report, extract, joined } = changed(mesh, &part, options, threads)?;
+    let Repaired { mut report, extract, joined } = changed(mesh, &part, options, threads)?;
     report.seconds.join += extract_seconds;
     let sources = joined.label_sources(&part, &extract);
     let pick = |field: &Field| field.pick(sources.iter().map(|cell| cell.index()));
@@ -109,13 +102,13 @@ fn extract_tets(mesh: &Mesh, options: &Options) -> Result<(TetPart, f64)> {
 }
 
 /// A mesh after remeshing, before its arrays are carried across.
-struct Changed {
+struct Repaired {
     report: Report,
     extract: Extract,
     joined: Joined,
 }
 
-fn changed(mesh: &Mesh, part: &TetPart, options: &Options, threads: &Threads) -> Result<Changed> {
+fn changed(mesh: &Mesh, part: &TetPart, options: &Options, threads: &Threads) -> Result<Repaired> {
     let tet_of = |cell: &CellId| part.tet_to_cell.binary_search(cell).ok().map(CellId::new);
     let only = options.only.as_ref().map(|only| only.iter().filter_map(tet_of).collect());
     let held = Held { cells: options.held.cells.iter().filter_map(tet_of).collect(), ..options.held.clone() };
@@ -130,7 +123,7 @@ fn changed(mesh: &Mesh, part: &TetPart, options: &Options, threads: &Threads) ->
     let joined = Joined::of(mesh, part, &extract);
     report.seconds.extract += begin.elapsed().as_secs_f64();
     let report = report.in_cells(|tet| part.tet_to_cell[tet.index()], |tet| joined.tet_to_cell[tet.index()]);
-    Ok(Changed { report, extract, joined })
+    Ok(Repaired { report, extract, joined })
 }
 
 /// The cells of the new mesh, and the old cell of each.

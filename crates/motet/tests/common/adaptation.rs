@@ -77,7 +77,7 @@ pub(crate) fn adapt(
     loop {
         let before = refinement.refinement().mesh().tets.len();
         let back = coarser(&criterion.wishes(refinement.mesh(), &refinement.part(), threads)?);
-        let (summary, _) = refinement.coarsen(&back, &Rules::default(), threads)?;
+        let summary = refinement.coarsen(&back, &Rules::default(), threads)?.report;
         if summary.n_tets == before {
             break;
         }

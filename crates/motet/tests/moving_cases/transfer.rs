@@ -11,9 +11,9 @@ use std::collections::BTreeMap;
 
 use motet::base::{CellId, Point, Threads};
 use motet::geometry::overlap::Solid;
-use motet::mesh::history::Rules;
+use motet::mesh::history::{Changed, Rules};
 use motet::mesh::{CellKind, Cells, Field, Mesh, TetMesh, TetPart, Values};
-use motet::remesh::{MeshOutcome, Options, SurfaceRule, remesh_mesh};
+use motet::remesh::{Options, Report, SurfaceRule, remesh_mesh};
 
 use super::cube::Distortion;
 use super::membrane::{self, Bending};
@@ -172,7 +172,7 @@ impl Loaded {
         n_left
     }
 
-    fn see_linear(&mut self, outcome: &MeshOutcome) {
+    fn see_linear(&mut self, outcome: &Changed<Report>) {
         let values =
             outcome.mesh.point_field("linear").and_then(|f| f.values.to_f64()).expect("it was carried");
         let exact: Vec<f64> = outcome.mesh.points.iter().map(|&p| linear(p)).collect();
@@ -203,7 +203,7 @@ impl Loaded {
 impl Repairs {
     fn add(
         &mut self,
-        outcome: &MeshOutcome,
+        outcome: &Changed<Report>,
         [before, after]: [&BTreeMap<i32, Amounts>; 2],
         first: &BTreeMap<i32, Amounts>,
     ) {

@@ -7,7 +7,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use motet::implant::{Device, Implanted, Inside, implant};
+use motet::implant::{Device, Inside, implant};
+use motet::mesh::history::Changed;
 use motet::mesh::{LabelNames, Qualities, unused_name};
 use motet::{Error, io};
 
@@ -36,7 +37,7 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     let devices = read(args, &host.label_names, console)?;
     let read = begin.elapsed().as_secs_f64();
     let made = implant(&host, &devices, &options, &rules, &threads);
-    let Implanted { mut mesh, history, report } =
+    let Changed { mut mesh, history, report, .. } =
         made.map_err(|e| with_file(e, &args.host, &args.devices, &devices))?;
     let quality = [&host, &mesh].map(|mesh| Qualities::of_mesh(mesh, &threads));
     meter.stage("writing");

@@ -6,8 +6,8 @@ mod report;
 use std::time::Instant;
 
 use motet::io;
-use motet::mesh::history::field_ledger;
-use motet::remesh::{MeshOutcome, has_only_labels, remesh_labelled, remesh_mesh};
+use motet::mesh::history::{Changed, field_ledger};
+use motet::remesh::{has_only_labels, remesh_labelled, remesh_mesh};
 
 pub(crate) use args::{RemeshArgs, eas};
 
@@ -34,7 +34,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let outcome = match args.arrays.history.is_none() && has_only_labels(&old) {
         true => remesh_labelled(&old, &options, &threads).map(|(mesh, report)| (mesh, None, report)),
         false => remesh_mesh(&old, &options, &rules, &threads)
-            .map(|MeshOutcome { mesh, history, report, .. }| (mesh, Some(history), report)),
+            .map(|Changed { mesh, history, report, .. }| (mesh, Some(history), report)),
     };
     let (mut mesh, history, report) = outcome.map_err(|e| e.in_file(&args.mesh))?;
     meter.stage("writing");

@@ -11,9 +11,11 @@
 //! | any other new cell | the one cell that it inherits from |
 //!
 //! A [`Rule`] determines how values are transferred: interpolated, conserved, inherited or dropped.
-//! [`field_ledger`] reports how well that went.
+//! [`field_ledger`] reports how well that went. Calls that change a mesh return a [`Changed`]: the mesh, its
+//! history, and their report.
 
 mod carry;
+mod changed;
 mod fields;
 mod ledger;
 mod numbers;
@@ -21,6 +23,7 @@ mod origins;
 mod row;
 mod rule;
 
+pub use changed::Changed;
 pub use fields::{FieldIntegral, FieldLedger, On, field_ledger};
 pub use ledger::{Ledger, RegionLedger};
 pub(crate) use numbers::numbers_cells;

@@ -8,7 +8,7 @@ mod origins;
 use super::refinement::{Options, Refinement, Summary};
 use super::true_surface::OnSurface;
 use crate::base::{CellId, Result, TetId, Threads, VertexId, absent};
-use crate::mesh::history::{History, Origins, Rules, number_anew};
+use crate::mesh::history::{Changed, History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Mesh, TetPart};
 use crate::spatial::NearestTriangle;
 use joined::Joined;
@@ -123,7 +123,7 @@ impl MeshRefinement {
         marked: &[TetId],
         rules: &Rules,
         threads: &Threads,
-    ) -> Result<(Summary, History)> {
+    ) -> Result<Changed<Summary, &Mesh>> {
         self.change(rules, threads, |refinement| refinement.refine(marked, threads))
     }
 
@@ -136,7 +136,7 @@ impl MeshRefinement {
         marked: &[TetId],
         rules: &Rules,
         threads: &Threads,
-    ) -> Result<(Summary, History)> {
+    ) -> Result<Changed<Summary, &Mesh>> {
         self.change(rules, threads, |refinement| refinement.coarsen(marked, threads))
     }
 
@@ -145,7 +145,7 @@ impl MeshRefinement {
         rules: &Rules,
         threads: &Threads,
         change: impl FnOnce(&mut Refinement) -> Result<Summary>,
-    ) -> Result<(Summary, History)> {
+    ) -> Result<Changed<Summary, &Mesh>> {
         let mut refinement = self.refinement.clone();
         let summary = change(&mut refinement)?;
         let cells = [&self.tet_to_cell[..], &self.triangle_to_cell, &self.line_to_cell];
@@ -164,7 +164,7 @@ impl MeshRefinement {
         (self.mesh, self.refinement) = (mesh, refinement);
         (self.tet_to_cell, self.triangle_to_cell) = (joined.tet_to_cell, joined.triangle_to_cell);
         self.line_to_cell = joined.line_to_cell;
-        Ok((summary, history))
+        Ok(Changed { mesh: &self.mesh, history, report: summary })
     }
 }
 
