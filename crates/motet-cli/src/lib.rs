@@ -1,8 +1,8 @@
 //! The command line of motet: arguments in, calls of the library, text or JSON out.
 //!
 //! It holds no algorithm. Each verb has its file in `verbs/`; what they share is here: parsing of the call
-//! (`args`, `words`, `help`), output for the user (`console`, `progress`, `table`), exit statuses (`exit`), checks of
-//! output paths (`outputs`), and how arrays are carried (`arrays`).
+//! (`args`, `words`, `help`), output for the user (`console`, `progress`, `table`), exit statuses (`exit`),
+//! checks of output paths (`outputs`), and how arrays are carried (`arrays`).
 
 mod args;
 mod arrays;

@@ -38,7 +38,8 @@ impl RepairWords {
     /// The options that these words determine for a mesh; all others have their defaults.
     ///
     /// # Errors
-    /// If a number is not in [0, 1), a name does not exist, or a distance is given for a surface that is kept.
+    /// If a number is not in [0, 1), a name does not exist, or a distance is given for a surface that is
+    /// kept.
     pub fn options(&self, mesh: &Mesh) -> Result<Options> {
         let repair = remesh::Options {
             min_eas: self.min_eas,

@@ -14,8 +14,8 @@ words! {
     pub struct RemeshWords {
         /// Tets below this EAS are bad.
         min_eas: f64 = Options::default().min_eas,
-        /// Tets with a dihedral angle below this, in degrees, are bad, too: the least EAS is raised to the one
-        /// that guarantees it, 0.014 per degree.
+        /// Tets with a dihedral angle below this, in degrees, are bad, too: the least EAS is raised to the
+        /// one that guarantees it, 0.014 per degree.
         min_dihedral_deg: f64 = Options::default().min_dihedral_deg,
         /// When to stop.
         goal: GoalName = GoalName::default(),
