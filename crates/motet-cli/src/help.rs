@@ -15,8 +15,12 @@ pub(crate) fn repeatable<W: Words>(word: &str) -> String {
 
 /// A parser of names, of which the help says the effects.
 pub(crate) fn name_of<N: Names + Send + Sync>() -> impl TypedValueParser<Value = N> {
-    let value = |name: &N| PossibleValue::new(name.as_str()).help(without_full_stop(name.effect()));
-    PossibleValuesParser::new(N::ALL.iter().map(value)).try_map(|name| N::of(&name))
+    PossibleValuesParser::new(values_of::<N>()).try_map(|name| N::of(&name))
+}
+
+/// The values that have names, with their effects.
+pub(crate) fn values_of<N: Names>() -> impl Iterator<Item = PossibleValue> {
+    N::ALL.iter().map(|name| PossibleValue::new(name.as_str()).help(without_full_stop(name.effect())))
 }
 
 fn without_full_stop(text: String) -> String {

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args, ValueEnum};
+use motet::base::Names;
 use motet::motion::{Extent, MethodName, Motion};
 
 use super::parsers::{self, PatchFile, Rotate, Translate};
@@ -100,7 +102,7 @@ pub(crate) struct MoveArgs {
     pub(crate) slide_tolerance: f64,
 
     /// How the volume follows
-    #[arg(long, value_name = "METHOD", default_value = "delaunay", help_heading = "Volume")]
+    #[arg(long, value_name = "METHOD", value_parser = method(), default_value = MethodName::default().as_str(), help_heading = "Volume")]
     pub(crate) method: Method,
     /// With `--method auto`: no cell may have an EAS (or scaled Jacobian) below this [default: half of the
     /// worst of the input mesh, at most 0.1]
@@ -129,41 +131,37 @@ pub(crate) struct MoveArgs {
     pub(crate) writing: WritingArgs,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+/// How the volume follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Method {
-    /// Weights in the Delaunay graph of the boundary vertices (Liu, Qin, Xia 2006)
-    Delaunay,
-    /// The graph, and rigid bodies that carry what is around them: for parts that rotate, or shift far
-    Bodies,
-    /// The graph, whose nodes turn with the walls near them: for walls that bend
-    Guided,
-    /// The cheapest of the three above and `elastic` that keeps the worst cell above `--least`: all steps are
-    /// tried first
+    /// By this method.
+    Named(MethodName),
+    /// By the cheapest of some methods that is good enough.
     Auto,
-    /// An elastic body, stiff where cells are small: one linear system per step, for comparison
-    Elastic,
-    /// A Laplace equation for each coordinate, stiff at the moving wall: for comparison
-    Laplace,
-    /// The mean of the rigid motions of all boundary vertices, weighted by distance: for comparison
-    Idw,
-    /// Radial basis functions of compact support: for comparison
-    Rbf,
 }
 
 impl Method {
     /// The method to begin with. A choice starts with the graph; bodies are tried in their turn.
     pub(crate) fn name(self) -> MethodName {
         match self {
-            Self::Delaunay => MethodName::Delaunay,
-            Self::Bodies | Self::Auto => MethodName::Bodies,
-            Self::Guided => MethodName::Guided,
-            Self::Elastic => MethodName::Elastic,
-            Self::Laplace => MethodName::Laplace,
-            Self::Idw => MethodName::Idw,
-            Self::Rbf => MethodName::Rbf,
+            Self::Named(name) => name,
+            Self::Auto => MethodName::Bodies,
         }
     }
 }
+
+/// A parser of methods: those of the library, and `auto`.
+fn method() -> impl TypedValueParser<Value = Method> {
+    let auto = "The cheapest of `delaunay`, `bodies`, `guided` and `elastic` that keeps the worst cell above \
+                `--least`: all steps are tried first";
+    let names = help::values_of::<MethodName>().chain([PossibleValue::new(AUTO).help(auto)]);
+    PossibleValuesParser::new(names).try_map(|name| match name.as_str() {
+        AUTO => Ok(Method::Auto),
+        name => MethodName::of(name).map(Method::Named),
+    })
+}
+
+const AUTO: &str = "auto";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Match {

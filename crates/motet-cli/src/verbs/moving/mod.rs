@@ -13,7 +13,9 @@ use std::time::Instant;
 use motet::base::{Point, Threads};
 use motet::io;
 use motet::mesh::Boundary;
-use motet::motion::{self, Certificate, FacetSet, Motion, MotionParts, Mover, Options, mesh_velocity};
+use motet::motion::{
+    self, Certificate, FacetSet, MethodName, Motion, MotionParts, Mover, Options, mesh_velocity,
+};
 use motet::{Error, Mesh, Result};
 
 pub(crate) use args::MoveArgs;
@@ -78,7 +80,7 @@ fn options(args: &MoveArgs, boundary: &Boundary, patches: &Patches<'_>, plan: &P
     let (sliding, bodies) = (facets(&args.slide)?, facets(&args.body)?);
     check_method(args)?;
     // A Laplace equation is stiff at the facets that would have the rigid layer.
-    let needs_wall = args.rigid_layer.is_some() || args.method == Method::Laplace;
+    let needs_wall = args.rigid_layer.is_some() || args.method == Method::Named(MethodName::Laplace);
     let wall = needs_wall.then(|| wall(args, boundary, patches, plan, &sliding)).transpose()?;
     let motion = Motion {
         method: args.method.name(),
@@ -121,11 +123,11 @@ fn check_method(args: &MoveArgs) -> Result<()> {
         return Err(Error::options("--least is a criterion for choosing a method, but the method is given")
             .remedy("add --method auto"));
     }
-    if !args.body.is_empty() && !matches!(args.method, Method::Bodies | Method::Auto) {
+    if !args.body.is_empty() && !matches!(args.method, Method::Named(MethodName::Bodies) | Method::Auto) {
         return Err(Error::options("--body names a rigid body, but the method does not use rigid bodies")
             .remedy("add --method bodies"));
     }
-    if args.factor.is_some() && !matches!(args.method, Method::Elastic | Method::Laplace) {
+    if args.factor.is_some() && !matches!(args.method.name(), MethodName::Elastic | MethodName::Laplace) {
         return Err(Error::options(
             "--factor keeps the factorisation of a linear system, but the method solves none",
         )
