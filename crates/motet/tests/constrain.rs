@@ -47,7 +47,7 @@ fn hard_surfaces_are_filled_and_kept() {
         let faults = faults(&case.points, &case.triangles, &filled, EdgePoints::MoveInside);
         assert!(faults.is_empty(), "{}: {}", case.name, faults[0]);
     }
-    println!("{kept} of {n} kept as they came");
+    println!("{kept} of {n} kept as given");
     assert!(20 * kept >= 17 * n, "{kept} of {n}");
 }
 
@@ -136,7 +136,7 @@ fn real_surfaces_are_filled() {
         assert!(volumes(points.len(), &triangles, &filled).is_empty(), "{file}");
         let n_kept = filled.triangle_to_facets.iter().filter(|list| list.len() == 1).count();
         println!(
-            "{file}: {} triangles, {n_kept} as they came, {} points on edges, {} tets",
+            "{file}: {} triangles, {n_kept} as given, {} points on edges, {} tets",
             triangles.len(),
             filled.on_edges.len(),
             filled.tets.len()

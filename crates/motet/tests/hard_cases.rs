@@ -56,7 +56,7 @@ fn volumes_are_as_told() {
         assert!(sum > 0.0, "{} is turned inside out", case.name);
         if let Some(volume) = case.volume {
             n_reported += 1;
-            assert!((sum - volume).abs() <= 1e-12 * all, "{}: {sum}, told {volume}", case.name);
+            assert!((sum - volume).abs() <= 1e-12 * all, "{}: {sum}, reported {volume}", case.name);
         }
     }
     assert!(n_reported > 100, "{n_reported}");

@@ -100,7 +100,7 @@ fn faults(surface: &Mesh, made: &Filled) -> Vec<String> {
     }
     for (reported, found) in made.report.bodies.iter().map(|body| body.volume).zip(&volumes) {
         if (reported - found).abs() > 1e-10 * enclosed {
-            faults.push(format!("a volume of {reported} is told, {found} found"));
+            faults.push(format!("a volume of {reported} is reported, {found} found"));
         }
     }
     faults.extend(lost_walls(surface, made));
@@ -137,7 +137,7 @@ fn lost_walls(surface: &Mesh, made: &Filled) -> Vec<String> {
         }
     }
     if n_kept != made.report.triangles_kept {
-        faults.push(format!("{} triangles are told to be kept, {n_kept} are", made.report.triangles_kept));
+        faults.push(format!("{} triangles are reported as kept, {n_kept} are", made.report.triangles_kept));
     }
     faults
 }

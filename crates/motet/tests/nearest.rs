@@ -331,13 +331,13 @@ proptest! {
             alone(&t).map(|found| motet::spatial::Closest { triangle: t as usize, ..found })
         });
         let expected = all.min_by(|x, y| x.distance_squared.total_cmp(&y.distance_squared));
-        let mut asked = Vec::new();
+        let mut tried = Vec::new();
         let mut best = (f64::INFINITY, usize::MAX);
         let found = tree.closest_where(p, within, |t, closest| {
             let this = (closest.distance_squared, closest.triangle);
-            assert!(closest.triangle == t as usize && this < best && !asked.contains(&t));
+            assert!(closest.triangle == t as usize && this < best && !tried.contains(&t));
             assert_eq!(Some(closest.point), alone(&t).map(|c| c.point));
-            asked.push(t);
+            tried.push(t);
             best = if passes(t) { this } else { best };
             passes(t)
         });

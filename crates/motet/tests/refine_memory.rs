@@ -262,7 +262,7 @@ fn a_moved_and_remeshed_mesh_is_coarsened_where_it_was_not_touched() {
     fine.set_points(&bent).unwrap();
     let outcome = remesh::remesh(fine.mesh(), &options, &Threads::single()).unwrap();
     let n_new = outcome.extract.new_tets.len();
-    println!("{} tets, {n_new} came, {:?}", fine.mesh().tets.len(), fine.summary());
+    println!("{} tets, {n_new} new, {:?}", fine.mesh().tets.len(), fine.summary());
     assert!(n_new > 0);
     let memory = fine.memory_to_keep(&single()).after(&outcome.extract);
     let mesh = &outcome.extract.mesh;

@@ -146,7 +146,7 @@ fn where_only_some_are_asked_for_others_stay_bad() {
     let outcome = remesh(&mesh, &Options { only, ..Options::default() }, &Threads::single()).unwrap();
     let is_removed = |t: &usize| outcome.extract.removed_tets.binary_search(&TetId::new(*t)).is_ok();
     let is_far = |t: &usize| corners(&mesh, *t).iter().all(|p| p[0] > 0.7);
-    assert!(left.iter().all(is_removed), "what was asked for is repaired");
+    assert!(left.iter().all(is_removed), "what was requested is repaired");
     assert!(
         right.iter().any(is_far) && !right.iter().filter(|t| is_far(t)).any(is_removed),
         "what was not is not"

@@ -100,8 +100,8 @@ fn lines_are_divided_with_their_edges() {
         vec![([O, XY], 4)],
         vec![([O, XYZ], 5), ([O, X], 5)],
     ];
-    for asked in cases {
-        let first = with_lines(cube(), &asked);
+    for requested in cases {
+        let first = with_lines(cube(), &requested);
         let Changed { mesh, report, .. } = remeshed(&first, &options(0.3));
         assert!(report.is_complete() && report.after.bad == 0, "{:?}", report.after);
         same_lengths(&first, &mesh);

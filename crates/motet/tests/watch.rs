@@ -87,7 +87,7 @@ fn what_is_reported_to_stop_stops_and_says_where() {
     for &(stage, verb) in VERBS {
         let watch = Watch::new();
         watch.stop();
-        let error = verb(&Threads::single().watched(&watch)).expect_err("it was told to stop");
+        let error = verb(&Threads::single().watched(&watch)).expect_err("it was stopped");
         assert_eq!(error.kind(), ErrorKind::Stopped, "{stage}: {error}");
         assert_eq!(watch.progress().stage, stage);
         assert!(error.what().contains(stage), "{error}");

@@ -12,7 +12,7 @@
 //! | remember | `memory` | what must be kept with the mesh so that a later run can continue, and what of it still holds after others have changed the mesh |
 //! | whole meshes | `whole` | cells of other kinds put back, arrays transferred, the memory stored as arrays |
 //!
-//! The mesh is a function of the first mesh and of which tets are *asked* to be divided; nothing else is
+//! The mesh is a function of the first mesh and of the tets whose division was *requested*; nothing else is
 //! remembered. A tet that was cut to fit its neighbours is never divided piecewise: when one of its pieces is
 //! marked, the whole is divided into eight (Bank, Sherman and Weiser 1983, *Refinement algorithms and data
 //! structures for regular local mesh refinement*; Bey 1995, *Tetrahedral grid refinement*). That the long

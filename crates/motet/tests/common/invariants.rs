@@ -151,7 +151,7 @@ impl First {
             n_reported += 1;
         }
         if n_reported != kept.quality.n_below {
-            kept.broken.push(format!("{} tets are bad, {n_reported} are told", kept.quality.n_below));
+            kept.broken.push(format!("{} tets are bad, {n_reported} are reported", kept.quality.n_below));
         }
         kept
     }

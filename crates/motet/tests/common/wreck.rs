@@ -95,7 +95,7 @@ impl Wreck {
                 Ok(Ending::Reported)
             } else {
                 Err(format!(
-                    "{n_wrong} facets of flat or inverted tets, none told; {:?}",
+                    "{n_wrong} facets of flat or inverted tets, none reported; {:?}",
                     outcome.report.after.worst
                 ))
             };

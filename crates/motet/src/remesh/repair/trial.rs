@@ -54,9 +54,9 @@ impl<S: Copy> Trial<S> {
     /// Keeps the proposal as the best change if the rules accept it; returns whether they do. `weigh` gets
     /// the proposal and the score of the best so far, and returns `None` if the proposal is not better.
     ///
-    /// Sizes are asked first, about every proposal: a field of sizes evaluates anew what has moved since it
-    /// was last asked, and a size interpolated at a vertex may differ from the given one by a rounding. So
-    /// results depend on what it is asked about.
+    /// Sizes are checked first, for every proposal: a field of sizes evaluates anew what has moved since the
+    /// last check, and a size interpolated at a vertex may differ from the given one by a rounding. So
+    /// results depend on which proposals it has checked.
     pub(super) fn offer(
         &mut self,
         rules: Rules,
@@ -79,7 +79,7 @@ impl<S: Copy> Trial<S> {
     /// Ends the search: commits the best change, if there is one and the kernel accepts it, and counts its
     /// operation. Returns whether a change was made.
     ///
-    /// `changes` is told of the inserted tets; it is `None` where every record of failed operations begins
+    /// `changes` records the inserted tets; it is `None` where every record of failed operations begins
     /// anew before it is read again.
     pub(super) fn commit(
         &mut self,
