@@ -22,6 +22,9 @@
 //!
 //! A module imports only from lower floors; `tests/layers.rs` enforces this.
 //!
+//! [`algebra`], [`kernel`] and [`ops`] are internal: public for tests, benchmarks and extensions, and may change
+//! with any version. The others follow semantic versioning.
+//!
 //! | feature | adds | crates |
 //! |---|---|---|
 //! | none | [`base`], [`geometry`], [`mesh`], [`spatial`] | |

@@ -1,5 +1,7 @@
 //! Floor 1: sparse matrices whose unknowns are 3-vectors, and solvers for them.
 //!
+//! Internal: public for tests, benchmarks and extensions, and may change with any version.
+//!
 //! | | |
 //! |---|---|
 //! | [`Block`] | an entry of a matrix: a number, or 3 x 3 numbers |

@@ -1,5 +1,7 @@
 //! Floor 4: the only code that changes the connectivity of tets.
 //!
+//! Internal: public for tests, benchmarks and extensions, and may change with any version.
+//!
 //! A [`Complex`] holds tets, and for each of their facets what lies behind it. Code that wants to change it
 //! *proposes* a [`Change`]: the tets to remove (the cavity), the tets to insert (the fill), and what happens
 //! to one vertex. [`Complex::check`] tests it against everything that must never happen, and returns a

@@ -1,5 +1,7 @@
 //! Floor 5: the operations. Each examines a few tets and *proposes* a change; none of them makes it.
 //!
+//! Internal: public for tests, benchmarks and extensions, and may change with any version.
+//!
 //! | operation | removed | inserted |
 //! |---|---|---|
 //! | [`EdgeRemoval`] | the tets around an edge | the best tets that do without it |
