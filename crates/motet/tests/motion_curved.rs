@@ -118,7 +118,11 @@ fn straight_edges_inside_stay_straight_by_every_method() {
         assert!(certificate.complete && certificate.inverted == 0, "{name}");
         assert!(off_the_middle(&mesh, &out) < 1e-13, "{name}");
         for (v, d) in mover.boundary().iter().zip(&displacement) {
-            assert_eq!(out[v.index()], add(mesh.points[v.index()], *d), "{name}: where its displacement puts it");
+            assert_eq!(
+                out[v.index()],
+                add(mesh.points[v.index()], *d),
+                "{name}: where its displacement puts it"
+            );
         }
         let least = nodes(&mesh, &out).iter().map(|nodes| sampled(nodes)).fold(f64::INFINITY, f64::min);
         assert!(least > 0.0, "{name}: {least}");

@@ -57,54 +57,28 @@ pub(super) fn remesh_keeping(
     hold(&mut complex, mesh, &options.held, required, options.surface != SurfaceRule::Keep);
     report.seconds.join = clock.lap();
 
-    let others = options.only.as_ref().map_or_else(Vec::new, |only| others(mesh.tets.len(), only));
-    let mut bad = complex.below(min_eas);
-    bad.retain(|&t| !is_among(&others, t));
-    let n_bad = bad.len();
-    bad.retain(|&t| !complex.is_locked(t));
-    report.held = n_bad - bad.len();
-    let layers = match options.keep_layers {
-        true => split_off_layers(&oriented(&complex, mesh), &mesh.points, &mut bad, min_eas),
-        false => Vec::new(),
-    };
-    layers.iter().for_each(|&tet| complex.lock(tet));
-    report.before = State::of(&complex, &bad, layers.len(), |t| t);
+    let Judged { bad, layers, others } = judge(&mut complex, mesh, options, &mut report);
     let n_peeled = complex.peel();
-    bad.retain(|&t| complex.is_alive(t));
+    let bad: Vec<TetId> = bad.into_iter().filter(|&t| complex.is_alive(t)).collect();
     let surface = adaptable(&mut complex, mesh, options);
+    let input = LazyCell::new(|| Arc::new(InputMesh::new(mesh)));
     let splits = options.goal != Goal::Coarsen;
     let longest = if splits { LONG } else { 1.0 };
-    let input = LazyCell::new(|| Arc::new(InputMesh::new(mesh)));
-    let mut field = options.sizes.as_ref().map(|sizes| SizeField::new(sizes, || input.clone(), longest));
-    let lengths_before = field.as_mut().map(|field| Lengths::of(&complex, field));
+    let mut sizing = options.sizes.as_ref().zip(max_tets).map(|(sizes, max_tets)| Sizing {
+        field: SizeField::new(sizes, || input.clone(), longest),
+        splits,
+        max_tets,
+    });
+    let lengths_before = sizing.as_mut().map(|sizing| Lengths::of(&complex, &mut sizing.field));
     let mut repair = Repair::new(complex, surface, others, min_eas, threads.watch());
     repair.operations.add_many(Operation::Peeling, n_peeled);
     let pose = options.improve.as_ref().and_then(|improve| improve.pose.clone());
     repair.pose = pose.map(|pose| Pose::new(input.clone(), pose));
-    let mut left = match (field, max_tets) {
-        (Some(field), Some(max_tets)) => {
-            repair.bring_to_sizes(Sizing { field, splits, max_tets }, options.rounds)?
-        }
-        _ => repair.run(bad, options.rounds)?,
+    let mut left = match sizing {
+        Some(sizing) => repair.bring_to_sizes(sizing, options.rounds)?,
+        None => repair.run(bad, options.rounds)?,
     };
-    for pass in passes(options.surface) {
-        if !left.is_empty() && !repair.is_hopeless() {
-            left = repair.beside_forced(&left, |repair, left| repair.pass(*pass, left, options.rounds))?;
-        }
-    }
-    // With sizes, they decide which vertices are too close.
-    if repair.sizing.is_none() && repair.thin()? {
-        left = repair.below(min_eas);
-    }
-    if options.goal == Goal::Best && !repair.is_hopeless() {
-        repair.best(options.rounds)?;
-        left = repair.below(min_eas);
-    }
-    if repair.sizing.is_some() && options.goal == Goal::Repair && !repair.is_hopeless() {
-        let aim = Aim { below: Improve::NEW_TETS, floor: min_eas, limit: min_eas, cost: 0.0 };
-        repair.improve(aim, repair.near_changes())?;
-        left = repair.below(min_eas);
-    }
+    left = finish_repair(&mut repair, left, options)?;
     if let Some(improve) = options.improve.as_ref().filter(|_| !repair.is_hopeless()) {
         let density = improve.density.as_ref().map(|density| {
             let n_free = density.free_vertices.unwrap_or(report.before.free_vertices);
@@ -131,6 +105,58 @@ pub(super) fn remesh_keeping(
     report.left = explain(&complex, &left, min_eas, |t| extract.tet(t));
     report.seconds.extract = clock.lap();
     Ok(Outcome { extract, report })
+}
+
+/// The tets of a mesh that are not good.
+struct Judged {
+    /// Those to be repaired.
+    bad: Vec<TetId>,
+    /// Those of boundary layers, which stay.
+    layers: Vec<TetId>,
+    /// Those that cannot count as bad.
+    others: Vec<bool>,
+}
+
+/// Finds the bad tets, locks those of boundary layers, and records the state before any change.
+fn judge(complex: &mut Complex, mesh: &TetMesh, options: &Options, report: &mut Report<TetId>) -> Judged {
+    let others = options.only.as_ref().map_or_else(Vec::new, |only| others(mesh.tets.len(), only));
+    let mut bad = complex.below(report.min_eas);
+    bad.retain(|&t| !is_among(&others, t));
+    let n_bad = bad.len();
+    bad.retain(|&t| !complex.is_locked(t));
+    report.held = n_bad - bad.len();
+    let layers = match options.keep_layers {
+        true => split_off_layers(&oriented(complex, mesh), &mesh.points, &mut bad, report.min_eas),
+        false => Vec::new(),
+    };
+    layers.iter().for_each(|&tet| complex.lock(tet));
+    report.before = State::of(complex, &bad, layers.len(), |t| t);
+    Judged { bad, layers, others }
+}
+
+/// Tries again what is left, removes superfluous vertices, and improves what the goal requests; returns the
+/// tets that are left.
+fn finish_repair(repair: &mut Repair, mut left: Vec<TetId>, options: &Options) -> Result<Vec<TetId>> {
+    let min_eas = options.limit();
+    for pass in passes(options.surface) {
+        if !left.is_empty() && !repair.is_hopeless() {
+            left = repair.beside_forced(&left, |repair, left| repair.pass(*pass, left, options.rounds))?;
+        }
+    }
+    // With sizes, they decide which vertices are too close.
+    if repair.sizing.is_none() && repair.thin()? {
+        left = repair.below(min_eas);
+    }
+    if options.goal == Goal::Best && !repair.is_hopeless() {
+        repair.best(options.rounds)?;
+        left = repair.below(min_eas);
+    }
+    if repair.sizing.is_some() && options.goal == Goal::Repair && !repair.is_hopeless() {
+        let aim = Aim { below: Improve::NEW_TETS, floor: min_eas, limit: min_eas, cost: 0.0 };
+        repair.improve(aim, repair.near_changes())?;
+        left = repair.below(min_eas);
+    }
+    Ok(left)
 }
 
 /// Keeps the number of vertices, and improves tets of low quality near changes and among the requested cells.
