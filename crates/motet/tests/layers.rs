@@ -29,7 +29,7 @@ const FLOORS: &[(&str, u32)] = &[
 ];
 
 /// Macros that are exported, which the language puts at the crate root, and the modules that define them.
-const MACROS: &[(&str, &str)] = &[("words", "base")];
+const MACROS: &[(&str, &str)] = &[("choices", "base"), ("words", "base")];
 
 fn floor(module: &str) -> Option<u32> {
     let module = MACROS.iter().find(|(name, _)| *name == module).map_or(module, |(_, home)| home);

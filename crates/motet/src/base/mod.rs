@@ -1,5 +1,6 @@
 //! Floor 0: what every other module builds on.
 
+mod choices;
 mod csr;
 mod error;
 pub(crate) mod four;
@@ -13,6 +14,9 @@ mod threads;
 mod watch;
 mod words;
 
+#[doc(hidden)]
+pub use choices::read_named;
+pub use choices::{Choice, one_of};
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result, printable};
 pub use ids::{BodyId, CellId, Id, MaybeId, TetId, TriangleId, VertexId, rising_list};

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::de::{self, Deserializer};
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::base::{Error, Result, VertexId, nearest};
+use crate::base::{Error, Result, VertexId, one_of, read_named};
 use crate::mesh::{Boundary, Mesh};
 use crate::motion::options::{
     Elastic, Extent, FacetSet, Laplace, Limits, Method, Options, RigidLayer, SlideTolerance, Strain,
@@ -202,12 +202,8 @@ impl MethodName {
     /// When there is none; the error names the nearest, or all.
     pub fn of(name: &str) -> Result<Self> {
         Self::ALL.into_iter().find(|method| method.as_str() == name).ok_or_else(|| {
-            let known = Self::ALL.iter().map(|method| method.as_str());
-            let remedy = match nearest(name, known.clone()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("give one of {}", known.collect::<Vec<_>>().join(", ")),
-            };
-            Error::options(format!("there is no method `{name}`")).remedy(remedy)
+            Error::options(format!("there is no method `{name}`"))
+                .remedy(one_of(name, Self::ALL.iter().map(|method| method.as_str())))
         })
     }
 
@@ -254,26 +250,14 @@ impl Serialize for MethodName {
 
 impl<'de> Deserialize<'de> for MethodName {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        named(deserializer, Self::of)
+        read_named(deserializer, Self::of)
     }
 }
 
 impl<'de> Deserialize<'de> for Strain {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        named(deserializer, Self::of_name)
+        read_named(deserializer, Self::of_name)
     }
-}
-
-/// Reads a text and looks it up; an error has the remedy behind it.
-fn named<'de, T, D: Deserializer<'de>>(
-    deserializer: D,
-    of: fn(&str) -> Result<T>,
-) -> std::result::Result<T, D::Error> {
-    let text = String::deserialize(deserializer)?;
-    of(&text).map_err(|e| match e.remedy_text() {
-        Some(remedy) => de::Error::custom(format_args!("{}: {remedy}", e.what())),
-        None => de::Error::custom(e.what()),
-    })
 }
 
 impl Extent {
