@@ -8,6 +8,7 @@ mod args;
 mod arrays;
 mod common;
 mod console;
+mod effects;
 mod exit;
 mod outcome;
 mod outputs;

@@ -11,8 +11,9 @@
 //! | reach a goal | `reach` | generation after generation, until a mesh is as [`Wanted`] |
 //! | remember | `memory` | what must be kept with the mesh so that a later run can continue, and what of it still holds after others have changed the mesh |
 //! | whole meshes | `whole` | cells of other kinds put back, arrays transferred, the memory stored as arrays |
+//! | words | `words` | what files, Python and other callers give |
 //!
-//! The mesh is a function of the first mesh and of which tets are *asked* to be divided; nothing else is
+//! The mesh is a function of the first mesh and of which tets are *requested* to be divided; nothing else is
 //! remembered. A tet that was cut to fit its neighbours is never divided piecewise: when one of its pieces is
 //! marked, the whole is divided into eight (Bank, Sherman and Weiser 1983, *Refinement algorithms and data
 //! structures for regular local mesh refinement*; Bey 1995, *Tetrahedral grid refinement*). That the long
@@ -29,6 +30,7 @@ mod refinement;
 mod shapes;
 mod true_surface;
 mod whole;
+mod words;
 
 pub use choose::{
     Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Limits, Relation, Size, Target, estimate,
@@ -40,3 +42,4 @@ pub use refinement::{Left, Options, Refinement, Rule, Summary};
 pub use shapes::Shapes;
 pub use true_surface::OnSurface;
 pub use whole::MeshRefinement;
+pub use words::RefineWords;
