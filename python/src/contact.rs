@@ -1,7 +1,7 @@
 //! Contact: distances between surfaces, and when they will touch.
 
 use motet::base::{BodyId, Id, MaybeId, Point, Threads, VertexId};
-use motet::contact::{self, Body, Gaps, Options, Room};
+use motet::contact::{self, Body, GapWords, Gaps, Room, set_rooms};
 use numpy::PyArray1;
 use numpy::ndarray::Ix2;
 use pyo3::prelude::*;
@@ -46,15 +46,16 @@ struct Within<'a> {
 
 #[pymethods]
 impl Contact {
-    /// `bodies`: the name and the triangles of each, and whether it is the wall of a room; `None` lets the
-    /// library decide.
+    /// `bodies`: the name and the triangles of each. `room`: the names of those that are the wall of a room;
+    /// `None` lets the library decide.
     #[new]
-    #[pyo3(signature = (points, bodies, *, warn, own, within, facing, fold, threads))]
+    #[pyo3(signature = (points, bodies, *, room, warn, own, within, facing, fold, threads))]
     #[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
     fn new(
         py: Python<'_>,
         points: Vectors<'_>,
-        bodies: Vec<(String, Read<'_, u32, Ix2>, Option<bool>)>,
+        bodies: Vec<(String, Read<'_, u32, Ix2>)>,
+        room: Option<Vec<String>>,
         warn: Option<f64>,
         own: bool,
         within: f64,
@@ -64,7 +65,7 @@ impl Contact {
     ) -> PyResult<Self> {
         let points = rows(&points, "points")?.to_vec();
         let threads = self::threads(threads)?;
-        let body = |(name, triangles, is_room): (String, Read<'_, u32, Ix2>, Option<bool>)| {
+        let body = |(name, triangles): (String, Read<'_, u32, Ix2>)| {
             let triangles = triangles.as_array();
             if triangles.ncols() != 3 {
                 return Err(input(format!("{name}: triangles of {} columns, expected 3", triangles.ncols())));
@@ -74,17 +75,15 @@ impl Contact {
                 return Err(input(format!("{name}: vertex {v} is out of range: there are {n} points")));
             }
             let triangles = triangles.rows().into_iter().map(|t| [t[0], t[1], t[2]].map(VertexId)).collect();
-            let room = match is_room {
-                None => Room::Found,
-                Some(true) => Room::Yes,
-                Some(false) => Room::No,
-            };
-            Ok(Body { name, triangles, room })
+            Ok(Body { name, triangles, room: Room::Found })
         };
-        let bodies: Vec<Body> = bodies.into_iter().map(body).collect::<PyResult<_>>()?;
+        let mut bodies: Vec<Body> = bodies.into_iter().map(body).collect::<PyResult<_>>()?;
+        if let Some(names) = room {
+            set_rooms(&mut bodies, &names).or_raise()?;
+        }
         let names = bodies.iter().map(|body| body.name.clone()).collect();
-        let options = Options { warn, own, within, facing, fold };
-        let contact = call(py, || contact::Contact::new(points, bodies, options, &threads))?;
+        let words = GapWords { warn, within: Some(within), own, facing, fold };
+        let contact = call(py, || contact::Contact::new(points, bodies, words.options(), &threads))?;
         Ok(Self { contact, names, threads })
     }
 

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 
 use motet::base::Threads;
-use motet::implant::{Adapt, Device, Inside, Interface, Options, Outside};
+use motet::implant::{Device, ImplantWords};
 use motet::mesh::history::Changed;
-use motet::remesh;
 use pyo3::prelude::*;
 
 use crate::convert::{MeshArg, parts};
+use crate::error::OrRaise;
 use crate::history::{ChangedParts, History};
 use crate::report::{quality, report};
 use crate::watch::watched;
-use crate::words::{one_of, rules};
+use crate::words::{name_of, rules};
 
 /// Returns the new mesh, its history, the report, and why the requested result was not reached.
 #[pyfunction]
@@ -40,26 +40,22 @@ pub(crate) fn implant<'py>(
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<ChangedParts<'py>> {
-    let insides = [("own", None), ("fill", Some(Inside::Filled)), ("hollow", Some(Inside::Hollow))];
-    let inside = one_of("inside", inside, &insides)?;
-    let device = |(mesh, name): (MeshArg, String)| {
-        let device = Device::new(mesh.0, name);
-        Device { inside: inside.unwrap_or(device.inside), ..device }
-    };
-    let devices: Vec<Device> = devices.into_iter().map(device).collect();
-    let interfaces = [("match", Interface::Match), ("conform", Interface::Conform { tolerance })];
-    let options = Options {
-        interface: one_of("interface", interface, &interfaces)?,
-        outside: one_of("outside", outside, &[("cut", Outside::Cut), ("keep", Outside::Keep)])?,
+    let words = ImplantWords {
+        inside: name_of(inside)?,
+        interface: name_of(interface)?,
+        tolerance,
+        outside: name_of(outside)?,
         stray,
+        adapt: name_of(adapt)?,
         size,
         growth,
-        adapt: one_of("adapt", adapt, &[("none", Adapt::No), ("walls", Adapt::Walls), ("all", Adapt::All)])?,
         carve,
         reach,
-        starts: values,
-        improve: remesh::Options { min_eas, ..remesh::Options::default() },
+        min_eas,
+        values,
     };
+    let options = words.options().or_raise()?;
+    let devices: Vec<Device> = devices.into_iter().map(|(mesh, name)| words.device(mesh.0, name)).collect();
     let rules = rules(&host.0, &carry)?;
     let put = |threads: &Threads| motet::implant::implant(&host.0, &devices, &options, &rules, threads);
     let made = watched(py, threads, progress, put)?;

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use motet::Mesh;
 use motet::base::{Threads, Watch};
+use motet::contact::GapWords;
 use motet::motion::Motion;
-use motet::moving::{self, ContactWords, Options, RepairWords};
+use motet::moving::{self, Options, RepairWords, WatchWords};
 use motet::refine::Wanted;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -81,20 +82,14 @@ impl Request {
             improve_below: self.improve_below,
             valid_at_start: self.valid_at_start,
         };
-        let contact = ContactWords {
-            patches: self.watch.clone(),
-            warn: self.warn,
-            within: Some(self.within),
-            horizon: self.horizon,
-            hold: self.hold,
-            ..ContactWords::default()
-        };
+        let watch = WatchWords { patches: self.watch.clone(), horizon: self.horizon, hold: self.hold };
+        let gaps = GapWords { warn: self.warn, within: Some(self.within), ..GapWords::default() };
         Ok(Options {
             motion,
             returns: self.returns,
             rules: rules(mesh, &self.carry)?,
             contents: self.contents.clone(),
-            watch: contact.watching(mesh).or_raise()?,
+            watch: watch.watching(&gaps, mesh).or_raise()?,
             remembered: self.remembered,
             ..repair.options(mesh).or_raise()?
         })

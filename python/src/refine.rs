@@ -8,8 +8,8 @@ use motet::mesh::history;
 use motet::refine;
 use motet::refine::sizes::SizeLimits;
 use motet::refine::{
-    Aim, Amount, Condition, Estimator, HessianSizes, Limits, MeshRefinement, Options, Relation, Size, Target,
-    Wanted, fix_sizes,
+    Aim, Amount, Estimator, HessianSizes, MeshRefinement, Options, RefineWords, Size, Target, Wanted,
+    fix_sizes,
 };
 use numpy::ndarray::Ix1;
 use pyo3::prelude::*;
@@ -53,12 +53,8 @@ fn estimate(array: String, by: Estimator, amount: AmountArg) -> PyResult<Criteri
     checked(refine::Criterion::Estimate { array, by, amount })
 }
 
-/// Parses `ARRAY>VALUE`.
-fn threshold(text: &str) -> PyResult<(String, f64)> {
-    match text.parse::<Condition>().or_raise()? {
-        Condition { array, relation: Relation::Above, value } => Ok((array, value)),
-        _ => Err(options(format!("{text:?}: expected ARRAY>VALUE, such as velocity>50"))),
-    }
+fn of_text(word: &str, text: &str) -> PyResult<Criterion> {
+    refine::Criterion::of_text(word, text).map(Criterion).or_raise()
 }
 
 #[pymethods]
@@ -74,7 +70,8 @@ impl Criterion {
     }
 
     #[staticmethod]
-    fn near_size(surface: MeshArg, size: f64, growth: f64) -> PyResult<Self> {
+    fn near_size(surface: MeshArg, size: f64, growth: Option<f64>) -> PyResult<Self> {
+        let growth = growth.unwrap_or(refine::Criterion::GROWTH);
         checked(refine::Criterion::NearSize { target: target(&surface)?, size, growth })
     }
 
@@ -110,25 +107,22 @@ impl Criterion {
 
     #[staticmethod]
     fn r#where(condition: &str) -> PyResult<Self> {
-        checked(refine::Criterion::Where(condition.parse().or_raise()?))
+        of_text("where", condition)
     }
 
     #[staticmethod]
     fn gradient(threshold: &str) -> PyResult<Self> {
-        let (array, above) = self::threshold(threshold)?;
-        checked(refine::Criterion::Gradient { array, above })
+        of_text("gradient", threshold)
     }
 
     #[staticmethod]
     fn vorticity(threshold: &str) -> PyResult<Self> {
-        let (array, above) = self::threshold(threshold)?;
-        checked(refine::Criterion::Vorticity { array, above })
+        of_text("vorticity", threshold)
     }
 
     #[staticmethod]
     fn q(threshold: &str) -> PyResult<Self> {
-        let (array, above) = self::threshold(threshold)?;
-        checked(refine::Criterion::Q { array, above })
+        of_text("q", threshold)
     }
 
     #[staticmethod]
@@ -208,20 +202,20 @@ pub(crate) fn refined<'py>(
 ) -> PyResult<ChangedParts<'py>> {
     let mut mesh = if request.forget { MeshRefinement::forget(&mesh.0) } else { mesh.0 };
     let rules = rules(&mesh, &request.carry)?;
-    let conditions =
-        request.coarsen_where.iter().map(|text| text.parse().or_raise()).collect::<PyResult<_>>()?;
-    let mut wanted = Wanted {
-        criteria: request.criteria.into_iter().map(|c| c.0).collect(),
+    let words = RefineWords {
         coarsen: request.coarsen,
-        coarsen_where: conditions,
+        coarsen_where: request.coarsen_where,
         generations: request.generations,
-        limits: Limits {
-            generation: request.limit_generation,
-            smallest: request.smallest,
-            n_tets: request.at_most,
-        },
+        limit_generation: request.limit_generation,
+        smallest: request.smallest,
+        at_most: request.at_most,
+        ..RefineWords::default()
+    };
+    let criteria = request.criteria.into_iter().map(|criterion| criterion.0).collect();
+    let mut wanted = Wanted {
         surface: request.surface.as_ref().map(target).transpose()?,
         keeps_history: true,
+        ..words.wanted(criteria).or_raise()?
     };
     let (new, done) = watched(py, threads, progress, |threads| {
         let sizes = fix_sizes(&mut wanted.criteria, &mut mesh, threads)?;

@@ -217,8 +217,8 @@ module motet
     ! 1: devices get a new surface near theirs, for surfaces that touch or cross themselves; default 0: every
     ! triangle is kept
     integer(c_int32_t) :: conform = 0
-    ! largest distance of the new surface from that of the device; default 0: a fifth of the radius of a wire
-    ! as thick as the device
+    ! with conform: largest distance of the new surface from that of the device; default 0: a fifth of the
+    ! radius of a wire as thick as the device
     real(c_double) :: tolerance = 0
     ! 1: the parts of devices outside of the host are kept; default 0: they are cut off
     integer(c_int32_t) :: keep_outside = 0

@@ -383,8 +383,8 @@ typedef struct motet_implant_options {
     int32_t inside;       /* the space inside devices; default MOTET_INSIDE_OWN */
     int32_t conform;      /* 1: devices get a new surface near theirs, for surfaces that touch or cross
                            * themselves; default 0: every triangle is kept */
-    double tolerance;     /* largest distance of the new surface from that of the device; default 0: a fifth
-                           * of the radius of a wire as thick as the device */
+    double tolerance;     /* with conform: largest distance of the new surface from that of the device;
+                           * default 0: a fifth of the radius of a wire as thick as the device */
     int32_t keep_outside; /* 1: the parts of devices outside of the host are kept; default 0: they are cut
                            * off */
     int32_t adapt;        /* what is refined first; default MOTET_ADAPT_WALLS */

@@ -1,15 +1,14 @@
 //! Operations that change a mesh (repair, implantation, filling), and their outcomes.
 
-use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 
-use motet::implant::{Device, Inside, Interface, Outside, implant};
+use motet::implant::{Device, ImplantWords, InterfaceName, Outside, implant};
 use motet::mesh::history::{Changed, History, Rules};
 use motet::meshing::layers::Stack;
 use motet::meshing::{EdgeLength, Grading, MeshingWords, Surfaces, WallLayers, fill};
 use motet::preflight::Role;
 use motet::remesh::{EdgeLengths, GoalName, RemeshWords, remesh_mesh};
-use motet::{Error, Mesh, Result, implant, remesh};
+use motet::{Error, Mesh, Result};
 use serde_json::json;
 
 use crate::constants::{self, On};
@@ -201,32 +200,21 @@ versioned! {
 }
 
 impl MotetImplantOptions {
-    fn options(&self) -> Result<implant::Options> {
-        Ok(implant::Options {
-            interface: match self.conform {
-                0 => Interface::Match,
-                _ => Interface::Conform { tolerance: optional(self.tolerance) },
-            },
+    fn words(&self) -> Result<ImplantWords> {
+        Ok(ImplantWords {
+            inside: constants::inside(self.inside)?,
+            interface: if self.conform != 0 { InterfaceName::Conform } else { InterfaceName::Match },
+            tolerance: optional(self.tolerance),
             outside: if self.keep_outside != 0 { Outside::Keep } else { Outside::Cut },
             stray: (self.stray != -1.0).then_some(self.stray),
+            adapt: constants::adapt(self.adapt)?,
             size: optional(self.edge_length),
             growth: self.growth,
-            adapt: constants::adapt(self.adapt)?,
             carve: self.carve,
             reach: self.reach,
-            starts: BTreeMap::new(),
-            improve: remesh::Options { min_eas: self.min_eas, ..remesh::Options::default() },
+            min_eas: self.min_eas,
+            ..ImplantWords::default()
         })
-    }
-
-    fn device(&self, mesh: &Mesh, name: &str) -> Result<Device> {
-        let device = Device::new(mesh.clone(), name);
-        let inside = match constants::inside(self.inside)? {
-            // Surfaces have no tets to keep.
-            Inside::Own => device.inside,
-            inside => inside,
-        };
-        Ok(Device { inside, ..device })
     }
 }
 
@@ -244,12 +232,15 @@ pub(crate) unsafe extern "C" fn motet_implant(
         let place = out_handle(outcome, "outcome")?;
         let host = &handle(host, "host")?.0;
         let given = read_versioned(options)?;
+        let words = given.words()?;
+        let options = words.options()?;
         let meshes = values(devices, count(n_devices, "devices")?, "devices")?;
         let names = texts(names, n_devices, "names")?;
-        let device =
-            |(mesh, name): (&*const MotetMesh, &str)| given.device(&handle(*mesh, "device")?.0, name);
+        let device = |(mesh, name): (&*const MotetMesh, &str)| {
+            Ok(words.device(handle(*mesh, "device")?.0.clone(), name))
+        };
         let devices: Vec<Device> = meshes.iter().zip(names).map(device).collect::<Result<_>>()?;
-        let made = implant(host, &devices, &given.options()?, &Rules::default(), &threads(given.threads)?)?;
+        let made = implant(host, &devices, &options, &Rules::default(), &threads(given.threads)?)?;
         let Changed { mesh, history, report, .. } = made;
         set_handle(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
         Ok(())
@@ -348,5 +339,7 @@ mod tests {
         assert_eq!(json(&remesh).unwrap(), json(&RemeshWords::default()).unwrap());
         let fill = MotetFillOptions::DEFAULT.words().unwrap();
         assert_eq!(json(&fill).unwrap(), json(&MeshingWords::default()).unwrap());
+        let implant = MotetImplantOptions::DEFAULT.words().unwrap();
+        assert_eq!(json(&implant).unwrap(), json(&ImplantWords::default()).unwrap());
     }
 }

@@ -1,7 +1,7 @@
 //! Contact: distances between surfaces, and when they will touch.
 
 use motet::base::{Threads, VertexId};
-use motet::contact::{Body, Contact, Options, Room};
+use motet::contact::{Body, Contact, GapWords, Room};
 use motet::{Error, Result};
 
 use crate::constants;
@@ -29,6 +29,18 @@ versioned! {
     }
 }
 
+impl MotetContactOptions {
+    fn words(&self) -> GapWords {
+        GapWords {
+            warn: optional(self.warn),
+            within: optional(self.within),
+            own: self.own != 0,
+            facing: self.facing != 0,
+            fold: self.fold,
+        }
+    }
+}
+
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_contact_new(
     points: *const f64,
@@ -48,14 +60,7 @@ pub(crate) unsafe extern "C" fn motet_contact_new(
         let threads = threads(given.threads)?;
         let points = rows(points, n_points, stride, "points")?.into_owned();
         let bodies = BodyArrays { triangles, counts, is_room, n_bodies }.bodies(points.len())?;
-        let options = Options {
-            warn: optional(given.warn),
-            own: given.own != 0,
-            within: optional(given.within).unwrap_or(f64::INFINITY),
-            facing: given.facing != 0,
-            fold: given.fold,
-        };
-        let contact = Contact::new(points, bodies, options, &threads)?;
+        let contact = Contact::new(points, bodies, given.words().options(), &threads)?;
         set_handle(place, MotetContact { contact, threads });
         Ok(())
     })
@@ -208,4 +213,16 @@ pub(crate) unsafe extern "C" fn motet_contact_ahead(
         *time = ahead.first.map_or(f64::INFINITY, |first| first.time);
         Ok(())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::memory::Versioned;
+
+    #[test]
+    fn the_defaults_are_those_of_the_library() {
+        let words = MotetContactOptions::DEFAULT.words();
+        assert_eq!(format!("{words:?}"), format!("{:?}", GapWords::default()));
+    }
 }

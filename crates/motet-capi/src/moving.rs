@@ -4,9 +4,10 @@ use std::ffi::c_char;
 use std::ptr;
 
 use motet::base::{Point, Threads};
+use motet::contact::GapWords;
 use motet::motion::{Motion, SlideTolerance, Strain};
-use motet::moving::{ContactWords, GAP, MovingMesh, Options, RepairWords, Step};
-use motet::refine::{self, Criterion, Size, Target, Wanted};
+use motet::moving::{GAP, MovingMesh, Options, RepairWords, Step, WatchWords};
+use motet::refine::{Criterion, RefineWords, Size, Target, Wanted};
 use motet::{Error, Mesh, Result, io};
 use serde_json::json;
 
@@ -82,19 +83,18 @@ impl MotetMovingOptions {
             improve_below: self.improve_below,
             valid_at_start: self.valid_at_start != 0,
         };
-        let contact = ContactWords {
+        let watch = WatchWords {
             patches: owned(self.watch, self.n_watch, "watch")?,
-            warn: optional(self.warn),
-            within: optional(self.within),
             horizon: optional(self.horizon),
             hold: optional(self.hold),
-            ..ContactWords::default()
         };
+        let gaps =
+            GapWords { warn: optional(self.warn), within: optional(self.within), ..GapWords::default() };
         Ok(Options {
             motion: self.motion()?,
             returns: self.returns != 0,
             contents: owned(self.contents, self.n_contents, "contents")?,
-            watch: contact.watching(mesh)?,
+            watch: watch.watching(&gaps, mesh)?,
             remembered: count(self.remembered.into(), "changes to be remembered")?,
             ..repair.options(mesh)?
         })
@@ -361,9 +361,8 @@ pub(crate) unsafe extern "C" fn motet_moving_refine_near(
         let surface = &handle(surface, "surface")?.0;
         let wanted = |threads: &Threads| {
             let target = Target::of_mesh(surface, threads)?.into();
-            let criterion = Criterion::NearSize { target, size: at, growth };
-            criterion.check()?;
-            Ok(Wanted { criteria: vec![criterion], coarsen: coarsen != 0, ..Wanted::default() })
+            let words = RefineWords { coarsen: coarsen != 0, ..RefineWords::default() };
+            words.wanted(vec![Criterion::NearSize { target, size: at, growth }])
         };
         refined(moving, wanted, changes)
     })
@@ -382,10 +381,8 @@ pub(crate) unsafe extern "C" fn motet_moving_refine_gaps(
             return Err(Error::options(format!("the smallest edge length must be positive; got {smallest}"))
                 .remedy("gaps can become arbitrarily narrow: give the length at which division stops"));
         }
-        let limits = refine::Limits { smallest: Some(smallest), ..refine::Limits::default() };
-        let criteria = vec![Criterion::Size(Size::Array(GAP.to_owned()))];
-        let wanted = Wanted { criteria, limits, coarsen: coarsen != 0, ..Wanted::default() };
-        refined(moving, |_| Ok(wanted), changes)
+        let words = RefineWords { smallest: Some(smallest), coarsen: coarsen != 0, ..RefineWords::default() };
+        refined(moving, |_| words.wanted(vec![Criterion::Size(Size::Array(GAP.to_owned()))]), changes)
     })
 }
 

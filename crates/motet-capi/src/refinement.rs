@@ -2,7 +2,7 @@
 
 use motet::base::{TetId, Threads};
 use motet::mesh::history::{Changed, History, Rules};
-use motet::refine::{Criterion, MeshRefinement, Options, Target, Wanted};
+use motet::refine::{Criterion, MeshRefinement, Options, RefineWords, Target, Wanted};
 use motet::{Error, Result};
 use serde_json::json;
 
@@ -152,8 +152,8 @@ pub(crate) unsafe extern "C" fn motet_refinement_near(
         let MotetRefinement { refinement, threads } = handle_mut(refinement, "refinement")?;
         let target = Target::of_mesh(&handle(surface, "surface")?.0, threads)?.into();
         let criterion = Criterion::NearSize { target, size: at, growth };
-        criterion.check()?;
-        let wanted = Wanted { criteria: vec![criterion], keeps_history: true, ..Wanted::default() };
+        let wanted = RefineWords::default().wanted(vec![criterion])?;
+        let wanted = Wanted { keeps_history: true, ..wanted };
         let reached = refinement.reach(&wanted, &Rules::default(), threads, |_| ())?;
         let not_reached = reached.not_reached();
         let history = reached.history.ok_or_else(|| Error::input("no history was kept"))?;

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _motet
-from .errors import OptionsError
 from ._mesh import MeshLike, as_mesh, named
 from ._report import Report, report
 from ._keywords import NotPickled, checked_class
@@ -153,14 +152,10 @@ class Contact(NotPickled):
             bodies += _motet.bodies(mesh, name, [str(patch) for patch in patches], shift)
             points.append(mesh.points)
             shift += mesh.n_points
-        unknown = set(room or ()) - {name for name, _ in bodies}
-        if unknown:
-            raise OptionsError(f"room: there is no surface {', '.join(sorted(unknown))}; known surfaces: {', '.join(name for name, _ in bodies)}")
         self.points = np.concatenate(points)
         self._names = [name for name, _ in bodies]
         self._native = _motet.Contact(
-            self.points, [(name, triangles, None if room is None else name in room) for name, triangles in bodies], warn=warn, own=own, within=within, facing=facing,
-            fold=fold, threads=threads,
+            self.points, bodies, room=None if room is None else list(room), warn=warn, own=own, within=within, facing=facing, fold=fold, threads=threads,
         )  # fmt: skip
 
     def __repr__(self) -> str:

@@ -109,8 +109,9 @@ class Contact:
     def __new__(
         cls,
         points: _Vectors,
-        bodies: list[tuple[str, _Ids, bool | None]],
+        bodies: list[tuple[str, _Ids]],
         *,
+        room: list[str] | None,
         warn: float | None,
         own: bool,
         within: float,
@@ -161,7 +162,7 @@ class Criterion:
     @staticmethod
     def near(surface: Any, within: float) -> Criterion: ...
     @staticmethod
-    def near_size(surface: Any, size: float, growth: float) -> Criterion: ...
+    def near_size(surface: Any, size: float, growth: float | None) -> Criterion: ...
     @staticmethod
     def ball(centre: list[float], radius: float) -> Criterion: ...
     @staticmethod

@@ -136,8 +136,6 @@ def refine(
         everything=everything, near=near, near_size=near_size, box=box, ball=ball, region=region, patch=patch, size=size, where=where,
         gradient=gradient, vorticity=vorticity, q=q, jump=jump, recovery=recovery, hessian=hessian, smallest=smallest,
     )  # fmt: skip
-    if not criteria and not coarsen and not coarsen_where:
-        raise OptionsError("no criterion is given: pass one, such as near_size=[(stent, 0.05)], or coarsen=True")
     request = _Request(
         criteria, coarsen, several(coarsen_where), generations, limit_generation, smallest, at_most, None if surface is None else as_mesh(surface),
         dict(carry or {}), forget,
@@ -156,7 +154,7 @@ def _criteria(smallest: float | None, **criteria: Any) -> list:
 _MAKERS: dict[str, Callable[[Any, Any, float | None], list]] = {
     "everything": lambda make, given, _: [make.all()] if given else [],
     "near": lambda make, given, _: [make.near(as_mesh(one), distance) for one, distance in given],
-    "near_size": lambda make, given, _: [make.near_size(as_mesh(one), h, *(growth or (0.5,))) for one, h, *growth in given],
+    "near_size": lambda make, given, _: [make.near_size(as_mesh(one), h, *(growth or (None,))) for one, h, *growth in given],
     "box": lambda make, given, _: [make.box(point(low), point(high)) for low, high in given],
     "ball": lambda make, given, _: [make.ball(point(centre), radius) for centre, radius in given],
     "region": lambda make, given, _: [make.region(str(name)) for name in several(given)],

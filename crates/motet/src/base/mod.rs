@@ -26,7 +26,7 @@ pub(crate) use lanewise::lanewise;
 #[doc(hidden)]
 pub use names::read_text;
 #[cfg(feature = "suite")]
-pub use names::{Names, one_of};
+pub use names::{Names, one_of, suggestion};
 pub use percent::percent;
 pub use reasons::reasons;
 pub(crate) use sets::DisjointSets;

@@ -35,15 +35,19 @@ pub trait Names: Copy + 'static {
 /// When none has it; the error names the nearest, and all others.
 pub fn one_of<T: Copy>(what: &str, name: &str, known: &[(&str, T)]) -> Result<T> {
     known.iter().find(|(known, _)| *known == name).map(|(_, value)| *value).ok_or_else(|| {
-        let names = || known.iter().map(|(known, _)| *known);
-        let near = nearest(name, names());
-        let others = names().filter(|other| Some(*other) != near).collect::<Vec<_>>().join(", ");
-        let remedy = match near {
-            Some(near) => format!("did you mean `{near}`? Others are {others}"),
-            None => format!("give one of {others}"),
-        };
+        let remedy = suggestion(name, known.iter().map(|(known, _)| *known));
         Error::options(format!("unknown {what} `{name}`")).remedy(remedy)
     })
+}
+
+/// A remedy for a name that is not among the known ones: the nearest of these, and all others.
+pub fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    let near = nearest(name, known.clone());
+    let others = known.filter(|other| Some(*other) != near).collect::<Vec<_>>().join(", ");
+    match near {
+        Some(near) => format!("did you mean `{near}`? Others are {others}"),
+        None => format!("give one of {others}"),
+    }
 }
 
 /// Reads what a text or a number denotes.

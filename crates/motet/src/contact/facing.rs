@@ -122,8 +122,9 @@ fn faces(points: &[Point], Place { body, triangle, weights }: Place<'_>, out: Po
         || is_free(body.free, sum_of_normals(points, &body, around), out, MIN_COSINE)
 }
 
-/// Whether a direction leads to the free side of a surface with this normal, with a cosine above `least`, or
-/// above [`MIN_COSINE`] if both sides are free.
+/// Whether a direction leads to the free side of a surface with this normal, with a cosine above `least`. If
+/// both sides are free, it has to be above [`MIN_COSINE`] in any case: with less, nearly every direction
+/// would leave, those along the surface to neighbours included.
 fn is_free(free: Side, normal: Point, way: Point, least: f64) -> bool {
     let cosine = dot(normal, way);
     match free {

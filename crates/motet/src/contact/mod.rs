@@ -49,6 +49,7 @@ mod rule;
 mod side;
 mod surface_graph;
 mod sweep;
+mod words;
 
 pub use ahead::{Ahead, FirstContact};
 pub use between::{Between, BetweenOptions, GapKind, GapTet, Least, VertexPair, paper};
@@ -60,3 +61,4 @@ pub use results::{BodyGaps, Gaps, Nearest, PairGap, Warned};
 pub use room::Within;
 pub use side::Side;
 pub use sweep::{SLACK, Sweep, Touch, sweep, sweep_apart, sweep_own};
+pub use words::{GapWords, set_rooms};

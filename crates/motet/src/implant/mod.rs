@@ -38,8 +38,10 @@ mod place;
 mod report;
 mod resurface;
 mod starts;
+mod words;
 mod zone;
 
 pub use options::{Adapt, Device, Inside, Interface, Options, Outside};
 pub use pipeline::implant;
 pub use report::{Adapted, DeviceReport, Fit, Report, Seconds};
+pub use words::{ImplantWords, InterfaceName};

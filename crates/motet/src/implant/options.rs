@@ -6,6 +6,7 @@ use crate::base::{Error, Result};
 use crate::geometry::vector::LARGEST;
 use crate::mesh::{CellKind, Mesh};
 use crate::meshing::MOST_GROWTH;
+use crate::names;
 use crate::remesh;
 
 /// A device: a closed surface, or a mesh of tets.
@@ -20,42 +21,44 @@ pub struct Device {
     pub inside: Inside,
 }
 
-/// What becomes of the space in a device.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Inside {
-    /// The device's own tets, as they are.
-    Own,
-    /// New tets, in a region of their own.
-    Filled,
-    /// Nothing: its surface bounds the mesh.
-    Hollow,
+names! {
+    /// What becomes of the space in a device.
+    pub enum Inside: "inside" {
+        /// The device's own tets, as they are.
+        Own = "own",
+        /// New tets, in a region of their own.
+        Filled = "fill",
+        /// Nothing: its surface bounds the mesh.
+        Hollow = "hollow",
+    }
 }
 
-/// What part of the host is refined towards devices before it is carved.
-///
-/// What is carved is filled anew, and the sizes of new tets grow from the devices to the host by themselves.
-/// So as a rule only walls of the host need refinement: they stay, and tets between a device and a nearby
-/// wall whose facets are far larger than the gap would be bad.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Adapt {
-    /// Nothing.
-    No,
-    /// Walls (boundary, interfaces, labelled facets) nearer to a device than half the length of their edges.
-    #[default]
-    Walls,
-    /// Everything nearby, by [`Options::size`] and [`Options::growth`]: fields then keep their values, in
-    /// tets that are parts of those that they lay on.
-    All,
+names! {
+    /// What part of the host is refined towards devices before it is carved.
+    ///
+    /// What is carved is filled anew, and the sizes of new tets grow from the devices to the host by
+    /// themselves. So as a rule only walls of the host need refinement: they stay, and tets between a device
+    /// and a nearby wall whose facets are far larger than the gap would be bad.
+    pub enum Adapt: "adapt" {
+        /// Walls (boundary, interfaces, labelled facets) nearer to a device than half the length of their
+        /// edges: these cannot be carved.
+        Walls = "walls",
+        /// Nothing.
+        No = "none",
+        /// Everything nearby, by `size` and `growth`: fields then keep their values, in tets that are parts
+        /// of those that they lay on.
+        All = "all",
+    }
 }
 
-/// What becomes of the part of a device outside of the host, where it passes through the host's boundary.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Outside {
-    /// It is cut off; the wall bounds the device there.
-    #[default]
-    Cut,
-    /// It is kept; the wall ends at the device.
-    Keep,
+names! {
+    /// What becomes of the part of a device outside of the host, where it passes through the host's boundary.
+    pub enum Outside: "outside" {
+        /// It is cut off; the host's wall bounds the device there.
+        Cut = "cut",
+        /// It is kept; the host's wall ends at the device.
+        Keep = "keep",
+    }
 }
 
 impl Device {

@@ -89,4 +89,4 @@ pub use options::{Contents, Options, Watching};
 pub use script::{InTime, Script, normals};
 pub use step::{Change, Closest, Gaps, InvertedAtStart, Seconds, Step, Stopped, Why, WorstTet};
 pub use swept::{SweptVolumes, swept_volumes};
-pub use words::{ContactWords, RepairWords};
+pub use words::{RepairWords, WatchWords};

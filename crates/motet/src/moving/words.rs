@@ -1,7 +1,7 @@
 //! How a moving mesh is kept good, in words: what files, Python and other callers give.
 
 use crate::base::Result;
-use crate::contact;
+use crate::contact::GapWords;
 use crate::mesh::Mesh;
 use crate::moving::options::{Options, Watching};
 use crate::remesh::{self, Held, SurfaceName};
@@ -61,16 +61,10 @@ impl RepairWords {
 }
 
 words! {
-    /// Which patches are watched, and how.
-    pub struct ContactWords {
-        /// Patches, by name or number; each is a body, and all pairs are measured.
+    /// Which patches are watched, and what for; how their gaps are measured is said by [`GapWords`].
+    pub struct WatchWords {
+        /// Patches, by name or number; each is a surface, and all pairs are measured.
         patches: Vec<String> = Vec::new(),
-        /// Gaps below this distance are reported as warnings, in the unit of the mesh.
-        warn: Option<f64> = None,
-        /// Gaps are measured up to this distance. By default however large they are.
-        within: Option<f64> = None,
-        /// Gaps of a patch with itself are measured, too.
-        own: bool = false,
         /// How far ahead contact is predicted, at the present velocity, in units of time. By default as far
         /// as the last step.
         horizon: Option<f64> = None,
@@ -80,21 +74,19 @@ words! {
     }
 }
 
-impl ContactWords {
-    /// Which patches of a mesh are watched; `None` without patches.
+impl WatchWords {
+    /// Which patches of a mesh are watched, and how; `None` without patches.
     ///
     /// # Errors
-    /// If the mesh has no such patch, or a distance is not above 0.
-    pub fn watching(&self, mesh: &Mesh) -> Result<Option<Watching>> {
+    /// If the mesh has no such patch, a distance is negative, or the horizon is not above 0.
+    pub fn watching(&self, gaps: &GapWords, mesh: &Mesh) -> Result<Option<Watching>> {
         mesh.find_patches(&self.patches)?;
-        let options = contact::Options {
-            warn: self.warn,
-            own: self.own,
-            within: self.within.unwrap_or(f64::INFINITY),
-            ..contact::Options::default()
+        let watching = Watching {
+            patches: self.patches.clone(),
+            options: gaps.options(),
+            horizon: self.horizon,
+            hold: self.hold,
         };
-        let watching =
-            Watching { patches: self.patches.clone(), options, horizon: self.horizon, hold: self.hold };
         watching.check()?;
         Ok((!self.patches.is_empty()).then_some(watching))
     }

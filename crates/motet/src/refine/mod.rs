@@ -11,6 +11,7 @@
 //! | reach a goal | `reach` | generation after generation, until a mesh is as [`Wanted`] |
 //! | remember | `memory` | what must be kept with the mesh so that a later run can continue, and what of it still holds after others have changed the mesh |
 //! | whole meshes | `whole` | cells of other kinds put back, arrays transferred, the memory stored as arrays |
+//! | words | `words` | what files, Python and other callers give |
 //!
 //! The mesh is a function of the first mesh and of the tets whose division was *requested*; nothing else is
 //! remembered. A tet that was cut to fit its neighbours is never divided piecewise: when one of its pieces is
@@ -29,6 +30,7 @@ mod refinement;
 mod shapes;
 mod true_surface;
 mod whole;
+mod words;
 
 pub use choose::{
     Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Limits, Relation, Size, Target, estimate,
@@ -40,3 +42,4 @@ pub use refinement::{Left, Options, Refinement, Rule, Summary};
 pub use shapes::Shapes;
 pub use true_surface::OnSurface;
 pub use whole::MeshRefinement;
+pub use words::RefineWords;

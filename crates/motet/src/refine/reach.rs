@@ -281,7 +281,8 @@ impl<T: FnMut(&Step)> Work<'_, T> {
     }
 
     fn record(&mut self, history: &History) {
-        let parts = history.ledger.regions.iter().map(|region| region.deviation / region.volume_before);
+        let regions = history.ledger.regions.iter().filter(|region| region.volume_before > 0.0);
+        let parts = regions.map(|region| region.deviation / region.volume_before);
         self.reached.volume_deviation = parts.fold(self.reached.volume_deviation, f64::max);
         self.reached.history = self.reached.history.as_ref().map(|before| before.then(history));
     }

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use motet::contact::Options;
+use motet::contact::GapWords;
 use motet::{Error, Result};
 
+use crate::help;
 use crate::words::positive;
 use crate::writing::WritingArgs;
 
@@ -49,17 +50,14 @@ pub(crate) struct ContactArgs {
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// Warn where a gap is smaller than this
-    #[arg(long, value_name = "D", help_heading = "Gaps", value_parser = positive)]
+    #[arg(long, help = effect("warn"), value_name = "D", help_heading = "Gaps", value_parser = positive)]
     pub(crate) warn: Option<f64>,
     /// Patches of the one given mesh, by name or number
     #[arg(long, value_name = "P,Q", value_delimiter = ',', help_heading = "Gaps")]
     pub(crate) patches: Vec<String>,
-    /// Measure each surface against itself as well, neighbours left out
-    #[arg(long = "self", help_heading = "Gaps")]
+    #[arg(long = "self", help = effect("own"), help_heading = "Gaps")]
     pub(crate) against_self: bool,
-    /// Search no farther than this [default: no limit; for --self 4 D, or a tenth of the size]
-    #[arg(long, value_name = "D", help_heading = "Gaps", value_parser = positive)]
+    #[arg(long, help = effect("within"), value_name = "D", help_heading = "Gaps", value_parser = positive)]
     pub(crate) within: Option<f64>,
     /// The surface of this name (of its file or patch) is the wall of a room that the others are in: gaps are
     /// negative outside. Repeatable [default: closed surfaces that enclose most of another one in the first
@@ -69,12 +67,10 @@ pub(crate) struct ContactArgs {
     /// No surface is a room: gaps are negative inside closed surfaces
     #[arg(long, conflicts_with = "room", help_heading = "Gaps")]
     pub(crate) no_room: bool,
-    /// Count only places that face each other through free space, not through the thickness of a body
-    #[arg(long, help_heading = "Gaps")]
+    #[arg(long, help = effect("facing"), help_heading = "Gaps")]
     pub(crate) facing: bool,
-    /// Within one surface, places count as a gap where the way along the surface is at least this many times
-    /// the distance across
-    #[arg(long, value_name = "N", default_value_t = 3.0, help_heading = "Gaps", value_parser = positive)]
+    #[arg(long, help = effect("fold"), value_name = "N", default_value_t = GapWords::default().fold,
+        help_heading = "Gaps", value_parser = positive)]
     pub(crate) fold: f64,
     /// How distances are found
     #[arg(long, value_name = "HOW", default_value = "exact", help_heading = "Gaps")]
@@ -112,12 +108,18 @@ pub(crate) enum Method {
     Delaunay,
 }
 
+/// The effect of an option, as the library says it.
+fn effect(word: &str) -> String {
+    help::effect::<GapWords>(word)
+}
+
 impl ContactArgs {
-    pub(crate) fn options(&self) -> Options {
-        Options {
+    /// How gaps are measured, in the library's words.
+    pub(crate) fn words(&self) -> GapWords {
+        GapWords {
             warn: self.warn,
+            within: self.within,
             own: self.against_self,
-            within: self.within.unwrap_or(f64::INFINITY),
             facing: self.facing,
             fold: self.fold,
         }

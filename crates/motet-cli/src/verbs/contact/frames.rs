@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use motet::base::{BodyId, CellId, Point};
-use motet::contact::{Body, Contact, Room};
+use motet::contact::{Body, Contact, set_rooms};
 use motet::{Error, Mesh, Result, io};
 
 use super::args::ContactArgs;
@@ -87,15 +87,7 @@ impl<'a> Frames<'a> {
                 .remedy("`motet info FILE` lists the arrays of a file"));
         }
         if self.args.no_room || !self.args.room.is_empty() {
-            frame.bodies.iter_mut().for_each(|body| body.room = Room::No);
-        }
-        for name in &self.args.room {
-            let Some(body) = frame.bodies.iter_mut().find(|body| body.name == *name) else {
-                let known: Vec<_> = frame.bodies.iter().map(|body| body.name.as_str()).collect();
-                return Err(Error::options(format!("--room {name}: no surface of that name"))
-                    .remedy(format!("the surfaces are: {}", known.join(", "))));
-            };
-            body.room = Room::Yes;
+            set_rooms(&mut frame.bodies, &self.args.room)?;
         }
         Ok(frame)
     }

@@ -109,7 +109,8 @@ fn prepare(
         }
         frame.keep_rooms(&contact);
     }
-    Contact::new(frame.points.clone(), frame.bodies.clone(), args.options(), threads).map_err(with_file)
+    Contact::new(frame.points.clone(), frame.bodies.clone(), args.words().options(), threads)
+        .map_err(with_file)
 }
 
 /// The gaps by Delaunay tets and the tets themselves, where requested.

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
-use motet::Error;
-use motet::implant::{self, Options};
-use motet::remesh;
+use clap::Args;
+use motet::base::Names;
+use motet::implant::{Adapt, ImplantWords, Inside, InterfaceName, Outside};
 
 use crate::arrays::ArrayArgs;
+use crate::help::{self, name_of, repeatable};
 use crate::verbs::remesh::eas;
 use crate::words::{named, not_negative, numbers, positive};
 use crate::writing::WritingArgs;
@@ -65,45 +65,40 @@ pub(crate) struct ImplantArgs {
     #[arg(long, conflicts_with = "hollow", help_heading = "Devices")]
     pub(crate) fill: bool,
 
-    /// What the surface of a device becomes
-    #[arg(long, value_name = "HOW", default_value = "match", help_heading = "Devices")]
-    interface: Interface,
-    /// How far a new surface may be from the old one, with --interface conform [default: a fifth of the
-    /// radius of a wire as thick as the device]
-    #[arg(long, value_name = "D", value_parser = positive, help_heading = "Devices")]
+    #[arg(long, help = effect("interface"), value_name = "HOW", value_parser = name_of::<InterfaceName>(),
+        default_value = InterfaceName::default().as_str(), help_heading = "Devices")]
+    interface: InterfaceName,
+    #[arg(long, help = effect("tolerance"), value_name = "D", value_parser = positive,
+        help_heading = "Devices")]
     tolerance: Option<f64>,
 
-    /// What to do with the part of a device outside the host, where the device crosses its boundary
-    #[arg(long, value_name = "WHAT", default_value = "cut", help_heading = "Devices")]
+    #[arg(long, help = effect("outside"), value_name = "WHAT", value_parser = name_of::<Outside>(),
+        default_value = Outside::default().as_str(), help_heading = "Devices")]
     outside: Outside,
-    /// How far surfaces may stray where a device meets a wall, to avoid narrow triangles there; 0: not at all
-    /// [default: a twentieth of the device's edges]
-    #[arg(long, value_name = "D", value_parser = not_negative, help_heading = "Devices")]
+    #[arg(long, help = effect("stray"), value_name = "D", value_parser = not_negative,
+        help_heading = "Devices")]
     stray: Option<f64>,
 
-    /// What to refine in the host before carving
-    #[arg(long, value_name = "WHAT", default_value = "walls", help_heading = "Room")]
+    #[arg(long, help = effect("adapt"), value_name = "WHAT", value_parser = name_of::<Adapt>(),
+        default_value = Adapt::default().as_str(), help_heading = "Room")]
     adapt: Adapt,
-    /// Length of edges beside the devices where the host is refined, and of edges of new surfaces [default:
-    /// that of the devices' edges, and as --tolerance requires]
-    #[arg(long, value_name = "H", value_parser = positive, help_heading = "Room")]
+    #[arg(long, help = effect("size"), value_name = "H", value_parser = positive, help_heading = "Room")]
     size: Option<f64>,
-    /// How much edge lengths grow per unit of distance from the devices, at most 0.7
-    #[arg(long, value_name = "G", default_value_t = 0.5, value_parser = positive, help_heading = "Room")]
+    #[arg(long, help = effect("growth"), value_name = "G", default_value_t = ImplantWords::default().growth,
+        value_parser = positive, help_heading = "Room")]
     growth: f64,
-    /// Replace tets nearer to a device than this many edges
-    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = positive, help_heading = "Room")]
+    #[arg(long, help = effect("carve"), value_name = "N", default_value_t = ImplantWords::default().carve,
+        value_parser = positive, help_heading = "Room")]
     carve: f64,
-    /// Keep everything farther from all devices than this many edges, to the bit
-    #[arg(long, value_name = "N", default_value_t = 3.0, value_parser = positive, help_heading = "Room")]
+    #[arg(long, help = effect("reach"), value_name = "N", default_value_t = ImplantWords::default().reach,
+        value_parser = positive, help_heading = "Room")]
     reach: f64,
-    /// Repair tets below this EAS within --reach
-    #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = eas, help_heading = "Room")]
+    #[arg(long, help = effect("min_eas"), value_name = "EAS",
+        default_value_t = ImplantWords::default().min_eas, value_parser = eas, help_heading = "Room")]
     min_eas: f64,
 
-    /// Initial value of a host array in the devices, a number for each component [default: what the host had
-    /// there]. Repeatable
-    #[arg(long, value_name = "ARRAY=X[,Y,Z]", value_parser = start, help_heading = "Arrays")]
+    #[arg(long, help = repeatable::<ImplantWords>("values"), value_name = "ARRAY=X[,Y,Z]",
+        value_parser = start, help_heading = "Arrays")]
     value: Vec<(String, Vec<f64>)>,
 
     #[command(flatten)]
@@ -112,32 +107,9 @@ pub(crate) struct ImplantArgs {
     pub(crate) writing: WritingArgs,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Interface {
-    /// Each triangle of the device is a facet of the mesh
-    Match,
-    /// A new surface is made near it, within --tolerance: for devices that touch or cross themselves, have
-    /// open ends or bad triangles
-    Conform,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Outside {
-    /// It is cut off, and the host's wall bounds the device there
-    Cut,
-    /// It is kept, and the host's wall ends at the device
-    Keep,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Adapt {
-    /// Nothing
-    None,
-    /// Walls nearer to a device than half of their edges, which cannot be carved
-    Walls,
-    /// Everything near, by --size and --growth: for fields whose values vary within tets and are to be kept
-    /// in their parts
-    All,
+/// The effect of an option, as the library says it.
+fn effect(word: &str) -> String {
+    help::effect::<ImplantWords>(word)
 }
 
 /// Parses `ARRAY=X[,Y,Z]`.
@@ -147,37 +119,30 @@ fn start(text: &str) -> Result<(String, Vec<f64>), String> {
 }
 
 impl ImplantArgs {
-    /// Options for the library.
-    ///
-    /// # Errors
-    /// When options contradict each other.
-    pub(super) fn options(&self) -> motet::Result<Options> {
-        let interface = match (self.interface, self.tolerance) {
-            (Interface::Match, None) => implant::Interface::Match,
-            (Interface::Conform, tolerance) => implant::Interface::Conform { tolerance },
-            (Interface::Match, Some(_)) => {
-                let what = "--tolerance applies to a new surface, but the triangles are to be kept";
-                return Err(Error::options(what).remedy("add --interface conform"));
-            }
-        };
-        Ok(Options {
-            interface,
-            outside: match self.outside {
-                Outside::Cut => implant::Outside::Cut,
-                Outside::Keep => implant::Outside::Keep,
-            },
+    /// The options of the call, in the library's words.
+    pub(super) fn words(&self) -> ImplantWords {
+        ImplantWords {
+            inside: inside(self.hollow, self.fill),
+            interface: self.interface,
+            tolerance: self.tolerance,
+            outside: self.outside,
             stray: self.stray,
+            adapt: self.adapt,
             size: self.size,
             growth: self.growth,
-            adapt: match self.adapt {
-                Adapt::None => implant::Adapt::No,
-                Adapt::Walls => implant::Adapt::Walls,
-                Adapt::All => implant::Adapt::All,
-            },
             carve: self.carve,
             reach: self.reach,
-            starts: self.value.iter().cloned().collect(),
-            improve: remesh::Options { min_eas: self.min_eas, ..remesh::Options::default() },
-        })
+            min_eas: self.min_eas,
+            values: self.value.iter().cloned().collect(),
+        }
+    }
+}
+
+/// What the call requests for the inside of devices.
+pub(crate) fn inside(hollow: bool, fill: bool) -> Inside {
+    match (hollow, fill) {
+        (true, _) => Inside::Hollow,
+        (_, true) => Inside::Filled,
+        _ => Inside::Own,
     }
 }

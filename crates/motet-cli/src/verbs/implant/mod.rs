@@ -7,12 +7,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use motet::implant::{Device, Inside, implant};
+use motet::implant::{Device, ImplantWords, implant};
 use motet::mesh::history::Changed;
 use motet::mesh::{LabelNames, Qualities, unused_name};
 use motet::{Error, io};
 
-pub(crate) use args::ImplantArgs;
+pub(crate) use args::{ImplantArgs, inside};
 
 use self::report::Report;
 use crate::arrays::Written;
@@ -27,14 +27,15 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     let begin = Instant::now();
     outputs::check_with_history(&args.output, &args.host, args.arrays.history.as_deref())?;
     outputs::check(&args.output, args.devices.iter().map(AsRef::as_ref), "a device")?;
-    let options = args.options()?;
+    let words = args.words();
+    let options = words.options()?;
     let meter = console.meter("implanting", None);
     let threads = common.threads()?.watched(meter.watch());
     meter.stage("reading");
     let (host, notes) = io::read_noted(&args.host)?;
     notes.iter().for_each(|what| console.warn(what));
     let rules = args.arrays.rules(&host).map_err(|e| e.in_file(&args.host))?;
-    let devices = read(args, &host.label_names, console)?;
+    let devices = read(args, &words, &host.label_names, console)?;
     let read = begin.elapsed().as_secs_f64();
     let made = implant(&host, &devices, &options, &rules, &threads);
     let Changed { mut mesh, history, report, .. } =
@@ -52,19 +53,14 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
 }
 
 /// Reads the devices of the call.
-fn read(args: &ImplantArgs, taken: &LabelNames, console: &Console) -> motet::Result<Vec<Device>> {
+fn read(
+    args: &ImplantArgs,
+    words: &ImplantWords,
+    taken: &LabelNames,
+    console: &Console,
+) -> motet::Result<Vec<Device>> {
     let mut names = Names::of(taken);
-    let inside = inside(args.hollow, args.fill);
-    args.devices.iter().map(|file| names.device(file, inside, console)).collect()
-}
-
-/// What the call requests for the inside of devices; `None` leaves the choice to each device.
-pub(crate) fn inside(hollow: bool, fill: bool) -> Option<Inside> {
-    match (hollow, fill) {
-        (true, _) => Some(Inside::Hollow),
-        (_, true) => Some(Inside::Filled),
-        _ => None,
-    }
+    args.devices.iter().map(|file| names.device(file, words, console)).collect()
 }
 
 /// Names of regions and patches that are in use.
@@ -79,16 +75,14 @@ impl Names {
     pub(crate) fn device(
         &mut self,
         file: &Path,
-        inside: Option<Inside>,
+        words: &ImplantWords,
         console: &Console,
     ) -> motet::Result<Device> {
         let (mesh, notes) = io::read_noted(file)?;
         notes.iter().for_each(|what| console.warn(what));
         let name = unused_name(&stem(file).unwrap_or_default(), |name| self.0.contains(name));
-        let mut device = Device::new(mesh, name);
-        self.0.insert(device.name.clone());
-        device.inside = inside.unwrap_or(device.inside);
-        Ok(device)
+        self.0.insert(name.clone());
+        Ok(words.device(mesh, name))
     }
 }
 

@@ -1,13 +1,12 @@
 //! Arguments of `motet refine`, as its help shows them.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::{ArgGroup, Args};
-use motet::refine::{Condition, Criterion, HessianSizes, Limits, Target, Wanted};
+use motet::refine::RefineWords;
 
-use super::parsers::{self, Near, NearSize};
 use crate::arrays::ArrayArgs;
+use crate::help;
 use crate::words::positive;
 use crate::writing::WritingArgs;
 
@@ -56,80 +55,68 @@ pub(crate) struct RefineArgs {
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// Divide everything
-    #[arg(long, help_heading = "What to divide, by place")]
-    pub(crate) all: bool,
-    /// Divide tets within a distance of a surface (a surface file, or a mesh: its boundary). Repeatable
-    #[arg(long, value_name = "SURFACE=DISTANCE", value_parser = parsers::near, help_heading = "What to divide, by place")]
-    pub(crate) near: Vec<Near>,
-    /// Divide until no edge is longer than H at a surface, plus GROWTH [default: 0.5] per unit of distance
-    /// from it. Repeatable
-    #[arg(long, value_name = "SURFACE=H[,GROWTH]", value_parser = parsers::near_size, help_heading = "What to divide, by place")]
-    pub(crate) near_size: Vec<NearSize>,
-    /// Divide tets whose centre is in a box. Repeatable
-    #[arg(long = "box", value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = parsers::in_box, allow_hyphen_values = true, help_heading = "What to divide, by place")]
-    pub(crate) within_box: Vec<Criterion>,
-    /// Divide tets that overlap a ball. Repeatable
-    #[arg(long, value_name = "X,Y,Z,R", value_parser = parsers::ball, allow_hyphen_values = true, help_heading = "What to divide, by place")]
-    pub(crate) ball: Vec<Criterion>,
-    /// Divide tets of a region, by name or number. Repeatable
-    #[arg(long, value_name = "REGION", value_parser = parsers::region, help_heading = "What to divide, by place")]
-    pub(crate) region: Vec<Criterion>,
-    /// Divide tets that touch a patch, or lie within a distance of it. Repeatable
-    #[arg(long, value_name = "PATCH[=DISTANCE]", value_parser = parsers::patch, help_heading = "What to divide, by place")]
-    pub(crate) patch: Vec<Criterion>,
+    #[arg(long, help = effect("all"), help_heading = "What to divide, by place")]
+    all: bool,
+    #[arg(long, help = repeatable("near"), value_name = "SURFACE=DISTANCE", value_parser = text("near"),
+        help_heading = "What to divide, by place")]
+    near: Vec<String>,
+    #[arg(long, help = repeatable("near_size"), value_name = "SURFACE=H[,GROWTH]", value_parser = text("near_size"),
+        help_heading = "What to divide, by place")]
+    near_size: Vec<String>,
+    #[arg(long = "box", help = repeatable("box"), value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = text("box"),
+        allow_hyphen_values = true, help_heading = "What to divide, by place")]
+    within_box: Vec<String>,
+    #[arg(long, help = repeatable("ball"), value_name = "X,Y,Z,R", value_parser = text("ball"),
+        allow_hyphen_values = true, help_heading = "What to divide, by place")]
+    ball: Vec<String>,
+    #[arg(long, help = repeatable("region"), value_name = "REGION", value_parser = text("region"),
+        help_heading = "What to divide, by place")]
+    region: Vec<String>,
+    #[arg(long, help = repeatable("patch"), value_name = "PATCH[=DISTANCE]", value_parser = text("patch"),
+        help_heading = "What to divide, by place")]
+    patch: Vec<String>,
 
-    /// Divide until no edge is longer than this, or than the value of an array on points or cells. Repeatable
-    #[arg(long, value_name = "H|ARRAY", value_parser = parsers::size, help_heading = "What to divide, by arrays")]
-    pub(crate) size: Vec<Criterion>,
-    /// Divide tets where an array satisfies a condition, on cells or at one of their points: > >= < <= == !=.
-    /// Repeatable
-    #[arg(long = "where", value_name = "ARRAY>VALUE", value_parser = parsers::condition, help_heading = "What to divide, by arrays")]
-    pub(crate) conditions: Vec<Condition>,
-    /// Divide tets through which an array changes by more than this: gradient times longest edge. Repeatable
-    #[arg(long, value_name = "ARRAY>VALUE", value_parser = parsers::gradient, help_heading = "What to divide, by arrays")]
-    pub(crate) gradient: Vec<Criterion>,
-    /// Divide the fewest tets that hold this share of the error, such as 0.5, estimated by jumps of the
-    /// gradient (Kelly). Repeatable
-    #[arg(long, value_name = "ARRAY=SHARE|Ntets", value_parser = parsers::jump, help_heading = "What to divide, by arrays")]
-    pub(crate) jump: Vec<Criterion>,
-    /// Divide the fewest tets that hold this share of the error, estimated by a recovered gradient
-    /// (Zienkiewicz and Zhu). Repeatable
-    #[arg(long, value_name = "ARRAY=SHARE|Ntets", value_parser = parsers::recovery, help_heading = "What to divide, by arrays")]
-    pub(crate) recovery: Vec<Criterion>,
-    /// Divide until edges are short enough for the second derivatives of arrays, so that errors are at most
-    /// ERROR, or P percent of the range of each array. Repeatable
-    #[arg(long, value_name = "ARRAY[,ARRAY]=ERROR|P%|Ntets", value_parser = parsers::hessian, help_heading = "What to divide, by arrays")]
-    pub(crate) hessian: Vec<HessianSizes>,
-    /// Divide tets where the vorticity of a velocity is above this. Repeatable
-    #[arg(long, value_name = "ARRAY>VALUE", value_parser = parsers::vorticity, help_heading = "What to divide, by arrays")]
-    pub(crate) vorticity: Vec<Criterion>,
-    /// Divide tets where Q of a velocity is above this: it rotates more than it shears. Repeatable
-    #[arg(long, value_name = "ARRAY>VALUE", value_parser = parsers::q, help_heading = "What to divide, by arrays")]
-    pub(crate) q: Vec<Criterion>,
+    #[arg(long, help = repeatable("size"), value_name = "H|ARRAY", value_parser = text("size"),
+        help_heading = "What to divide, by arrays")]
+    size: Vec<String>,
+    #[arg(long = "where", help = repeatable("where"), value_name = "ARRAY>VALUE", value_parser = text("where"),
+        help_heading = "What to divide, by arrays")]
+    conditions: Vec<String>,
+    #[arg(long, help = repeatable("gradient"), value_name = "ARRAY>VALUE", value_parser = text("gradient"),
+        help_heading = "What to divide, by arrays")]
+    gradient: Vec<String>,
+    #[arg(long, help = repeatable("jump"), value_name = "ARRAY=SHARE|Ntets", value_parser = text("jump"),
+        help_heading = "What to divide, by arrays")]
+    jump: Vec<String>,
+    #[arg(long, help = repeatable("recovery"), value_name = "ARRAY=SHARE|Ntets", value_parser = text("recovery"),
+        help_heading = "What to divide, by arrays")]
+    recovery: Vec<String>,
+    #[arg(long, help = repeatable("hessian"), value_name = "ARRAY[,ARRAY]=ERROR|P%|Ntets", value_parser = text("hessian"),
+        help_heading = "What to divide, by arrays")]
+    hessian: Vec<String>,
+    #[arg(long, help = repeatable("vorticity"), value_name = "ARRAY>VALUE", value_parser = text("vorticity"),
+        help_heading = "What to divide, by arrays")]
+    vorticity: Vec<String>,
+    #[arg(long, help = repeatable("q"), value_name = "ARRAY>VALUE", value_parser = text("q"),
+        help_heading = "What to divide, by arrays")]
+    q: Vec<String>,
 
-    /// Divide at most this many times [default: once; for sizes as often as it takes]; where --coarsen stands
-    /// alone, take back this many divisions
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20), help_heading = "How far")]
+    #[arg(long, help = effect("generations"), value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..=20), help_heading = "How far")]
     generations: Option<u32>,
-    /// Divide no tet more often than this since the first mesh, earlier calls included
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=20), help_heading = "How far")]
+    #[arg(long, help = effect("limit_generation"), value_name = "N",
+        value_parser = clap::value_parser!(u8).range(0..=20), help_heading = "How far")]
     limit_generation: Option<u8>,
-    /// Divide no tet whose parts would have no edge as long as this
-    #[arg(long, value_name = "H", value_parser = positive, help_heading = "How far")]
+    #[arg(long, help = effect("smallest"), value_name = "H", value_parser = positive, help_heading = "How far")]
     smallest: Option<f64>,
-    /// Divide only until there are about N tets; the tets with the largest wishes, and the largest tets,
-    /// first
-    #[arg(long, value_name = "N", help_heading = "How far")]
+    #[arg(long, help = effect("at_most"), value_name = "N", help_heading = "How far")]
     at_most: Option<usize>,
 
-    /// Take back divisions where no criterion marks
-    #[arg(long, help_heading = "Back")]
+    #[arg(long, help = effect("coarsen"), help_heading = "Back")]
     coarsen: bool,
-    /// Take back divisions where an array satisfies a condition on all eight parts, and no criterion marks.
-    /// Repeatable
-    #[arg(long, value_name = "ARRAY>VALUE", value_parser = parsers::condition, help_heading = "Back")]
-    coarsen_where: Vec<Condition>,
+    #[arg(long, help = repeatable("coarsen_where"), value_name = "ARRAY>VALUE", value_parser = text("coarsen_where"),
+        help_heading = "Back")]
+    coarsen_where: Vec<String>,
     /// Start over: take the mesh as it is now for the first one, whatever the file remembers
     #[arg(long, conflicts_with_all = ["coarsen", "coarsen_where"], help_heading = "Back")]
     pub(crate) forget: bool,
@@ -145,25 +132,45 @@ pub(crate) struct RefineArgs {
 }
 
 impl RefineArgs {
-    /// The refinement that the call requests.
-    pub(super) fn wanted(&self, criteria: Vec<Criterion>, surface: Option<Arc<Target>>) -> Wanted {
-        Wanted {
-            criteria,
+    /// What is to be divided and taken back, in the library's words.
+    pub(super) fn words(&self) -> RefineWords {
+        RefineWords {
+            all: self.all,
+            near: self.near.clone(),
+            near_size: self.near_size.clone(),
+            in_box: self.within_box.clone(),
+            ball: self.ball.clone(),
+            region: self.region.clone(),
+            patch: self.patch.clone(),
+            size: self.size.clone(),
+            conditions: self.conditions.clone(),
+            gradient: self.gradient.clone(),
+            jump: self.jump.clone(),
+            recovery: self.recovery.clone(),
+            hessian: self.hessian.clone(),
+            vorticity: self.vorticity.clone(),
+            q: self.q.clone(),
+            generations: self.generations,
+            limit_generation: self.limit_generation,
+            smallest: self.smallest,
+            at_most: self.at_most,
             coarsen: self.coarsen,
             coarsen_where: self.coarsen_where.clone(),
-            generations: self.generations,
-            limits: Limits {
-                generation: self.limit_generation,
-                smallest: self.smallest,
-                n_tets: self.at_most,
-            },
-            surface,
-            keeps_history: self.arrays.history.is_some(),
         }
     }
+}
 
-    /// The value of `--smallest`, by default 0.
-    pub(super) fn smallest(&self) -> f64 {
-        self.smallest.unwrap_or(0.0)
-    }
+/// The effect of an option, as the library says it.
+fn effect(word: &str) -> String {
+    help::effect::<RefineWords>(word)
+}
+
+/// The effect of an option that may be given several times.
+fn repeatable(word: &str) -> String {
+    help::repeatable::<RefineWords>(word)
+}
+
+/// Checks a text of a word, so that an error names its option.
+fn text(word: &'static str) -> impl Fn(&str) -> Result<String, motet::Error> + Clone {
+    move |text| RefineWords::check(word, text).map(|()| text.to_owned())
 }

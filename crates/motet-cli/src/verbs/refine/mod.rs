@@ -1,17 +1,17 @@
 //! `motet refine`: divides tets where it matters, and takes divisions back where it does not.
 
 mod args;
-mod criteria;
-pub(crate) mod parsers;
 mod report;
 
+use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
-use motet::refine::{MeshRefinement, Options, fix_sizes};
+use motet::base::Threads;
+use motet::refine::{MeshRefinement, Options, Target, Wanted, fix_sizes};
 use motet::{Error, io};
 
 pub(crate) use args::RefineArgs;
-pub(crate) use criteria::target;
 
 use self::report::Report;
 use crate::arrays::Written;
@@ -27,17 +27,15 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     let meter = console.meter("refining", None);
     let threads = common.threads()?.watched(meter.watch());
     meter.stage("reading");
-    let mut criteria = criteria::criteria(args, &threads)?;
-    let surface = args.surface.as_deref().map(|file| criteria::target(file, &threads)).transpose()?;
+    let mut wanted = wanted(args, &threads)?;
     let (old, notes) = io::read_noted(&args.mesh)?;
     let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
     let mut given = if args.forget { MeshRefinement::forget(&old) } else { old };
-    let sizes = fix_sizes(&mut criteria, &mut given, &threads).map_err(|e| e.in_file(&args.mesh))?;
+    let sizes = fix_sizes(&mut wanted.criteria, &mut given, &threads).map_err(|e| e.in_file(&args.mesh))?;
     let mut refinement =
         MeshRefinement::new(&given, Options::default(), &threads).map_err(|e| hint(e).in_file(&args.mesh))?;
     let read = begin.elapsed().as_secs_f64();
 
-    let wanted = args.wanted(criteria, surface);
     let done = refinement.reach(&wanted, &rules, &threads, |_| ());
     let done = done.map_err(|e| e.in_file(&args.mesh))?;
     meter.stage("writing");
@@ -53,6 +51,23 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     Report::new(args, &refinement, done, [read, write, begin.elapsed().as_secs_f64()], &threads)
         .print(&outcome, console);
     Ok(outcome)
+}
+
+/// The goal of a call, with the surfaces that it names.
+fn wanted(args: &RefineArgs, threads: &Threads) -> motet::Result<Wanted> {
+    let words = args.words();
+    let criteria = words.criteria(|file| target(file, threads))?;
+    let surface = args.surface.as_deref().map(|file| target(file, threads)).transpose()?;
+    Ok(Wanted { surface, keeps_history: args.arrays.history.is_some(), ..words.wanted(criteria)? })
+}
+
+/// Reads a surface from which distances are measured.
+///
+/// # Errors
+/// When it cannot be read, or is not a surface.
+pub(crate) fn target(surface: &Path, threads: &Threads) -> motet::Result<Arc<Target>> {
+    let mesh = io::read(surface)?;
+    Target::of_mesh(&mesh, threads).map(Arc::new).map_err(|e| e.in_file(surface))
 }
 
 /// Replaces the remedy of an error about the memory by the option of the command line.

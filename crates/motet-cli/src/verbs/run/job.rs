@@ -5,13 +5,16 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
 use motet::base::{Point, Word, Words, read_both};
+use motet::contact::GapWords;
+use motet::implant::{ImplantWords, InterfaceName};
 use motet::mesh::history::Carry;
 use motet::motion::Motion;
-use motet::moving::{ContactWords, RepairWords};
+use motet::moving::{RepairWords, WatchWords};
+use motet::refine::RefineWords;
 use motet::{Error, Result, io, words};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::verbs::refine::parsers;
+use crate::verbs::implant::inside;
 
 /// A job file.
 #[derive(Debug)]
@@ -49,9 +52,9 @@ words! {
         /// The table `[repair]`.
         repair: RepairWords = RepairWords::default(),
         /// What is refined, and when: tables `[[refine]]`.
-        refine: Vec<Refine> = Vec::new(),
+        refine: Vec<RefineTable> = Vec::new(),
         /// The table `[contact]`.
-        contact: Option<ContactWords> = None,
+        contact: Option<ContactTable> = None,
         /// How arrays are carried where the mesh changes, by name: `mean`, `linear`, `inherit` or `drop`.
         carry: BTreeMap<String, Carry> = BTreeMap::new(),
     }
@@ -81,6 +84,15 @@ words! {
         /// The largest distance of a new surface from the device's, in the unit of the mesh. By default the
         /// triangles of the device are kept.
         conform: Option<f64> = None,
+    }
+}
+
+impl Device {
+    /// How this device is put into the mesh, in the words of `motet implant`.
+    pub(super) fn implant_words(&self) -> ImplantWords {
+        let interface = self.conform.map_or(InterfaceName::Match, |_| InterfaceName::Conform);
+        let inside = inside(self.hollow, self.fill);
+        ImplantWords { inside, interface, tolerance: self.conform, ..ImplantWords::default() }
     }
 }
 
@@ -180,39 +192,43 @@ impl Default for Course {
     }
 }
 
+/// An entry of `refine`: what is divided, and when.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct RefineTable {
+    #[serde(flatten)]
+    pub(super) words: RefineWords,
+    #[serde(flatten)]
+    pub(super) timing: RefineTiming,
+}
+
+impl<'de> Deserialize<'de> for RefineTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        read_both(deserializer).map(|(words, timing)| Self { words, timing })
+    }
+}
+
 words! {
-    /// An entry of `refine`; each criterion has the syntax of the command line of `motet refine`.
-    pub(super) struct Refine {
-        /// Near surfaces: `FILE=DISTANCE`.
-        near: Vec<String> = Vec::new(),
-        /// Edges near surfaces are at most so long, growing with the distance: `FILE=SIZE,GROWTH`.
-        near_size: Vec<String> = Vec::new(),
-        /// Where an array meets a condition, such as `shear > 2`.
-        conditions as "where": Vec<String> = Vec::new(),
-        /// In balls: `x,y,z,radius`.
-        ball: Vec<String> = Vec::new(),
-        /// In boxes: `x,y,z,x,y,z`.
-        in_box as "box": Vec<String> = Vec::new(),
-        /// At patches: `PATCH` or `PATCH=DISTANCE`.
-        patch: Vec<String> = Vec::new(),
-        /// In regions.
-        region: Vec<String> = Vec::new(),
-        /// Where the gradient of an array is large: `ARRAY>VALUE`.
-        gradient: Vec<String> = Vec::new(),
-        /// Where the curl of an array is large: `ARRAY>VALUE`.
-        vorticity: Vec<String> = Vec::new(),
+    /// When a moving mesh is refined, and by what only a moving mesh has.
+    pub(super) struct RefineTiming {
         /// Edges of watched patches are divided until they are no longer than the gap between them.
         gaps: bool = false,
-        /// No edge is divided to less than this length, in the unit of the mesh.
-        smallest: Option<f64> = None,
-        /// Divisions per call. By default as many as the criteria request.
-        generations: Option<u32> = None,
-        /// The largest number of generations.
-        limit_generation: Option<u8> = None,
         /// Steps from one refinement to the next. By default once, before the first step.
         every: Option<usize> = None,
-        /// What meets no criterion any more is merged again.
-        coarsen: bool = false,
+    }
+}
+
+/// The table `[contact]`: which patches are watched, and how their gaps are measured.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct ContactTable {
+    #[serde(flatten)]
+    pub(super) watch: WatchWords,
+    #[serde(flatten)]
+    pub(super) gaps: GapWords,
+}
+
+impl<'de> Deserialize<'de> for ContactTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        read_both(deserializer).map(|(watch, gaps)| Self { watch, gaps })
     }
 }
 
@@ -220,14 +236,16 @@ impl Job {
     /// All keys of a job with their defaults and effects, as tables in Markdown.
     pub(super) fn keys() -> String {
         let of_motion = [Motion::words(), Walls::words()].concat();
+        let of_refine = [RefineWords::words(), RefineTiming::words()].concat();
+        let of_contact = [WatchWords::words(), GapWords::words()].concat();
         let tables = [
             ("A job", Content::words()),
             ("`[time]`", Time::words()),
             ("`[[device]]`", Device::words()),
             ("`[motion]`", of_motion),
             ("`[repair]`", RepairWords::words()),
-            ("`[[refine]]`", Refine::words()),
-            ("`[contact]`", ContactWords::words()),
+            ("`[[refine]]`", of_refine),
+            ("`[contact]`", of_contact),
         ];
         let table = |(title, words): &(&str, Vec<Word>)| {
             let rows = words.iter().map(|word| {
@@ -273,11 +291,7 @@ impl Job {
             self.motion.walls.surfaces.iter().map(|series| ("motion.surfaces".to_owned(), series.clone())),
         );
         for (i, refine) in self.refine.iter().enumerate() {
-            let near =
-                refine.near.iter().filter_map(|text| parsers::near(text).ok().map(|near| near.surface));
-            let sized = refine.near_size.iter();
-            let sized = sized.filter_map(|text| parsers::near_size(text).ok().map(|near| near.surface));
-            let named = near.chain(sized).enumerate();
+            let named = refine.words.surfaces().into_iter().flatten().enumerate();
             files.extend(named.map(|(k, file)| (format!("refine.{i}, surface {k}"), file)));
         }
         files
@@ -332,7 +346,7 @@ impl Job {
         if !motet::io::can_write_series(&self.output) {
             return invalid("output is not a series", "name a file that ends in .pvd");
         }
-        if self.contact.is_none() && self.refine.iter().any(|refine| refine.gaps) {
+        if self.contact.is_none() && self.refine.iter().any(|refine| refine.timing.gaps) {
             return invalid(
                 "refine.gaps follows the gaps between watched patches, and none is watched",
                 "add [contact]",

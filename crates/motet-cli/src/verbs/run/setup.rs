@@ -4,19 +4,19 @@ use std::path::PathBuf;
 
 use motet::base::Threads;
 use motet::geometry::vector::norm;
-use motet::implant::{self, implant};
+use motet::implant::implant;
 use motet::mesh::history::Rules;
 use motet::mesh::mean_edge_lengths;
 use motet::motion::{MethodName, Motion, Strain};
 use motet::moving::{GAP, Options, Script};
-use motet::refine::{Criterion, Limits, Size, Wanted};
+use motet::refine::{Criterion, Size, Wanted};
 use motet::{Error, Mesh, Result, io};
 
 use super::course;
-use super::job::{self, Job, Refine};
+use super::job::{self, Job, RefineTable};
 use crate::console::Console;
-use crate::verbs::implant::{Names, inside, with_file};
-use crate::verbs::refine::{parsers, target};
+use crate::verbs::implant::{Names, with_file};
+use crate::verbs::refine::target;
 
 /// Everything that a run starts with.
 pub(super) struct Setup {
@@ -76,17 +76,13 @@ fn with_devices(job: &Job, threads: &Threads, console: &Console) -> Result<Mesh>
     let matching: Vec<&job::Device> = job.device.iter().filter(|device| device.conform.is_none()).collect();
     let conforming = job.device.iter().filter(|device| device.conform.is_some()).map(|device| vec![device]);
     for group in [matching].into_iter().chain(conforming).filter(|group| !group.is_empty()) {
-        let interface = match group[0].conform {
-            Some(tolerance) => implant::Interface::Conform { tolerance: Some(tolerance) },
-            None => implant::Interface::Match,
-        };
         let mut names = Names::of(&mesh.label_names);
-        let device = |spec: &&job::Device| {
-            names.device(&job.path(&spec.file), inside(spec.hollow, spec.fill), console)
-        };
+        let device =
+            |spec: &&job::Device| names.device(&job.path(&spec.file), &spec.implant_words(), console);
         let devices = group.iter().map(device).collect::<Result<Vec<_>>>()?;
         let files: Vec<PathBuf> = group.iter().map(|spec| job.path(&spec.file)).collect();
-        let options = implant::Options { interface, ..implant::Options::default() };
+        let options =
+            group[0].implant_words().options().map_err(|e| e.at("[[device]]").in_file(&job.file))?;
         let made = implant(&mesh, &devices, &options, &Rules::default(), threads);
         mesh = made.map_err(|e| with_file(e, &job.path(&job.mesh), &files, &devices))?.mesh;
     }
@@ -110,7 +106,7 @@ fn options(job: &Job, mesh: &Mesh, motion: Motion, returns: bool) -> Result<Opti
             .remedy(format!("the mesh has: {}", known.join(", "))));
     }
     let watch = match &job.contact {
-        Some(contact) => contact.watching(mesh).map_err(|e| e.at("[contact]"))?,
+        Some(contact) => contact.watch.watching(&contact.gaps, mesh).map_err(|e| e.at("[contact]"))?,
         None => None,
     };
     Ok(Options {
@@ -127,60 +123,28 @@ fn options(job: &Job, mesh: &Mesh, motion: Motion, returns: bool) -> Result<Opti
 
 /// The refinement that an entry of `refine` requests, and after every how many steps: by default once, before
 /// the first.
-fn wanted(job: &Job, spec: &Refine, threads: &Threads) -> Result<(usize, Wanted)> {
-    let mut criteria = Vec::new();
-    let invalid = |what: &str| Error::input(format!("refine: {what}"));
-    for text in &spec.near {
-        let near = parsers::near(text).map_err(|e| invalid(&e))?;
-        criteria.push(Criterion::Near {
-            target: target(&job.path(&near.surface), threads)?,
-            within: near.within,
-        });
-    }
-    for text in &spec.near_size {
-        let near = parsers::near_size(text).map_err(|e| invalid(&e))?;
-        let target = target(&job.path(&near.surface), threads)?;
-        criteria.push(Criterion::NearSize { target, size: near.size, growth: near.growth });
-    }
-    type Parse = fn(&str) -> std::result::Result<Criterion, String>;
-    let lists: [(&[String], Parse); 6] = [
-        (&spec.ball, parsers::ball),
-        (&spec.in_box, parsers::in_box),
-        (&spec.patch, parsers::patch),
-        (&spec.region, parsers::region),
-        (&spec.gradient, parsers::gradient),
-        (&spec.vorticity, parsers::vorticity),
-    ];
-    for (texts, parse) in lists {
-        for text in texts {
-            criteria.push(parse(text).map_err(|e| invalid(&e))?);
-        }
-    }
-    for text in &spec.conditions {
-        criteria.push(Criterion::Where(parsers::condition(text).map_err(|e| invalid(&e))?));
-    }
-    if spec.gaps {
-        criteria.push(Criterion::Size(Size::Array(GAP.into())));
-        if spec.smallest.is_none() {
-            return Err(invalid("gaps can become arbitrarily narrow")
-                .remedy("add smallest, the edge length at which division stops"));
-        }
-    }
-    if criteria.is_empty() && !spec.coarsen {
-        return Err(invalid("the entry has no criterion")
-            .remedy("say where: near, near_size, where, ball, box, patch, ..."));
-    }
-    let limits = Limits { generation: spec.limit_generation, smallest: spec.smallest, ..Limits::default() };
-    let wanted = Wanted {
-        criteria,
-        coarsen: spec.coarsen,
-        generations: spec.generations,
-        limits,
-        ..Wanted::default()
+fn wanted(job: &Job, spec: &RefineTable, threads: &Threads) -> Result<(usize, Wanted)> {
+    let place = |e: Error| {
+        let word = e.place().map_or_else(String::new, |word| format!(" {word}"));
+        e.at(format!("[[refine]]{word}"))
     };
-    match spec.every {
-        Some(0) => Err(invalid("every is 0")
-            .remedy("give a number of steps, or omit it to refine once, before the first step")),
+    let invalid = |what: &str, remedy: &str| Err(place(Error::input(what).remedy(remedy)));
+    let read = |file: &std::path::Path| target(&job.path(file), threads);
+    let mut criteria = spec.words.criteria(read).map_err(place)?;
+    if spec.timing.gaps {
+        criteria.push(Criterion::Size(Size::Array(GAP.into())));
+        if spec.words.smallest.is_none() {
+            return invalid(
+                "gaps can become arbitrarily narrow",
+                "add smallest, the edge length at which division stops",
+            );
+        }
+    }
+    let wanted = spec.words.wanted(criteria).map_err(place)?;
+    match spec.timing.every {
+        Some(0) => {
+            invalid("every is 0", "give a number of steps, or omit it to refine once, before the first step")
+        }
         every => Ok((every.unwrap_or(usize::MAX), wanted)),
     }
 }

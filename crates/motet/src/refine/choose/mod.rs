@@ -17,6 +17,7 @@ pub mod mark;
 pub mod sizes;
 pub mod wish;
 
+pub(super) use criterion::Stated;
 pub use criterion::{
     Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Relation, Size, Target, fix_sizes,
     marks_of_all, wishes_of_all,

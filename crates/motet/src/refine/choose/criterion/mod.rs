@@ -9,6 +9,7 @@ mod by_place;
 mod condition;
 mod fixed;
 mod target;
+mod text;
 
 use std::sync::Arc;
 
@@ -22,6 +23,7 @@ use crate::mesh::{Mesh, TetPart};
 pub use condition::{Condition, Relation};
 pub use fixed::fix_sizes;
 pub use target::Target;
+pub(in crate::refine) use text::Stated;
 
 /// What to refine. Lengths are in the units of the mesh, values in those of its arrays; an array is named as
 /// in [`Condition::array`].
