@@ -22,8 +22,8 @@
 //!
 //! A module imports only from lower floors; `tests/layers.rs` enforces this.
 //!
-//! [`algebra`], [`kernel`] and [`ops`] are internal: public for tests, benchmarks and extensions, and may change
-//! with any version. The others follow semantic versioning.
+//! [`algebra`], [`kernel`] and [`ops`] are internal: public for tests, benchmarks and extensions, and may
+//! change with any version. The others follow semantic versioning.
 //!
 //! | feature | adds | crates |
 //! |---|---|---|

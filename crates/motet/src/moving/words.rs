@@ -61,7 +61,7 @@ impl RepairWords {
 }
 
 words! {
-    /// Which patches are watched, and what for; how their gaps are measured is said by [`GapWords`].
+    /// Which patches are watched, and what for; [`GapWords`] determine how their gaps are measured.
     pub struct WatchWords {
         /// Patches, by name or number; each is a surface, and all pairs are measured.
         patches: Vec<String> = Vec::new(),

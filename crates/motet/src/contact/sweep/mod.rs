@@ -1,8 +1,8 @@
 //! When moving surfaces will first touch: times before which they certainly do not.
 //!
 //! Every vertex moves in a straight line, `x(t) = x + t v`. Pairs of triangles come from a tree of moving
-//! boxes (`tree`), and each pair is followed to its time of contact by conservative advancement (`contact_time`).
-//! Times are rounded down, so that "no contact before" holds despite rounding.
+//! boxes (`tree`), and each pair is followed to its time of contact by conservative advancement
+//! (`contact_time`). Times are rounded down, so that "no contact before" holds despite rounding.
 
 mod contact_time;
 mod queue;

@@ -1,8 +1,8 @@
 //! The methods of motion, side by side: how the vertices that nothing else moves follow the nodes.
 //!
 //! A method [prepares](Prepare) a [`Follower`] for a [`Scene`] with its vertices at some position; the
-//! follower moves the vertices from there. A new method is a folder or file here with the two traits, its line
-//! in [`of`], a variant of [`Method`] and its name in `motion/words.rs`.
+//! follower moves the vertices from there. A new method is a folder or file here with the two traits, its
+//! line in [`of`], a variant of [`Method`] and its name in `motion/words.rs`.
 
 mod bodies;
 mod delaunay;

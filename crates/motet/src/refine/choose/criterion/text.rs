@@ -21,8 +21,11 @@ pub(in crate::refine) enum Stated {
     NearSize { surface: PathBuf, size: f64, growth: f64 },
 }
 
+/// Reads a criterion from a text.
+type Reader = fn(&str) -> Result<Criterion>;
+
 /// The words of criteria that need no file, each with what reads its texts.
-const READERS: [(&str, fn(&str) -> Result<Criterion>); 12] = [
+const READERS: [(&str, Reader); 12] = [
     ("box", in_box),
     ("ball", ball),
     ("region", region),
