@@ -41,8 +41,8 @@ words! {
         /// The fewest tets are divided that hold this share of the error, such as 0.5, estimated by jumps of
         /// the gradient (Kelly); or so many that there are N tets: `ARRAY=SHARE` or `ARRAY=Ntets`.
         jump: Vec<String> = Vec::new(),
-        /// The same with the error estimated by a recovered gradient (Zienkiewicz and Zhu): `ARRAY=SHARE` or
-        /// `ARRAY=Ntets`.
+        /// The fewest tets are divided that hold this share of the error, estimated by a recovered gradient
+        /// (Zienkiewicz and Zhu); or so many that there are N tets: `ARRAY=SHARE` or `ARRAY=Ntets`.
         recovery: Vec<String> = Vec::new(),
         /// Tets are divided until edges are short enough for the second derivatives of arrays, so that errors
         /// are at most ERROR, or P percent of the range of each array; or until there are N tets:
