@@ -119,8 +119,8 @@ pub(crate) fn transfer_rule(number: i32, on: On) -> Result<Rule> {
     })
 }
 
-/// What a repair may do to walls, and how far they may stray by it; of walls that are kept the distance means
-/// nothing.
+/// What a repair may do to walls, and how far they may stray; where walls are kept, the distance has no
+/// effect.
 pub(crate) fn surface_rule(number: i32, distance: f64) -> Result<(SurfaceName, Option<f64>)> {
     let rule = *meaning(SURFACE_RULES, number, "surface rule")?;
     Ok((rule, optional(distance).filter(|_| rule != SurfaceName::Keep)))

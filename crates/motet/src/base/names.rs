@@ -8,7 +8,7 @@ use crate::base::{Error, Result, nearest};
 
 /// Values that have names in files and on the command line, made by the macro `names!`.
 pub trait Names: Copy + 'static {
-    /// What has a name, such as `method`.
+    /// What the names denote, such as `method`.
     const WHAT: &'static str;
     /// All values, the default first.
     const ALL: &'static [Self];
@@ -29,7 +29,7 @@ pub trait Names: Copy + 'static {
     }
 }
 
-/// The one of `known` that has this name; `what` says what is named, such as `method`.
+/// The one of `known` that has this name; `what` is what the names denote, such as `method`.
 ///
 /// # Errors
 /// When none has it; the error names the nearest, and all others.
@@ -72,8 +72,8 @@ pub fn read_text<'de, T, D: Deserializer<'de>>(
     of(&text).map_err(D::Error::custom)
 }
 
-/// Defines values with names, the default first; each has its effect as a doc comment, and its name. Behind
-/// the name of the type stands what has these names.
+/// Defines values with names, the default first; each has its effect as a doc comment, and its name. The text
+/// after the type says what the names denote.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! names {

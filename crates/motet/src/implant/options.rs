@@ -45,8 +45,8 @@ names! {
         Walls = "walls",
         /// Nothing.
         No = "none",
-        /// Everything nearby, by `size` and `growth`: fields then keep their values, in tets that are parts
-        /// of those that they lay on.
+        /// Everything nearby, by `size` and `growth`: fields then keep their values, since each new tet is
+        /// a part of an old one.
         All = "all",
     }
 }

@@ -75,7 +75,7 @@ impl RefineWords {
     /// Checks a text of a word.
     ///
     /// # Errors
-    /// When the word takes no texts, or the text has not its syntax; the error says what is expected.
+    /// When the word takes no texts, or the text does not have its syntax; the error says what is expected.
     pub fn check(word: &str, text: &str) -> Result<()> {
         match word {
             "coarsen_where" => Criterion::of_text("where", text).map(|_| ()),
@@ -86,7 +86,7 @@ impl RefineWords {
     /// The files of the surfaces that criteria measure from.
     ///
     /// # Errors
-    /// When a text has not the syntax of its word.
+    /// When a text does not have the syntax of its word.
     pub fn surfaces(&self) -> Result<Vec<PathBuf>> {
         Ok(self.stated()?.iter().filter_map(|stated| stated.surface().map(Path::to_owned)).collect())
     }
@@ -94,7 +94,7 @@ impl RefineWords {
     /// All criteria; `read` reads the surface of a file.
     ///
     /// # Errors
-    /// When a text has not the syntax of its word, and the errors of `read`.
+    /// When a text does not have the syntax of its word, and the errors of `read`.
     pub fn criteria(&self, read: impl Fn(&Path) -> Result<Arc<Target>>) -> Result<Vec<Criterion>> {
         let all = self.all.then_some(Criterion::All).into_iter().map(Ok);
         all.chain(self.stated()?.into_iter().map(|stated| stated.criterion(&read))).collect()

@@ -69,7 +69,7 @@ impl Repair {
                 });
             }
         }
-        // A vertex all of whose tets would go stays.
+        // A vertex stays if its collapse would remove all of its tets.
         if trial.best().is_some_and(|best| best.fill.is_empty()) {
             trial.give_up();
         }

@@ -137,7 +137,7 @@ enum LengthRule<'a> {
 /// Where the walls and lines that a change makes may lie.
 enum WallRule<'a> {
     /// Wherever the kernel allows it: walls stay.
-    Unasked,
+    Any,
     /// Near those of the first mesh.
     Near(&'a Surface),
     /// Where walls and lines are now: they are only divided.
@@ -147,7 +147,7 @@ enum WallRule<'a> {
 impl<'a> Rules<'a> {
     /// The rules of the kernel, which checks each proposal that is better than those before.
     pub(super) fn of(complex: &'a Complex) -> Self {
-        Self { complex, lengths: LengthRule::Any, walls: WallRule::Unasked, check: Check::Each }
+        Self { complex, lengths: LengthRule::Any, walls: WallRule::Any, check: Check::Each }
     }
 
     /// The rules of the kernel, which checks only the best change, when that is committed: one check instead
@@ -158,12 +158,12 @@ impl<'a> Rules<'a> {
 
     /// If there is a surface, the walls stay near it.
     pub(super) fn near(self, surface: Option<&'a Surface>) -> Self {
-        Self { walls: surface.map_or(WallRule::Unasked, WallRule::Near), ..self }
+        Self { walls: surface.map_or(WallRule::Any, WallRule::Near), ..self }
     }
 
     /// If there is a surface, the walls are divided where they lie now.
     pub(super) fn in_place(self, surface: Option<&'a Surface>) -> Self {
-        Self { walls: surface.map_or(WallRule::Unasked, WallRule::InPlace), ..self }
+        Self { walls: surface.map_or(WallRule::Any, WallRule::InPlace), ..self }
     }
 
     /// If there are sizes, no edge becomes too long or too short.
@@ -190,7 +190,7 @@ impl LengthRule<'_> {
 impl WallRule<'_> {
     fn accept(&self, complex: &Complex, change: &Change) -> bool {
         match self {
-            Self::Unasked => true,
+            Self::Any => true,
             Self::Near(surface) => surface.accepts(complex, change),
             Self::InPlace(surface) => surface.accepts_in_place(change),
         }

@@ -44,7 +44,7 @@ impl Stated {
     /// What a text states for a word.
     ///
     /// # Errors
-    /// When there is no such word, or the text has not its syntax.
+    /// When there is no such word, or the text does not have its syntax.
     pub(in crate::refine) fn of(word: &str, text: &str) -> Result<Self> {
         match word {
             "near" => near(text),
@@ -80,14 +80,14 @@ impl Stated {
 }
 
 impl Criterion {
-    /// How much edge lengths grow per unit of distance from a surface, where nothing is said of it.
+    /// How much edge lengths grow per unit of distance from a surface, by default.
     pub const GROWTH: f64 = 0.5;
 
     /// The criterion that a text states for a word, such as `0,0,0,1` for `ball`. The words are those of
     /// [`RefineWords`](crate::refine::RefineWords), without those that name the file of a surface.
     ///
     /// # Errors
-    /// When there is no such word, or the text has not its syntax; the error says what is expected.
+    /// When there is no such word, or the text does not have its syntax; the error says what is expected.
     pub fn of_text(word: &str, text: &str) -> Result<Self> {
         let Some((_, read)) = READERS.iter().find(|(known, _)| *known == word) else {
             return Err(Error::options(format!("there is no criterion `{word}` that a text alone states"))
