@@ -127,6 +127,7 @@ fn parts_of(sites: &Sites, polygon: &[VertexId], triangle: [VertexId; 3]) -> Vec
 struct Work {
     cut: Cut,
     wrap: GiftWrap,
+    pierced: PiercedFacet,
     /// All parts so far, vertices in ascending order.
     walls: HashSet<[VertexId; 3]>,
     star: Vec<TetId>,
@@ -148,10 +149,10 @@ impl Work {
         own: &mut Vec<[VertexId; 3]>,
     ) -> Result<(), Stuck> {
         let first = triangles[0].1;
-        let mut pierce = PiercedFacet::new(triangles, own);
+        self.pierced.begin(triangles, own);
         let kept = Walls { segments, walls: &self.walls };
-        if pierce.swap_all(tets, sites, &kept)
-            && let Some(facets) = pierce.facets(tets, sites)
+        if self.pierced.swap_all(tets, sites, &kept)
+            && let Some(facets) = self.pierced.facets(tets, sites)
         {
             *own = facets;
             return Ok(());
@@ -160,7 +161,7 @@ impl Work {
         let missing = self.missing(tets, own);
         if self.recover(tets, sites, (first, own), missing).is_err() {
             let kept = Walls { segments, walls: &self.walls };
-            *own = pierce.run(tets, sites, &kept).ok_or(Stuck)?;
+            *own = self.pierced.run(tets, sites, &kept).ok_or(Stuck)?;
         }
         Ok(())
     }

@@ -21,7 +21,8 @@ const MAX_POINTS: usize = 4000;
 /// The number of times that a point is moved to the middle of its permitted range, in each of two directions.
 const STEPS: usize = 3;
 
-/// A flat facet that is missing.
+/// A flat facet that is missing, and buffers reused from one such facet to the next.
+#[derive(Default)]
 pub(super) struct PiercedFacet {
     /// The triangles given, with their numbers.
     triangles: Vec<(u32, [VertexId; 3])>,
@@ -83,33 +84,24 @@ fn pierces(sites: &Sites, [u, v]: [VertexId; 2], [a, b, c]: [VertexId; 3]) -> bo
 }
 
 impl PiercedFacet {
-    /// A missing flat facet given as `triangles`, at least one, that is to consist of `parts`, oriented like
-    /// the first triangle.
-    pub(super) fn new(triangles: Vec<(u32, [VertexId; 3])>, parts: &[[VertexId; 3]]) -> Self {
+    /// Switches to another missing flat facet, given as `triangles`, at least one, that is to consist of
+    /// `parts`, oriented like the first triangle.
+    pub(super) fn begin(&mut self, triangles: Vec<(u32, [VertexId; 3])>, parts: &[[VertexId; 3]]) {
         let around = |&[a, b, c]: &[VertexId; 3]| [([a, b], c), ([b, c], a), ([c, a], b)];
         let edges: HashSet<[VertexId; 2]> = parts.iter().flat_map(around).map(|(edge, _)| edge).collect();
         let is_outer = |(edge, _): &([VertexId; 2], VertexId)| !edges.contains(&[edge[1], edge[0]]);
-        let rim: Vec<_> = parts.iter().flat_map(around).filter(is_outer).collect();
-        let on_rim: HashSet<VertexId> = rim.iter().flat_map(|(edge, _)| *edge).collect();
-        let mut points: Vec<VertexId> =
-            parts.as_flattened().iter().copied().filter(|v| !on_rim.contains(v)).collect();
-        points.sort_unstable();
-        points.dedup();
-        let mut sides = Sides::default();
-        sides.begin(triangles[0].1, parts);
-        Self {
-            sides,
-            triangles,
-            parts: parts.to_vec(),
-            rim,
-            points,
-            n_added: 0,
-            split: Split::default(),
-            swap: Swap::default(),
-            star: Vec::new(),
-            cut: Vec::new(),
-            piercing: Vec::new(),
-        }
+        self.rim.clear();
+        self.rim.extend(parts.iter().flat_map(around).filter(is_outer));
+        let on_rim: HashSet<VertexId> = self.rim.iter().flat_map(|(edge, _)| *edge).collect();
+        self.points.clear();
+        self.points.extend(parts.as_flattened().iter().filter(|v| !on_rim.contains(*v)));
+        self.points.sort_unstable();
+        self.points.dedup();
+        self.sides.begin(triangles[0].1, parts);
+        self.triangles = triangles;
+        self.parts.clear();
+        self.parts.extend_from_slice(parts);
+        self.n_added = 0;
     }
 
     /// Makes it a union of facets by swaps, without points inside; returns whether that succeeded.
@@ -126,7 +118,7 @@ impl PiercedFacet {
 
     /// Makes it a union of facets, with points inside; returns the facets, or `None` where that fails.
     pub(super) fn run(
-        mut self,
+        &mut self,
         tets: &mut Tets,
         sites: &mut Sites,
         kept: &impl Protected,
