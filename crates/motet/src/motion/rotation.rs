@@ -6,9 +6,9 @@
 //! by exactly its own rotation, at creases as well.
 //!
 //! The mean gradient is linear in the displacements `d`. In a direction `c` its change is the sum of
-//! `(d_j - d) (g_j . c)` over the vertices j around, where `g_j` is half the sum of `n x e` over the facets at
-//! j, with the normal `n` and the edge `e` opposite to j, relative to the area around. A step needs it in two
-//! directions, chosen so that it takes them to unit vectors at right angles before anything moves.
+//! `(d_j - d) (g_j . c)` over the vertices j around, where `g_j` is half the sum of `n x e` over the facets
+//! at j, with the normal `n` and the edge `e` opposite to j, relative to the area around. A step needs it in
+//! two directions, chosen so that it takes them to unit vectors at right angles before anything moves.
 
 use pulp::NullaryFnOnce;
 
