@@ -1,12 +1,13 @@
 //! Timing of mesh motion: set-up by stage, the update alone, a rebuild, and for comparison a memory copy.
 //!
-//! `motion_timing MESH|N,LAYERS [--threads N] [--seconds S] [--rigid-layer] [--travel X] [--method NAME]
-//! [--residual R] [--factor GIB]` prints one JSON object. MESH is any mesh file; `15,7`, `22,10`, `30,13` and
-//! `38,17` are the four sizes of the built-in sphere in a box. `--rigid-layer` adds a rigid layer of one cell
-//! at the whole boundary. `--travel X` moves the sphere by X along x with `advance` and adds its certificate.
-//! NAME is `delaunay` (default), `bodies`, `guided`, `elastic` or `laplace`; the systems of the last two are
-//! solved to the residual R (1e-8), with a factorisation of at most GIB if given. Each step is along another
-//! axis than the one before, so that no iteration starts from its solution.
+//! `motion_timing MESH|N,LAYERS [--threads N] [--seconds S] [--rigid-layer] [--turn DEGREES] [--travel X]
+//! [--method NAME] [--residual R] [--factor GIB]` prints one JSON object. MESH is any mesh file; `15,7`,
+//! `22,10`, `30,13` and `38,17` are the four sizes of the built-in sphere in a box. In each step the sphere
+//! moves by half its radius, or turns by DEGREES. `--rigid-layer` adds a rigid layer of one cell at the whole
+//! boundary. `--travel X` moves the sphere by X along x with `advance` and adds its certificate. NAME is
+//! `delaunay` (default), `bodies`, `guided`, `elastic` or `laplace`; the systems of the last two are solved
+//! to the residual R (1e-8), with a factorisation of at most GIB if given. Each step is along another axis
+//! than the one before, so that no iteration starts from its solution.
 
 use std::error::Error;
 use std::time::Instant;
@@ -15,13 +16,14 @@ use motet::algebra::Tolerance;
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::vector::norm;
 use motet::mesh::{Mesh, shapes};
-use motet::motion::{Elastic, Extent, Laplace, Method, Mover, Options, RigidLayer};
+use motet::motion::{Elastic, Extent, Laplace, Method, Mover, Options, Prescribed, RigidLayer};
 
 struct Call {
     mesh: String,
     threads: usize,
     seconds: f64,
     rigid: bool,
+    turn: Option<f64>,
     travel: Option<f64>,
     method: String,
     residual: f64,
@@ -49,6 +51,7 @@ fn call() -> Result<Call, Box<dyn Error>> {
         threads: 1,
         seconds: 0.5,
         rigid: false,
+        turn: None,
         travel: None,
         method: "delaunay".into(),
         residual: 1e-8,
@@ -60,6 +63,7 @@ fn call() -> Result<Call, Box<dyn Error>> {
         match word.as_str() {
             "--threads" => call.threads = value()?.parse()?,
             "--seconds" => call.seconds = value()?.parse()?,
+            "--turn" => call.turn = Some(value()?.parse()?),
             "--travel" => call.travel = Some(value()?.parse()?),
             "--method" => call.method = value()?,
             "--residual" => call.residual = value()?.parse()?,
@@ -129,7 +133,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         let one = |v: &VertexId| std::array::from_fn(|k| if k == axis && sphere(v) { x } else { 0.0 });
         mover.boundary().iter().map(one).collect()
     };
-    let driven = [0, 1, 2].map(|axis| by(axis, 0.5));
+    let about = |axis: usize, degrees: f64| -> Vec<Point> {
+        let axis = std::array::from_fn(|k| if k == axis { 1.0 } else { 0.0 });
+        let turn = Prescribed::Turn { axis, angle: degrees.to_radians(), centre: [0.0; 3] };
+        let one = |v: &VertexId| match sphere(v) {
+            true => turn.displacement(mesh.points[v.index()], 1.0),
+            false => [0.0; 3],
+        };
+        mover.boundary().iter().map(one).collect()
+    };
+    let driven = [0, 1, 2].map(|axis| call.turn.map_or_else(|| by(axis, 0.5), |turn| about(axis, turn)));
     let mut out = mesh.points.clone();
     let mut axis = 0;
     let (best, median) = repeat(call.seconds, || {

@@ -2,6 +2,7 @@
 //! call.
 
 use std::ops::Range;
+use std::sync::Mutex;
 
 use crate::base::pool::Pool;
 use crate::base::{Error, Result, Watch};
@@ -114,11 +115,28 @@ impl Threads {
         }
     }
 
-    /// Runs `work` once on each thread, the calling one included.
-    pub fn on_all(&self, work: impl Fn() + Sync) {
-        match &self.pool {
-            None => work(),
-            Some(pool) => pool.on_all(work),
-        }
+    /// Fills `out`: `of` gets parts of up to `length` items, with the index of the first. Each thread makes a
+    /// state first, which its parts share.
+    ///
+    /// The caller begins at once and takes part after part while the others, which sleep between calls, wake
+    /// up: with a fixed share for each, it would wait for the last to wake.
+    pub(crate) fn fill<S, T: Send>(
+        &self,
+        out: &mut [T],
+        length: usize,
+        state: impl Fn() -> S + Sync,
+        of: impl Fn(&S, usize, &mut [T]) + Sync,
+    ) {
+        let Some(pool) = self.pool.as_ref().filter(|_| length < out.len()) else {
+            return of(&state(), 0, out);
+        };
+        let parts = Mutex::new(out.chunks_mut(length).enumerate());
+        let next = || parts.lock().ok()?.next();
+        pool.on_all(|| {
+            let state = state();
+            while let Some((i, out)) = next() {
+                of(&state, i * length, out);
+            }
+        });
     }
 }

@@ -16,12 +16,18 @@
 //! Where the wall has a crease, neighbours may have their feet on different sides of it. Each would move with
 //! its own side, so both are left to the graph.
 
+use pulp::NullaryFnOnce;
+
+use crate::base::four::{FourLanes, FourVectors, Plain, cross, dot};
+#[cfg(target_arch = "x86_64")]
+use crate::base::four::{Wide, wide_machine};
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle;
 use crate::geometry::vector::{add, distance, sub};
 use crate::mesh::Cells;
 use crate::motion::options::{Extent, FacetSet};
-use crate::motion::rotation::{Wall, mean, rotation_change};
+use crate::motion::rotation::{IDENTITY, Rotations, Wall};
+use crate::motion::update::Padded;
 use crate::spatial::NearestTriangle;
 
 /// Largest distance between the feet of neighbours, relative to the distance between the neighbours. In a
@@ -33,31 +39,33 @@ const MAX_FOOT_RATIO: f64 = 2.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Member {
     pub(crate) vertex: VertexId,
-    /// The nearest triangle of the wall, and the weights of its foot there.
-    triangle: u32,
-    weights: [f64; 3],
+    /// The driven nodes at the corners of the nearest triangle of the wall.
+    corners: [u32; 3],
+    /// The weights that the foot has for the last two of them; the first is 1 less these.
+    weights: [f64; 2],
     offset: Point,
 }
 
 /// A wall and the vertices that move with it.
 #[derive(Debug)]
 pub(crate) struct Layer {
+    /// Over the driven nodes, of which some may be on no facet.
     wall: Wall,
-    /// The node of each of the wall's vertices.
-    wall_nodes: Vec<u32>,
+    /// Those that do not slide, and then those that do; each in rising order.
     pub(crate) members: Vec<Member>,
 }
 
 impl Layer {
-    /// Collects those of `candidates` that are within `extent` of the wall. `node` returns the driven node of
-    /// a vertex.
+    /// Collects those of `candidates` that are within `extent` of the wall. `driven` are the vertices of the
+    /// driven nodes, in rising order, and `slides` says which candidates slide.
     pub(crate) fn new(
         points: &[Point],
         cells: &Cells,
         wall: &FacetSet,
         extent: Extent,
         candidates: &[VertexId],
-        node: impl Fn(VertexId) -> Option<u32>,
+        driven: &[VertexId],
+        slides: impl Fn(VertexId) -> bool,
     ) -> Result<Self> {
         let mut vertices: Vec<VertexId> = wall.rings.items().to_vec();
         vertices.sort_unstable();
@@ -65,18 +73,14 @@ impl Layer {
         if wall.triangles().next().is_none() {
             return Err(Error::options(format!("the wall {} of the rigid layer has no facets", wall.name)));
         }
-        let wall_nodes = vertices.iter().map(|&v| {
-            node(v).ok_or_else(|| {
-                Error::input("is on the wall of the rigid layer, but its motion is not given")
-                    .at(format!("vertex {v}"))
-            })
-        });
-        let wall_nodes = wall_nodes.collect::<Result<Vec<u32>>>()?;
-        let local = |v: VertexId| vertices.binary_search(&v).expect("collected from the same rings") as u32;
+        if let Some(v) = vertices.iter().find(|v| driven.binary_search(v).is_err()) {
+            return Err(Error::input("is on the wall of the rigid layer, but its motion is not given")
+                .at(format!("vertex {v}")));
+        }
         let triangles: Vec<[VertexId; 3]> = wall.triangles().collect();
         let search = NearestTriangle::new(points, &triangles, &Threads::single());
-        let triangles: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(local)).collect();
-        let wall_points: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
+        let node = |v: VertexId| driven.binary_search(&v).expect("every vertex was found") as u32;
+        let triangles: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(node)).collect();
         let reach = match extent {
             Extent::Distance(distance) => distance,
             Extent::Cells(_) => f64::INFINITY,
@@ -90,32 +94,53 @@ impl Layer {
         for &vertex in candidates.iter().filter(|v| is_near(**v)) {
             let p = points[vertex.index()];
             if let Some(foot) = search.closest_within(p, reach) {
-                let (triangle, weights, offset) = (foot.triangle as u32, foot.weights, sub(p, foot.point));
-                members.push(Member { vertex, triangle, weights, offset });
+                let (corners, weights) = from_vertex(triangles[foot.triangle], foot.weights);
+                members.push(Member { vertex, corners, weights, offset: sub(p, foot.point) });
             }
         }
         let between = spans_crease(points, cells, &vertices, &members);
         members.retain(|m| !between[m.vertex.index()]);
-        Ok(Self { wall: Wall::new(&wall_points, triangles), wall_nodes, members })
+        members.sort_by_key(|m| slides(m.vertex));
+        members.shrink_to_fit();
+        let mut is_needed = vec![false; driven.len()];
+        members.iter().flat_map(|m| m.corners).for_each(|node| is_needed[node as usize] = true);
+        let places: Vec<Point> = driven.iter().map(|v| points[v.index()]).collect();
+        Ok(Self { wall: Wall::new(&places, &triangles, |node| is_needed[node]), members })
     }
 
-    /// Displacements of all members, given those of the driven nodes.
-    pub(crate) fn displacements(&self, driven: &[Point], threads: &Threads) -> Vec<MemberMotion> {
-        let of_wall = |v: u32| driven[self.wall_nodes[v as usize] as usize];
-        let rotations = self.wall.rotations(of_wall, threads);
-        threads.map(self.members.len(), |i| {
-            let m = &self.members[i];
-            let corners = self.wall.triangle(m.triangle as usize);
-            let foot = triangle::at(corners.map(of_wall), m.weights);
-            let parts = corners.iter().zip(m.weights).map(|(&v, w)| (w, rotations[v as usize]));
-            MemberMotion { foot, rotation: rotation_change(mean(parts), m.offset) }
-        })
+    /// The rotations of the wall at the driven nodes, given their displacements.
+    pub(crate) fn rotations(&self, driven: &[Padded], threads: &Threads) -> Rotations {
+        self.wall.rotations(driven, threads)
+    }
+
+    /// Displacements of the feet of consecutive members, beginning with `first`.
+    pub(crate) fn feet(&self, driven: &[Padded], first: usize, out: &mut [Padded]) {
+        let members = &self.members[first..first + out.len()];
+        #[cfg(target_arch = "x86_64")]
+        if let Some(machine) = wide_machine() {
+            return machine.vectorize(Feet::<Wide> { machine, members, driven, out });
+        }
+        Feet::<Plain> { machine: (), members, driven, out }.call();
+    }
+
+    /// Adds to `out` how the offsets of consecutive members, beginning with `first`, change as the wall
+    /// rotates at their feet.
+    pub(crate) fn rotate_offsets(&self, rotations: &Rotations, first: usize, out: &mut [Padded]) {
+        if rotations.is_empty() {
+            return;
+        }
+        let members = &self.members[first..first + out.len()];
+        #[cfg(target_arch = "x86_64")]
+        if let Some(machine) = wide_machine() {
+            return machine.vectorize(Offsets::<Wide> { machine, members, rotations, out });
+        }
+        Offsets::<Plain> { machine: (), members, rotations, out }.call();
     }
 
     /// The value at the foot of each member, given the values at the driven nodes.
     pub(crate) fn at_feet(&self, driven: &[Point]) -> Vec<Point> {
-        let of_wall = |v: u32| driven[self.wall_nodes[v as usize] as usize];
-        let foot = |m: &Member| triangle::at(self.wall.triangle(m.triangle as usize).map(of_wall), m.weights);
+        let weights = |[b, c]: [f64; 2]| [1.0 - b - c, b, c];
+        let foot = |m: &Member| triangle::at(m.corners.map(|node| driven[node as usize]), weights(m.weights));
         self.members.iter().map(foot).collect()
     }
 
@@ -139,19 +164,110 @@ impl Layer {
     }
 }
 
-/// How a member of the layer has moved, in two parts.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MemberMotion {
-    /// The displacement of its foot.
-    pub(crate) foot: Point,
-    /// The change of its offset by rotation.
-    pub(crate) rotation: Point,
+/// The corners of a triangle and the last two of their weights; where the foot is a corner, but for rounding,
+/// that corner comes first and has all the weight.
+fn from_vertex([a, b, c]: [u32; 3], weights: [f64; 3]) -> ([u32; 3], [f64; 2]) {
+    let is_all = |w: f64| w > 1.0 - 1e-12;
+    match weights {
+        [first, _, _] if is_all(first) => ([a, b, c], [0.0; 2]),
+        [_, second, _] if is_all(second) => ([b, c, a], [0.0; 2]),
+        [_, _, third] if is_all(third) => ([c, a, b], [0.0; 2]),
+        [_, second, third] => ([a, b, c], [second, third]),
+    }
 }
 
-impl MemberMotion {
-    pub(crate) fn total(self) -> Point {
-        add(self.foot, self.rotation)
+/// The loop over feet, each a weighted sum of three displacements.
+struct Feet<'a, F: FourLanes> {
+    machine: F::Machine,
+    members: &'a [Member],
+    driven: &'a [Padded],
+    out: &'a mut [Padded],
+}
+
+impl<F: FourLanes> NullaryFnOnce for Feet<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let machine = self.machine;
+        for (out, member) in self.out.iter_mut().zip(self.members) {
+            let [a, b, c] = member.corners;
+            let at = |node: u32| self.driven[node as usize].load::<F>(machine);
+            let [second, third] =
+                [F::splat(machine, member.weights[0]), F::splat(machine, member.weights[1])];
+            let first = F::splat(machine, 1.0) - second - third;
+            *out = Padded::of_lanes(first * at(a) + second * at(b) + third * at(c));
+        }
     }
+}
+
+/// The loop over offsets, four members at a time.
+struct Offsets<'a, F: FourLanes> {
+    machine: F::Machine,
+    members: &'a [Member],
+    rotations: &'a Rotations,
+    out: &'a mut [Padded],
+}
+
+impl<F: FourLanes> NullaryFnOnce for Offsets<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { machine, members, rotations, out } = self;
+        for (members, out) in members.chunks(4).zip(out.chunks_mut(4)) {
+            let rotates = |m: &Member| rotations.of(m.corners[0] as usize).is_some();
+            if !members.iter().any(rotates) {
+                continue;
+            }
+            let last = members.len() - 1;
+            let four = [&members[0], &members[last.min(1)], &members[last.min(2)], &members[last]];
+            let [x, y, z] = changes::<F>(machine, four, rotations);
+            let [x, y, z] = [x.stored(), y.stored(), z.stored()];
+            for (lane, out) in out.iter_mut().enumerate() {
+                *out = Padded::new(add(out.point(), [x[lane], y[lane], z[lane]]));
+            }
+        }
+    }
+}
+
+/// How the offsets of four members change by the means of the rotations at the corners, by their weights. `q`
+/// and `-q` are the same rotation, so each is taken on the side of the sum so far.
+#[inline(always)]
+fn changes<F: FourLanes>(
+    machine: F::Machine,
+    [a, b, c, d]: [&Member; 4],
+    rotations: &Rotations,
+) -> FourVectors<F> {
+    let zero = F::splat(machine, 0.0);
+    let weight = |k: usize| F::load(machine, &[a.weights[k], b.weights[k], c.weights[k], d.weights[k]]);
+    let weights = [F::splat(machine, 1.0) - weight(0) - weight(1), weight(0), weight(1)];
+    // Over flat and convex walls most feet are vertices.
+    let at_vertices = [a, b, c, d].iter().all(|m| m.weights == [0.0; 2]);
+    let mut sum = [zero; 4];
+    for (k, &weight) in weights.iter().enumerate().take(if at_vertices { 1 } else { 3 }) {
+        let rotation = |m: &Member| rotations.of(m.corners[k] as usize).unwrap_or(&IDENTITY);
+        let [p, q, r, s] = [rotation(a), rotation(b), rotation(c), rotation(d)];
+        let mut side = zero;
+        let mut of_corner = sum;
+        for i in 0..4 {
+            of_corner[i] = F::load(machine, &[p[i], q[i], r[i], s[i]]);
+            side = side + sum[i] * of_corner[i];
+        }
+        let weight = (zero - side).select_positive(zero - weight, weight);
+        for i in 0..4 {
+            sum[i] = sum[i] + weight * of_corner[i];
+        }
+    }
+    let part = |k: usize| F::load(machine, &[a.offset[k], b.offset[k], c.offset[k], d.offset[k]]);
+    let (offset, [w, x, y, z]) = ([part(0), part(1), part(2)], sum);
+    // As a single rotation changes a vector, relative to the squared length of the mean.
+    let axis = [x, y, z];
+    let across = cross(axis, offset);
+    let scale = F::splat(machine, 2.0) / (w * w + dot(axis, axis));
+    let [x, y, z] =
+        cross(axis, [across[0] + w * offset[0], across[1] + w * offset[1], across[2] + w * offset[2]]);
+    [(x * scale).or_if_nan(zero), (y * scale).or_if_nan(zero), (z * scale).or_if_nan(zero)]
 }
 
 /// Which vertices share a cell with another one whose foot is more than [`MAX_FOOT_RATIO`] times as far from
@@ -194,4 +310,60 @@ fn within_cells(cells: &Cells, n_points: usize, from: &[VertexId], n: usize) -> 
         }
     }
     near
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::vector::norm;
+    use crate::mesh::{Boundary, shapes};
+
+    /// A layer around a sphere in a box, and displacements that bend its walls.
+    fn bent_layer() -> (Layer, Vec<Padded>) {
+        let mesh = shapes::sphere_in_box(5, 4);
+        let boundary = Boundary::of(&mesh.cells);
+        let wall = FacetSet::of_boundary(&boundary, "boundary", |_| true);
+        let driven = &boundary.vertices;
+        let inside = |v: &VertexId| driven.binary_search(v).is_err();
+        let candidates: Vec<VertexId> = (0..mesh.points.len()).map(VertexId::new).filter(inside).collect();
+        let extent = Extent::Distance(0.6);
+        let layer = Layer::new(&mesh.points, &mesh.cells, &wall, extent, &candidates, driven, |_| false);
+        let bend =
+            |[x, y, z]: Point| Padded::new([0.4 * (y * z).sin(), 0.3 * x * y - z, 0.5 * (2.0 * x).cos()]);
+        (layer.unwrap(), driven.iter().map(|v| bend(mesh.points[v.index()])).collect())
+    }
+
+    #[test]
+    fn offsets_keep_their_lengths() {
+        let (layer, driven) = bent_layer();
+        let rotations = layer.rotations(&driven, &Threads::single());
+        let mut changes = vec![Padded::default(); layer.members.len()];
+        layer.rotate_offsets(&rotations, 0, &mut changes);
+        for (member, change) in layer.members.iter().zip(&changes) {
+            let turned = norm(add(member.offset, change.point()));
+            assert!((turned - norm(member.offset)).abs() < 1e-15, "{member:?} {turned}");
+            assert!(norm(change.point()) > 0.0);
+        }
+    }
+
+    #[test]
+    fn wide_and_plain_instructions_give_the_same_bits() {
+        let (layer, driven) = bent_layer();
+        let rotations = &layer.rotations(&driven, &Threads::single());
+        let mut wide = vec![Padded::default(); layer.members.len()];
+        let mut plain = wide.clone();
+        layer.feet(&driven, 0, &mut wide);
+        layer.rotate_offsets(rotations, 0, &mut wide);
+        let (members, machine) = (&layer.members[..], ());
+        Feet::<Plain> { machine, members, driven: &driven, out: &mut plain }.call();
+        Offsets::<Plain> { machine, members, rotations, out: &mut plain }.call();
+        assert!(wide.iter().zip(&plain).all(|(a, b)| a.is_same(b)));
+    }
+
+    #[test]
+    fn a_foot_at_a_corner_has_its_weight_first() {
+        assert_eq!(from_vertex([7, 8, 9], [1e-16, 1.0, -1e-16]), ([8, 9, 7], [0.0; 2]));
+        assert_eq!(from_vertex([7, 8, 9], [0.0, 0.0, 1.0]), ([9, 7, 8], [0.0; 2]));
+        assert_eq!(from_vertex([7, 8, 9], [0.5, 0.25, 0.25]), ([7, 8, 9], [0.25; 2]));
+    }
 }

@@ -18,11 +18,10 @@ pub(crate) struct Nodes {
     pub(crate) n_driven: usize,
     /// Nodes that the graph is made of: driven ones, and the outer ones of the layer.
     pub(crate) of_graph: Vec<u32>,
+    /// The nodes of those of its members that do not slide come after the driven ones, in its order.
     layer: Option<Layer>,
-    /// The node of each member of the layer.
-    member_nodes: Vec<u32>,
-    /// For members that slide, the index into `slides`.
-    member_slides: Vec<Option<u32>>,
+    /// The node of each member that slides, and the index into `slides`.
+    sliding_members: Vec<(u32, u32)>,
     slides: Vec<Slide>,
     /// How the vertices of sliding patches are constrained.
     constraints: SlidingConstraints,
@@ -41,6 +40,12 @@ pub(crate) struct SubstepStart {
 
 /// Marks a vertex that is no node.
 const NONE: u32 = u32::MAX;
+
+/// Nodes of the layer per part of the work of a thread.
+const LAYER_PART: usize = 2048;
+
+/// Nodes of the layer whose feet are moved before their offsets rotate: they are still in the nearest cache.
+const LAYER_CHUNK: usize = 256;
 
 impl Nodes {
     pub(crate) fn new(
@@ -146,16 +151,17 @@ impl Nodes {
         let is_driven = |v: VertexId| node_of[v.index()] != NONE;
         let can_join = |v: &VertexId| slide_of[v.index()].is_some() || (is_used[v.index()] && !is_driven(*v));
         let candidates: Vec<VertexId> = (0..mesh.points.len()).map(VertexId::new).filter(can_join).collect();
-        let node = |v: VertexId| Some(node_of[v.index()]).filter(|&n| n != NONE);
-        let layer = Layer::new(&mesh.points, &mesh.cells, wall, rigid.extent, &candidates, node)?;
+        let driven = &self.vertices[..self.n_driven];
+        let slides = |v: VertexId| slide_of[v.index()].is_some();
+        let layer = Layer::new(&mesh.points, &mesh.cells, wall, rigid.extent, &candidates, driven, slides)?;
         let is_outer = layer.outer(&mesh.cells, is_driven, mesh.points.len());
         for (member, is_outer) in layer.members.iter().zip(is_outer) {
-            let new = self.vertices.len() as u32;
-            self.member_slides.push(slide_of[member.vertex.index()]);
-            self.member_nodes.push(node(member.vertex).unwrap_or(new));
-            if !is_driven(member.vertex) {
-                self.vertices.push(member.vertex);
-                self.of_graph.extend(is_outer.then_some(new));
+            match slide_of[member.vertex.index()] {
+                Some(slide) => self.sliding_members.push((node_of[member.vertex.index()], slide)),
+                None => {
+                    self.of_graph.extend(is_outer.then_some(self.vertices.len() as u32));
+                    self.vertices.push(member.vertex);
+                }
             }
         }
         self.layer = Some(layer);
@@ -190,18 +196,33 @@ impl Nodes {
 
     /// Displacements before sliding: of driven nodes as they are given, and of those of the layer.
     fn before_sliding(&self, driven: &[Point], threads: &Threads) -> Vec<Padded> {
-        let mut all = vec![Padded::default(); self.vertices.len() + 1];
-        all.iter_mut().zip(driven).for_each(|(all, &d)| *all = Padded::new(d));
-        if let Some(layer) = &self.layer {
-            let kinds = self.member_nodes.iter().zip(&self.member_slides);
-            for (moved, (&node, slide)) in layer.displacements(driven, threads).into_iter().zip(kinds) {
-                all[node as usize] = Padded::new(match slide {
-                    Some(slide) => {
-                        sub(moved.total(), self.slides[*slide as usize].normal_component(moved.rotation))
-                    }
-                    None => moved.total(),
-                });
-            }
+        let mut all = Vec::with_capacity(self.vertices.len() + 1);
+        all.extend(driven.iter().map(|&d| Padded::new(d)));
+        all.resize(self.vertices.len() + 1, Padded::default());
+        let Some(layer) = &self.layer else { return all };
+        let (driven, held) = all.split_at_mut(self.n_driven);
+        let n_held = self.vertices.len() - self.n_driven;
+        let rotations = layer.rotations(driven, threads);
+        threads.fill(
+            &mut held[..n_held],
+            LAYER_PART,
+            || (),
+            |(), first, held| {
+                for (i, held) in held.chunks_mut(LAYER_CHUNK).enumerate() {
+                    let first = first + i * LAYER_CHUNK;
+                    layer.feet(driven, first, held);
+                    layer.rotate_offsets(&rotations, first, held);
+                }
+            },
+        );
+        let mut feet = vec![Padded::default(); self.sliding_members.len()];
+        let mut changes = feet.clone();
+        layer.feet(driven, n_held, &mut feet);
+        layer.rotate_offsets(&rotations, n_held, &mut changes);
+        for (&(node, slide), (foot, change)) in self.sliding_members.iter().zip(feet.iter().zip(&changes)) {
+            let change = change.point();
+            let within = sub(change, self.slides[slide as usize].normal_component(change));
+            all[node as usize] = Padded::new(add(foot.point(), within));
         }
         all
     }
@@ -222,9 +243,8 @@ impl Nodes {
     pub(crate) fn prescribed(&self, n_points: usize) -> Vec<bool> {
         let mut is_prescribed = vec![false; n_points];
         self.vertices[..self.n_driven].iter().for_each(|v| is_prescribed[v.index()] = true);
-        let members = self.member_nodes.iter().zip(&self.member_slides).filter(|(_, slide)| slide.is_some());
-        let sliding =
-            self.slides.iter().flat_map(|slide| &slide.sliding).chain(members.map(|(node, _)| node));
+        let members = self.sliding_members.iter().map(|(node, _)| node);
+        let sliding = self.slides.iter().flat_map(|slide| &slide.sliding).chain(members);
         sliding.for_each(|&node| is_prescribed[self.vertices[node as usize].index()] = false);
         is_prescribed
     }
@@ -234,15 +254,15 @@ impl Nodes {
         let mut all = driven.to_vec();
         all.resize(self.vertices.len(), [0.0; 3]);
         if let Some(layer) = &self.layer {
-            let feet = layer.at_feet(driven);
-            self.member_nodes.iter().zip(feet).for_each(|(&node, value)| all[node as usize] = value);
+            let held = (self.n_driven as u32..).take(self.vertices.len() - self.n_driven);
+            let nodes = held.chain(self.sliding_members.iter().map(|(node, _)| *node));
+            nodes.zip(layer.at_feet(driven)).for_each(|(node, value)| all[node as usize] = value);
         }
         all
     }
 
     pub(crate) fn n_sliding(&self) -> usize {
-        let members = self.member_slides.iter().filter(|s| s.is_some()).count();
-        members + self.slides.iter().map(Slide::n_sliding).sum::<usize>()
+        self.sliding_members.len() + self.slides.iter().map(Slide::n_sliding).sum::<usize>()
     }
 
     /// Puts every node exactly where its displacement takes it.

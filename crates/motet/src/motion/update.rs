@@ -11,10 +11,10 @@
 //! no second pass. Vertices are independent: results do not depend on the number of threads.
 
 use std::borrow::Cow;
-use std::sync::Mutex;
 
 use pulp::{NullaryFnOnce, f64x4};
 
+use crate::base::four::FourLanes;
 use crate::base::{Point, Threads, VertexId};
 
 /// A displacement and a zero, so that four numbers load at once and from one cache line.
@@ -30,6 +30,21 @@ impl Padded {
     pub(crate) fn point(self) -> Point {
         let [x, y, z, _] = self.0;
         [x, y, z]
+    }
+
+    /// Whether two displacements have the same bits.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        self.0.map(f64::to_bits) == other.0.map(f64::to_bits)
+    }
+
+    #[inline(always)]
+    pub(crate) fn load<F: FourLanes>(&self, machine: F::Machine) -> F {
+        F::load(machine, &self.0)
+    }
+
+    #[inline(always)]
+    pub(crate) fn of_lanes<F: FourLanes>(four: F) -> Self {
+        Self(four.stored())
     }
 }
 
@@ -68,8 +83,7 @@ pub(crate) struct WeightTable {
 /// With fewer vertices per part, a second thread takes longer to wake than to do its part.
 const MIN_PART: usize = 2048;
 
-/// Parts per thread. The caller begins at once and takes part after part while the others, which sleep
-/// between steps, wake up: with a fixed share for each, it would wait for the last to wake.
+/// Parts per thread.
 const PARTS: usize = 16;
 
 impl WeightTable {
@@ -94,23 +108,17 @@ impl WeightTable {
         out: &mut [Point],
         threads: &Threads,
     ) {
-        let some = |start: usize, table: &[Padded], out: &mut [Point]| {
-            let vertices = start..start + out.len();
-            let (nodes, weights) = (&self.nodes[vertices.clone()], &self.weights[vertices.clone()]);
-            add_means(&from[vertices], nodes, weights, bytemuck::cast_slice(table), out);
-        };
         let part = out.len().div_ceil(PARTS * threads.count()).max(MIN_PART);
-        if threads.count() == 1 || part >= out.len() {
-            return some(0, &displacements.table(), out);
-        }
-        let parts = Mutex::new(out.chunks_mut(part).enumerate());
-        let next = || parts.lock().ok()?.next();
-        threads.on_all(|| {
-            let table = displacements.table();
-            while let Some((i, out)) = next() {
-                some(i * part, &table, out);
-            }
-        });
+        threads.fill(
+            out,
+            part,
+            || displacements.table(),
+            |table, start, out| {
+                let vertices = start..start + out.len();
+                let (nodes, weights) = (&self.nodes[vertices.clone()], &self.weights[vertices.clone()]);
+                add_means(&from[vertices], nodes, weights, bytemuck::cast_slice(table), out);
+            },
+        );
     }
 
     /// The nodes that vertex `v` follows, and their weights.

@@ -12,9 +12,9 @@ use crate::geometry::vector::{add, dot, norm, scale, sub};
 use crate::mesh::bounds;
 use crate::motion::methods::{Follower, Prepare, Prepared, Reference, Scene};
 use crate::motion::options::FacetSet;
-use crate::motion::rotation::{Wall, rotation_change};
+use crate::motion::rotation::{IDENTITY, Quaternion, Wall, rotation_change};
 use crate::motion::setup::Setup;
-use crate::motion::update::Displacements;
+use crate::motion::update::{Displacements, Padded};
 
 /// The boundary, whose facets have areas and rotations.
 #[derive(Debug)]
@@ -81,7 +81,7 @@ impl InverseDistanceFollower {
         let extent = bounds(&places).map_or(1.0, |[low, high]| norm(sub(high, low)));
         Self {
             corners: vertices.iter().zip(places.iter().zip(areas)).filter_map(corner).collect(),
-            wall: Wall::new(&places, triangles),
+            wall: Wall::new(&places, &triangles, |_| true),
             nodes: nodes.to_vec(),
             free,
             extent,
@@ -98,17 +98,19 @@ impl Follower for InverseDistanceFollower {
         threads: &Threads,
     ) -> Result<usize> {
         let table = displacements.table();
-        let moved: Vec<Point> = self.corners.iter().map(|c| table[c.node as usize].point()).collect();
-        let rotations = self.wall.rotations(|v| moved[v as usize], threads);
+        let moved: Vec<Padded> = self.corners.iter().map(|c| table[c.node as usize]).collect();
+        let rotations = self.wall.rotations(&moved, threads);
+        let rotation = |i: usize| rotations.of(i).copied().unwrap_or(IDENTITY);
+        let rotations: Vec<Quaternion> = (0..moved.len()).map(rotation).collect();
         let places = threads.map(self.free.len(), |i| {
             let p = from[self.free[i].index()];
             let (mut sum, mut weights) = ([0.0; 3], 0.0);
-            for ((corner, &d), &q) in self.corners.iter().zip(&moved).zip(&rotations) {
+            for ((corner, d), &q) in self.corners.iter().zip(&moved).zip(&rotations) {
                 let arm = sub(p, corner.place);
                 let near = self.extent * self.extent / dot(arm, arm);
                 let cubed = near * near.sqrt();
                 let weight = corner.area * (cubed + NEAR.powi(5) * cubed * near);
-                sum = add(sum, scale(add(d, rotation_change(q, arm)), weight));
+                sum = add(sum, scale(add(d.point(), rotation_change(q, arm)), weight));
                 weights += weight;
             }
             if weights > 0.0 && weights.is_finite() { add(p, scale(sum, 1.0 / weights)) } else { p }

@@ -34,7 +34,7 @@ use crate::motion::methods::{Follower, Prepare, Prepared, Reference, Scene};
 use crate::motion::nodes::Nodes;
 use crate::motion::options::FacetSet;
 use crate::motion::rotation::{Quaternion, Wall};
-use crate::motion::update::{Displacements, WeightTable};
+use crate::motion::update::{Displacements, Padded, WeightTable};
 
 /// The tolerance of a step, far below what affects cells.
 const STEP_TOLERANCE: Tolerance = Tolerance { residual: 1e-9, iterations: 10_000 };
@@ -146,7 +146,7 @@ impl RotatingWall {
             (facets.triangles()).filter_map(|t| Some([local(t[0])?, local(t[1])?, local(t[2])?])).collect();
         let places: Vec<Point> = corners.iter().map(|v| points[v.index()]).collect();
         Self {
-            wall: Wall::new(&places, triangles),
+            wall: Wall::new(&places, &triangles, |_| true),
             nodes: corners.iter().map(|v| node_of[v.index()]).collect(),
         }
     }
@@ -308,14 +308,12 @@ impl GuidedFollower {
 
     /// The rotation vector of every node, and the number of iterations.
     fn rotation_vectors(&self, moved: &[Point], threads: &Threads) -> Result<(Vec<Point>, usize)> {
-        let of_wall = |v: u32| {
-            let node = self.wall.nodes[v as usize];
-            moved.get(node as usize).copied().unwrap_or_default()
-        };
-        let rotations = self.wall.wall.rotations(of_wall, threads);
+        let of_wall = |&node: &u32| Padded::new(moved.get(node as usize).copied().unwrap_or_default());
+        let of_wall: Vec<Padded> = self.wall.nodes.iter().map(of_wall).collect();
+        let rotations = self.wall.wall.rotations(&of_wall, threads);
         let mut rotation_vectors = vec![[0.0; 3]; self.places.len()];
-        for (&node, q) in self.wall.nodes.iter().zip(&rotations).filter(|(node, _)| **node != NO_NODE) {
-            rotation_vectors[node as usize] = rotation_vector(*q);
+        for (i, &node) in self.wall.nodes.iter().enumerate().filter(|(_, node)| **node != NO_NODE) {
+            rotation_vectors[node as usize] = rotations.of(i).map_or([0.0; 3], |q| rotation_vector(*q));
         }
         let given: Vec<Point> = self.on_wall.iter().map(|&n| rotation_vectors[n as usize]).collect();
         let mut right = self.rotation_system.coupling.times(&given, threads);
