@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use motet::Mesh;
+use motet::base::Threads;
 use motet::io::{Format, Input, Notes, WriteOptions, formats, read_as};
 
 fn format(extension: &str) -> &'static Format {
@@ -13,7 +14,7 @@ fn format(extension: &str) -> &'static Format {
 /// Reads `bytes` as a file with this extension. A mesh that results is valid.
 pub fn read(extension: &str, bytes: &[u8]) -> Option<Mesh> {
     let path = format!("in{extension}");
-    let input = Input { path: Path::new(&path), bytes, notes: &Notes::default() };
+    let input = Input { path: Path::new(&path), bytes, threads: &Threads::single(), notes: &Notes::default() };
     let mesh = read_as(format(extension), &input).ok()?;
     mesh.validate().expect("a reader returns a mesh that holds together");
     Some(mesh)
@@ -21,7 +22,7 @@ pub fn read(extension: &str, bytes: &[u8]) -> Option<Mesh> {
 
 /// Writes a mesh; returns the first file written, and whether nothing was lost.
 pub fn write(extension: &str, mesh: &Mesh) -> (Vec<u8>, bool) {
-    let written = format(extension).to_files(mesh, &WriteOptions::default());
+    let written = format(extension).to_files(mesh, &WriteOptions::default(), &Threads::single());
     let mut written = written.expect("what is read can be written");
     (written.files.swap_remove(0).1, written.lost.is_empty())
 }

@@ -13,19 +13,25 @@ use pyo3::types::PyDict;
 use crate::convert::{MeshArg, parts};
 use crate::error::call;
 use crate::report::report;
-use crate::words::one_of;
+use crate::words::{one_of, threads};
 
 /// Reads a mesh from a file; also returns notes on what the reader skipped.
 #[pyfunction]
-pub(crate) fn read(py: Python<'_>, path: PathBuf) -> PyResult<(Bound<'_, PyDict>, Vec<String>)> {
-    let (mesh, notes) = call(py, || io::read_noted(&path))?;
+pub(crate) fn read(
+    py: Python<'_>,
+    path: PathBuf,
+    threads: usize,
+) -> PyResult<(Bound<'_, PyDict>, Vec<String>)> {
+    let threads = self::threads(threads)?;
+    let (mesh, notes) = call(py, || io::read_on(&path, &threads))?;
     Ok((parts(py, mesh)?, notes))
 }
 
 /// Writes a mesh; returns what the format cannot hold.
 #[pyfunction]
-pub(crate) fn write(py: Python<'_>, path: PathBuf, mesh: MeshArg) -> PyResult<Vec<String>> {
-    call(py, || io::write(&path, &mesh.0, &WriteOptions::default()))
+pub(crate) fn write(py: Python<'_>, path: PathBuf, mesh: MeshArg, threads: usize) -> PyResult<Vec<String>> {
+    let threads = self::threads(threads)?;
+    call(py, || io::write_on(&path, &mesh.0, &WriteOptions::default(), &threads))
 }
 
 /// The region label and the patch label of each cell, 0 for cells without one; `None` where the mesh has no

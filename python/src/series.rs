@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use crate::arrays::Read;
 use crate::convert::MeshArg;
 use crate::error::{OrRaise, call, input};
+use crate::words::threads;
 
 /// The times and files of a series.
 #[pyfunction]
@@ -35,8 +36,15 @@ impl SeriesWriter {
     }
 
     /// Adds a mesh; returns its file, and what the format cannot hold.
-    fn add(&mut self, py: Python<'_>, time: f64, mesh: MeshArg) -> PyResult<(PathBuf, Vec<String>)> {
-        call(py, || self.0.add(time, &mesh.0))
+    fn add(
+        &mut self,
+        py: Python<'_>,
+        time: f64,
+        mesh: MeshArg,
+        threads: usize,
+    ) -> PyResult<(PathBuf, Vec<String>)> {
+        let threads = self::threads(threads)?;
+        call(py, || self.0.add_on(time, &mesh.0, &threads))
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
+use motet::base::Threads;
 use motet::geometry::quality::eas;
 use motet::mesh::history::{Carry, History, Rules};
 use motet::{Error, Mesh, Result, io};
@@ -51,12 +52,13 @@ impl ArrayArgs {
         history: Option<&History>,
         output: &Path,
         writing: &WritingArgs,
+        threads: &Threads,
     ) -> Result<Written> {
         if self.quality {
             mesh.set_cell_field(mesh.tet_field("eas", eas));
         }
         let begin = Instant::now();
-        let lost = io::write(output, mesh, &writing.options())?;
+        let lost = io::write_on(output, mesh, &writing.options(), threads)?;
         if let (Some(file), Some(history)) = (&self.history, history) {
             write_history(file, history)?;
         }

@@ -11,7 +11,7 @@ pub(crate) struct Common {
     #[arg(long, global = true)]
     pub(crate) json: bool,
     /// Number of threads; 0 = one per core. Results do not depend on it
-    #[arg(long, global = true, value_name = "N", default_value_t = 0)]
+    #[arg(long, global = true, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     threads: usize,
     /// Print only errors (and the JSON object)
     #[arg(short, long, global = true, conflicts_with = "verbose")]

@@ -37,9 +37,9 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     };
     let console = Console::new(&call.common);
     let outcome = match call.verb {
-        Verb::Info(args) => verbs::info::run(&args, &console),
-        Verb::Convert(args) => verbs::convert::run(&args, &console),
-        Verb::Cap(args) => verbs::cap::run(&args, &console),
+        Verb::Info(args) => verbs::info::run(&args, &call.common, &console),
+        Verb::Convert(args) => verbs::convert::run(&args, &call.common, &console),
+        Verb::Cap(args) => verbs::cap::run(&args, &call.common, &console),
         Verb::Mesh(args) => verbs::meshing::run(&args, &call.common, &console),
         Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
         Verb::Remesh(args) => verbs::remesh::run(&args, &call.common, &console),

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Folder, stderr, stdout};
+use motet::mesh::shapes::sphere_in_box;
 
 #[test]
 fn a_call_without_a_verb_shows_the_usage_and_exits_2() {
@@ -97,4 +98,44 @@ fn the_bytes_do_not_depend_on_the_threads() {
         folder.motet(["convert", &mesh, out, "--threads", threads]).assert().code(0);
     }
     assert_eq!(folder.read("one.vtu"), folder.read("two.vtu"));
+}
+
+#[test]
+fn every_verb_takes_more_threads_than_the_machine_has_and_gives_the_same_files() {
+    let folder = Folder::new();
+    folder.mesh("box.vtu", &sphere_in_box(3, 2));
+    folder.cube("cube.vtu");
+    let corners = ["0.7 0.5 0.5", "0.3 0.5 0.5", "0.5 0.7 0.5", "0.5 0.3 0.5", "0.5 0.5 0.7", "0.5 0.5 0.3"];
+    let triangles = ["0 2 4", "2 1 4", "1 3 4", "3 0 4", "2 0 5", "1 2 5", "3 1 5", "0 3 5"];
+    let triangles = triangles.map(|t| format!("3 {t}")).join("\n");
+    folder.write("ball.off", format!("OFF\n6 8 0\n{}\n{triangles}\n", corners.join("\n")).as_bytes());
+    folder
+        .write("open.off", format!("OFF\n6 7 0\n{}\n{}\n", corners.join("\n"), &triangles[..55]).as_bytes());
+    let calls: [&[&str]; 9] = [
+        &["convert", "box.vtu", "-o"],
+        &["info", "box.vtu", "-o"],
+        &["mesh", "ball.off", "--size", "0.1", "-o"],
+        &["remesh", "box.vtu", "-o"],
+        &["refine", "box.vtu", "--all", "-o"],
+        &["implant", "cube.vtu", "ball.off", "-o"],
+        &["move", "box.vtu", "--translate", "sphere=0.1,0,0", "-o"],
+        &["contact", "box.vtu", "--patches", "sphere,box", "-o"],
+        &["cap", "open.off", "-o"],
+    ];
+    for words in calls {
+        let made = |name: &str, threads: &str| {
+            let words = words.iter().filter(|word| **word != "-o" || words[0] != "convert").copied();
+            folder.motet(words.chain([name, "--threads", threads, "-q"])).assert().success();
+            folder.read(name)
+        };
+        let ending = if matches!(words[0], "contact" | "cap") { "vtp" } else { "vtu" };
+        let names = ["one", "many"].map(|name| format!("{}-{name}.{ending}", words[0]));
+        assert!(made(&names[0], "1") == made(&names[1], "100000"), "{words:?}");
+    }
+    for verb in
+        ["info", "convert", "mesh", "move", "remesh", "refine", "implant", "contact", "run", "cap", "report"]
+    {
+        let call = folder.motet([verb, "--threads", "-1"]).assert().code(2);
+        assert!(stderr(&call).contains("invalid value '-1' for '--threads <N>'"), "{}", stderr(&call));
+    }
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use motet::Mesh;
-use motet::base::{Csr, Point, VertexId};
+use motet::base::{Csr, Point, Threads, VertexId};
 use motet::io::{Encoding, Format, Input, Notes, WriteOptions, formats, read, read_as, read_noted, write};
 use motet::mesh::{CellKind, Cells, Field, Values};
 use proptest::prelude::*;
@@ -16,18 +16,26 @@ fn format(extension: &str) -> &'static Format {
 /// Parses bytes as a file with this extension, in memory.
 fn parse(extension: &str, bytes: &[u8]) -> motet::Result<Mesh> {
     let path = format!("in{extension}");
-    read_as(format(extension), &Input { path: Path::new(&path), bytes, notes: &Notes::default() })
+    read_as(
+        format(extension),
+        &Input { path: Path::new(&path), bytes, threads: &Threads::single(), notes: &Notes::default() },
+    )
 }
 
 fn notes_of(extension: &str, bytes: &[u8]) -> Vec<String> {
     let (path, notes) = (format!("in{extension}"), Notes::default());
-    read_as(format(extension), &Input { path: Path::new(&path), bytes, notes: &notes }).expect("it is read");
+    read_as(
+        format(extension),
+        &Input { path: Path::new(&path), bytes, threads: &Threads::single(), notes: &notes },
+    )
+    .expect("it is read");
     notes.into_vec()
 }
 
 /// Writes into memory; returns the first file, and what was lost.
 fn print(extension: &str, mesh: &Mesh, options: &WriteOptions) -> (Vec<u8>, Vec<String>) {
-    let mut written = format(extension).to_files(mesh, options).expect("the mesh is written");
+    let mut written =
+        format(extension).to_files(mesh, options, &Threads::single()).expect("the mesh is written");
     (written.files.swap_remove(0).1, written.lost)
 }
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use motet::base::{Csr, VertexId};
+use motet::base::{Csr, Threads, VertexId};
 use motet::io::{self, Compression, Encoding, Format, Input, Notes, WriteOptions};
 use motet::mesh::{CellKind, Cells, Field, Values, shapes};
 use motet::{ErrorKind, Mesh};
@@ -15,11 +15,14 @@ fn format(extension: &str) -> &'static Format {
 
 fn read(extension: &str, bytes: &[u8]) -> motet::Result<Mesh> {
     let name = format!("test{extension}");
-    io::read_as(format(extension), &Input { path: Path::new(&name), bytes, notes: &Notes::default() })
+    io::read_as(
+        format(extension),
+        &Input { path: Path::new(&name), bytes, threads: &Threads::single(), notes: &Notes::default() },
+    )
 }
 
 fn write(extension: &str, mesh: &Mesh, options: &WriteOptions) -> (Vec<u8>, Vec<String>) {
-    let mut written = format(extension).to_files(mesh, options).unwrap();
+    let mut written = format(extension).to_files(mesh, options, &Threads::single()).unwrap();
     assert_eq!(written.files.len(), 1);
     (written.files.remove(0).1, written.lost)
 }
@@ -236,7 +239,7 @@ fn a_mesh_without_surface_cells_is_no_polygonal_data() {
     let mut mesh = shapes::box_grid([1, 1, 1], [[0.0; 3], [1.0; 3]]);
     mesh.cells = Cells::uniform(CellKind::TETRA, [0, 1, 2, 4].map(VertexId).to_vec()).unwrap();
     mesh.cell_data.clear();
-    let error = format(".vtp").to_files(&mesh, &WriteOptions::default()).unwrap_err();
+    let error = format(".vtp").to_files(&mesh, &WriteOptions::default(), &Threads::single()).unwrap_err();
     assert!(error.to_string().contains("cannot hold cells of kind tetra"), "{error}");
 }
 

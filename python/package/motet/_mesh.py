@@ -208,13 +208,15 @@ class Mesh:
         """
         return _motet.quality(self, measure)
 
-    def save(self, path: str | os.PathLike[str]) -> list[str]:
+    def save(self, path: str | os.PathLike[str], *, threads: int = 0) -> list[str]:
         """Write the mesh to a file.
 
         Parameters
         ----------
         path : path-like
             Name of the file. Its extension determines the format; see :func:`formats`.
+        threads : int, default 0
+            Number of threads; 0 uses all cores. The file does not depend on it.
 
         Returns
         -------
@@ -223,7 +225,7 @@ class Mesh:
         """
         import warnings
 
-        lost = _motet.write(path, self)
+        lost = _motet.write(path, self, threads)
         for sentence in lost:
             warnings.warn(sentence, stacklevel=3)
         return lost
@@ -290,7 +292,7 @@ MeshLike = Any
 
 
 @checked
-def read(path: str | os.PathLike[str]) -> Mesh:
+def read(path: str | os.PathLike[str], *, threads: int = 0) -> Mesh:
     """Read a mesh from a file.
 
     Parts of the file that cannot be used are reported as warnings.
@@ -299,6 +301,8 @@ def read(path: str | os.PathLike[str]) -> Mesh:
     ----------
     path : path-like
         Name of the file. Its extension determines the format; see :func:`formats`.
+    threads : int, default 0
+        Number of threads; 0 uses all cores. The mesh does not depend on it.
 
     Returns
     -------
@@ -313,7 +317,7 @@ def read(path: str | os.PathLike[str]) -> Mesh:
     """
     import warnings
 
-    parts, notes = _motet.read(path)
+    parts, notes = _motet.read(path, threads)
     for note in notes:
         warnings.warn(note, stacklevel=3)
     return Mesh._of(parts)

@@ -49,7 +49,7 @@ class SeriesWriter(NotPickled):
         self._native = _motet.SeriesWriter(path)
         self._path, self._n = os.fspath(path), 0
 
-    def add(self, time: float, mesh: MeshLike) -> str:
+    def add(self, time: float, mesh: MeshLike, *, threads: int = 0) -> str:
         """Write a mesh and add it to the series.
 
         Parameters
@@ -58,13 +58,15 @@ class SeriesWriter(NotPickled):
             Time of the mesh.
         mesh : MeshLike
             A :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
+        threads : int, default 0
+            Number of threads; 0 uses all cores. The file does not depend on it.
 
         Returns
         -------
         str
             Name of the file with the mesh.
         """
-        file, _ = self._native.add(time, as_mesh(mesh))
+        file, _ = self._native.add(time, as_mesh(mesh), threads)
         self._n += 1
         return file
 

@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use motet::base::Threads;
 use motet::meshing::{Caps, RimPlane};
 use motet::{Error, Mesh, Result, io};
 use serde_json::json;
 
+use crate::common::Common;
 use crate::console::Console;
 use crate::outcome::Outcome;
 use crate::outputs;
@@ -50,7 +52,8 @@ pub(crate) struct CapArgs {
     writing: WritingArgs,
 }
 
-pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
+pub(crate) fn run(args: &CapArgs, common: &Common, console: &Console) -> Result<Outcome> {
+    let threads = common.threads()?;
     outputs::check(&args.output, args.surfaces.iter().map(PathBuf::as_path), "a surface")?;
     let frames = frames(args)?;
     let is_series = io::can_write_series(&args.output);
@@ -59,11 +62,12 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
             .in_file(&args.output)
             .remedy("use a name that ends in .pvd"));
     }
-    let first = read(&frames[0].1, console)?;
+    let first = read(&frames[0].1, &threads, console)?;
     let caps = Caps::of(&first).map_err(|e| e.in_file(&frames[0].1))?;
     let mut planes = Vec::new();
     let mut closed = |file: &Path| {
-        let (closed, found) = close(args, &caps, &read(file, console)?).map_err(|e| e.in_file(file))?;
+        let (closed, found) =
+            close(args, &caps, &read(file, &threads, console)?).map_err(|e| e.in_file(file))?;
         keep_worst(&mut planes, found);
         Ok(closed)
     };
@@ -73,9 +77,9 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
             // Close all frames first: where one does not fit, nothing is written.
             let meshes = frames.iter().map(|(time, file)| Ok((*time, closed(file)?)));
             let meshes = meshes.collect::<Result<Vec<_>>>()?;
-            io::write_series(&args.output, meshes.into_iter().map(Ok), &options)?
+            io::write_series(&args.output, meshes.into_iter().map(Ok), &options, &threads)?
         }
-        false => io::write(&args.output, &closed(&frames[0].1)?, &options)?,
+        false => io::write_on(&args.output, &closed(&frames[0].1)?, &options, &threads)?,
     };
     lost.iter().for_each(|what| console.warn(what));
     let whole = caps.close(&first)?;
@@ -150,8 +154,8 @@ fn frames(args: &CapArgs) -> Result<Vec<(f64, PathBuf)>> {
     }
 }
 
-fn read(file: &Path, console: &Console) -> Result<Mesh> {
-    let (mesh, notes) = io::read_noted(file)?;
+fn read(file: &Path, threads: &Threads, console: &Console) -> Result<Mesh> {
+    let (mesh, notes) = io::read_on(file, threads)?;
     notes.iter().for_each(|note| console.warn(note));
     Ok(mesh)
 }

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
+use motet::base::Threads;
 use motet::io;
 use serde_json::json;
 
+use crate::common::Common;
 use crate::console::Console;
 use crate::outcome::Outcome;
 use crate::table::{count, seconds};
@@ -40,14 +42,14 @@ pub(crate) struct ConvertArgs {
 }
 
 /// Converts a series into a series of another format.
-fn series(args: &ConvertArgs, console: &Console) -> motet::Result<Outcome> {
+fn series(args: &ConvertArgs, threads: &Threads, console: &Console) -> motet::Result<Outcome> {
     let frames = io::read_series(&args.input)?;
     let meter = console.meter("converting", Some(frames.len()));
     let read = frames.iter().map(|(time, file)| {
         meter.step();
-        Ok((*time, io::read(file)?))
+        Ok((*time, io::read_on(file, threads)?.0))
     });
-    let lost = io::write_series(&args.output, read, &args.writing.options())?;
+    let lost = io::write_series(&args.output, read, &args.writing.options(), threads)?;
     drop(meter);
     lost.iter().for_each(|what| console.warn(what));
     let n = frames.len();
@@ -58,16 +60,17 @@ fn series(args: &ConvertArgs, console: &Console) -> motet::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-pub(crate) fn run(args: &ConvertArgs, console: &Console) -> motet::Result<Outcome> {
+pub(crate) fn run(args: &ConvertArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
+    let threads = common.threads()?;
     if io::is_series(&args.input) && io::can_be_series(&args.output) {
-        return series(args, console);
+        return series(args, &threads, console);
     }
     io::can_write(&args.output)?;
     let start = Instant::now();
-    let (mesh, notes) = io::read_noted(&args.input)?;
+    let (mesh, notes) = io::read_on(&args.input, &threads)?;
     let read = start.elapsed().as_secs_f64();
     console.detail(format_args!("read {} in {}", args.input.display(), seconds(read)));
-    let lost = io::write(&args.output, &mesh, &args.writing.options())?;
+    let lost = io::write_on(&args.output, &mesh, &args.writing.options(), &threads)?;
     let write = start.elapsed().as_secs_f64() - read;
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
 

@@ -11,6 +11,7 @@ use motet::{Error, Mesh};
 use serde::Serialize;
 use serde_json::json;
 
+use crate::common::Common;
 use crate::console::Console;
 use crate::outcome::Outcome;
 use crate::quality;
@@ -51,14 +52,15 @@ pub(crate) struct InfoArgs {
     output: Option<PathBuf>,
 }
 
-pub(crate) fn run(args: &InfoArgs, console: &Console) -> motet::Result<Outcome> {
+pub(crate) fn run(args: &InfoArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     if io::is_series(&args.mesh) {
         return series(&args.mesh, console);
     }
     if let Some(output) = &args.output {
         io::can_write(output)?;
     }
-    let (mesh, notes) = io::read_noted(&args.mesh)?;
+    let threads = common.threads()?;
+    let (mesh, notes) = io::read_on(&args.mesh, &threads)?;
     notes.iter().for_each(|note| console.warn(note));
     let summary = Summary::of(&mesh);
     let report =
@@ -66,7 +68,7 @@ pub(crate) fn run(args: &InfoArgs, console: &Console) -> motet::Result<Outcome> 
     console.report(&report);
     report.print(console);
     if let Some(output) = &args.output {
-        let lost = io::write(output, &measured(mesh), &WriteOptions::default())?;
+        let lost = io::write_on(output, &measured(mesh), &WriteOptions::default(), &threads)?;
         lost.iter().for_each(|what| console.warn(what));
         console.print(format_args!("\nwrote {}", output.display()));
     }

@@ -30,7 +30,15 @@ impl Threads {
     /// When the operating system cannot start them.
     pub fn new(n: usize) -> Result<Self> {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let n = if n == 0 { cores } else { n.min(cores) };
+        Self::exactly(if n == 0 { cores } else { n.min(cores) })
+    }
+
+    /// A pool of exactly `n` threads, even if the machine has fewer cores: for tests that results do not depend
+    /// on the number.
+    ///
+    /// # Errors
+    /// When the operating system cannot start them.
+    pub fn exactly(n: usize) -> Result<Self> {
         let pool = Pool::new(n).map_err(|cause| {
             Error::options(format!("{n} threads could not be started: {cause}"))
                 .remedy("request fewer threads")

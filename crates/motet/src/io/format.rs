@@ -1,10 +1,10 @@
 //! File formats: a reader and a writer, their inputs and their results.
 
-use std::io;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-use crate::base::{Error, ErrorKind, Result};
+use crate::base::{Error, Result, Threads};
+use crate::io::output::Output;
 use crate::mesh::Mesh;
 
 /// Input of a reader: the whole file, and its path for formats that consist of several files.
@@ -14,6 +14,8 @@ pub struct Input<'a> {
     pub path: &'a Path,
     /// Content of the file.
     pub bytes: &'a [u8],
+    /// The threads that the reader may use. The mesh does not depend on them.
+    pub threads: &'a Threads,
     /// Receives what the reader skips.
     pub notes: &'a Notes,
 }
@@ -92,11 +94,10 @@ pub type Read = fn(&Input<'_>) -> Result<Mesh>;
 /// A writer of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub enum Write {
-    /// Writes one file to a sink, part by part; returns what the format could not hold, one message for the
-    /// user each.
-    File(fn(&Mesh, &WriteOptions, &mut dyn io::Write) -> Result<Vec<String>>),
+    /// Writes one file, part by part; returns what the format could not hold, one message for the user each.
+    File(fn(&Mesh, &WriteOptions, &mut Output<'_>) -> Result<Vec<String>>),
     /// Makes several files, or those of a folder.
-    Files(fn(&Mesh, &WriteOptions) -> Result<Written>),
+    Files(fn(&Mesh, &WriteOptions, &Threads) -> Result<Written>),
 }
 
 /// A file format.
@@ -118,18 +119,18 @@ impl Format {
         self.extensions.iter().any(|extension| extension.ends_with('/'))
     }
 
-    /// The files that hold a mesh in this format, in memory.
+    /// The files that hold a mesh in this format, in memory. Their bytes do not depend on the threads.
     ///
     /// # Errors
     /// If the format cannot be written, or cannot hold the mesh.
-    pub fn to_files(&self, mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+    pub fn to_files(&self, mesh: &Mesh, options: &WriteOptions, threads: &Threads) -> Result<Written> {
         match self.write.ok_or_else(|| self.only_read())? {
             Write::File(write) => {
                 let mut bytes = Vec::new();
-                let lost = write(mesh, options, &mut bytes)?;
+                let lost = write(mesh, options, &mut Output::to_memory(&mut bytes, threads))?;
                 Ok(Written { files: vec![(String::new(), bytes)], lost })
             }
-            Write::Files(write) => write(mesh, options),
+            Write::Files(write) => write(mesh, options, threads),
         }
     }
 
@@ -137,16 +138,4 @@ impl Format {
     pub(super) fn only_read(&self) -> Error {
         Error::input(format!("{} files can only be read", self.name))
     }
-}
-
-/// Writes bytes to a sink.
-pub(super) fn write_all(sink: &mut dyn io::Write, bytes: &[u8]) -> Result<()> {
-    sink.write_all(bytes).map_err(|e| Error::new(ErrorKind::Output, format!("cannot be written: {e}")))
-}
-
-/// Writes all bytes of a buffer to a sink, and empties the buffer.
-pub(super) fn drain(buffer: &mut Vec<u8>, sink: &mut dyn io::Write) -> Result<()> {
-    write_all(sink, buffer)?;
-    buffer.clear();
-    Ok(())
 }

@@ -22,6 +22,7 @@ mod nodal;
 mod node_order;
 mod obj;
 mod off;
+mod output;
 mod ply;
 mod polygonal;
 mod polyhedra;
@@ -45,8 +46,9 @@ mod weld;
 pub use format::{Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written};
 pub use lock::OutputLock;
 pub use nodal::NodalSeries;
+pub use output::Output;
 pub use reading::{is_same_file, read_as};
-pub use registry::{can_write, formats, read, read_noted, write};
+pub use registry::{can_write, formats, read, read_noted, read_on, write, write_on};
 pub use replace::{remove_drafts, replace, replace_all, settle, sync};
 pub use series::{
     SeriesWriter, can_be_series, can_write_series, file_of, is_series, parse_series, read_series,

@@ -10,7 +10,8 @@ use std::io::Write as _;
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::cell_labels::{cell_labels, lost_cell_arrays};
-use crate::io::format::{Format, Input, Write, WriteOptions, write_all};
+use crate::io::format::{Format, Input, Write, WriteOptions};
+use crate::io::output::{Output, write_all};
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, parse_float, parse_int, push_floats, quoted};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
@@ -222,7 +223,7 @@ impl Reader {
     }
 }
 
-fn write(mesh: &Mesh, _: &WriteOptions, sink: &mut dyn std::io::Write) -> Result<Vec<String>> {
+fn write(mesh: &Mesh, _: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let (surface, boundary_only) = surface_of(mesh, "OBJ");
     let (mesh, mut lost) = keep_cells(&surface, "OBJ", |kind| statement(kind).is_some());
     lost.extend(boundary_only);
@@ -252,7 +253,7 @@ fn write(mesh: &Mesh, _: &WriteOptions, sink: &mut dyn std::io::Write) -> Result
         }
         out.push(b'\n');
     }
-    write_all(sink, &out)?;
+    write_all(output, &out)?;
     Ok(lost)
 }
 

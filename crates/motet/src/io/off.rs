@@ -8,7 +8,8 @@ use std::io::Write as _;
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::cell_labels::{cell_labels, lost_cell_arrays, lost_names};
-use crate::io::format::{Format, Input, Write, WriteOptions, write_all};
+use crate::io::format::{Format, Input, Write, WriteOptions};
+use crate::io::output::{Output, write_all};
 use crate::io::polygonal::kind_of_face;
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, parse_int, push_floats};
@@ -97,7 +98,7 @@ fn faces(text: &mut Text<'_>, n: usize, n_points: usize) -> Result<(Cells, usize
     Ok((cells, n_colours))
 }
 
-fn write(mesh: &Mesh, _: &WriteOptions, sink: &mut dyn std::io::Write) -> Result<Vec<String>> {
+fn write(mesh: &Mesh, _: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let (surface, boundary_only) = surface_of(mesh, "OFF");
     let holds = |kind| matches!(kind, CellKind::TRIANGLE | CellKind::QUAD | CellKind::POLYGON);
     let (mesh, mut lost) = keep_cells(&surface, "OFF", holds);
@@ -123,19 +124,24 @@ fn write(mesh: &Mesh, _: &WriteOptions, sink: &mut dyn std::io::Write) -> Result
         }
         out.push(b'\n');
     }
-    write_all(sink, &out)?;
+    write_all(output, &out)?;
     Ok(lost)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::Threads;
     use crate::io::format::Notes;
 
     fn parse(text: &str) -> (Result<Mesh>, Vec<String>) {
         let notes = Notes::default();
-        let mesh =
-            read(&Input { path: std::path::Path::new("in.off"), bytes: text.as_bytes(), notes: &notes });
+        let mesh = read(&Input {
+            path: std::path::Path::new("in.off"),
+            bytes: text.as_bytes(),
+            threads: &Threads::single(),
+            notes: &notes,
+        });
         (mesh, notes.into_vec())
     }
 

@@ -17,7 +17,8 @@ use ply_rs_bw::writer::Writer;
 
 use crate::base::{Error, Result, VertexId};
 use crate::geometry::vector::is_finite;
-use crate::io::format::{Encoding, Format, Input, Write, WriteOptions, write_all};
+use crate::io::format::{Encoding, Format, Input, Write, WriteOptions};
+use crate::io::output::{Output, write_all};
 use crate::io::polygonal::kind_of_face;
 use crate::io::scalar::append;
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
@@ -235,7 +236,7 @@ fn interleaved(columns: Vec<Values>) -> Values {
     all.pick((0..n * k).map(|i| i % k * n + i / k)).values
 }
 
-fn write(mesh: &Mesh, options: &WriteOptions, sink: &mut dyn std::io::Write) -> Result<Vec<String>> {
+fn write(mesh: &Mesh, options: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let (surface, boundary_only) = surface_of(mesh, "PLY");
     let holds = |kind| matches!(kind, CellKind::TRIANGLE | CellKind::QUAD | CellKind::POLYGON);
     let (mesh, mut lost) = keep_cells(&surface, "PLY", holds);
@@ -291,7 +292,7 @@ fn write(mesh: &Mesh, options: &WriteOptions, sink: &mut dyn std::io::Write) -> 
     let mut out = Vec::new();
     let written = Writer::new().write_ply(&mut out, &mut ply);
     written.map_err(|e| Error::input(format!("cannot be written as PLY: {e}")))?;
-    write_all(sink, &out)?;
+    write_all(output, &out)?;
     Ok(lost)
 }
 
@@ -372,12 +373,18 @@ fn row(field: &Field, i: usize) -> Vec<(String, Property)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::Threads;
     use crate::io::format::Notes;
     use crate::mesh::shapes;
 
     fn parse(bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
         let notes = Notes::default();
-        let mesh = read(&Input { path: std::path::Path::new("in.ply"), bytes, notes: &notes });
+        let mesh = read(&Input {
+            path: std::path::Path::new("in.ply"),
+            bytes,
+            threads: &Threads::single(),
+            notes: &notes,
+        });
         (mesh, notes.into_vec())
     }
 
@@ -404,7 +411,7 @@ mod tests {
         let mesh = full();
         for encoding in [Encoding::Ascii, Encoding::Binary] {
             let options = WriteOptions { encoding, ..WriteOptions::default() };
-            let written = FORMAT.to_files(&mesh, &options).unwrap();
+            let written = FORMAT.to_files(&mesh, &options, &Threads::single()).unwrap();
             assert_eq!(written.lost, [""; 0]);
             assert_eq!(parse(&written.files[0].1).0.unwrap(), mesh, "{encoding:?}");
         }
@@ -417,7 +424,7 @@ mod tests {
         mesh.set_cell_field(Field::scalars("odd name", vec![f64::INFINITY; n]));
         let [text, bytes] = [Encoding::Ascii, Encoding::Binary].map(|encoding| {
             let options = WriteOptions { encoding, ..WriteOptions::default() };
-            let mut written = FORMAT.to_files(&mesh, &options).unwrap();
+            let mut written = FORMAT.to_files(&mesh, &options, &Threads::single()).unwrap();
             (parse(&written.files.remove(0).1).0.unwrap(), written.lost)
         });
         assert!(text.1.len() == 1 && text.1[0].contains("odd name"), "{:?}", text.1);
@@ -426,7 +433,7 @@ mod tests {
         assert_eq!(bytes.0.cell_field("odd_name").unwrap().values, vec![f64::INFINITY; n].into());
         mesh.points[0][1] = f64::NAN;
         let text = WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() };
-        assert!(FORMAT.to_files(&mesh, &text).is_err());
+        assert!(FORMAT.to_files(&mesh, &text).is_err(), &Threads::single());
     }
 
     #[test]
@@ -500,7 +507,8 @@ mod tests {
             assert!(error.contains(reported), "{text}: {error}");
         }
         // A file truncated at any point is rejected.
-        let written = FORMAT.to_files(&full(), &WriteOptions::default()).unwrap().files.remove(0).1;
+        let written =
+            FORMAT.to_files(&full(), &WriteOptions::default(), &Threads::single()).unwrap().files.remove(0).1;
         for end in (0..written.len()).step_by(written.len() / 97) {
             assert!(parse(&written[..end]).0.is_err(), "{end}");
         }

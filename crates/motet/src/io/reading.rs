@@ -2,21 +2,21 @@
 
 use std::path::Path;
 
-use crate::base::{Error, ErrorKind, Result};
+use crate::base::{Error, ErrorKind, Result, Threads};
 use crate::io::format::{Format, Input, Notes};
 use crate::io::{foreign, ghosts, vtkxml};
 use crate::mesh::Mesh;
 
 /// Reads the file or folder `path` in the given format.
-pub(super) fn read_file(format: &Format, path: &Path, notes: &Notes) -> Result<Mesh> {
+pub(super) fn read_file(format: &Format, path: &Path, threads: &Threads, notes: &Notes) -> Result<Mesh> {
     if let Some(tail) = vtkxml::Tail::of(path) {
-        return checked(vtkxml::read_tail(&tail, notes), path, notes);
+        return checked(vtkxml::read_tail(&tail, threads, notes), path, notes);
     }
     let bytes = match format.is_folder() {
         true => Vec::new(),
         false => std::fs::read(path).map_err(|e| Error::io(path, e))?,
     };
-    read_as(format, &Input { path, bytes: &bytes, notes })
+    read_as(format, &Input { path, bytes: &bytes, threads, notes })
 }
 
 /// Reads `input` in the given format.

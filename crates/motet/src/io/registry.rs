@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::base::{Error, ErrorKind, Result};
+use crate::base::{Error, ErrorKind, Result, Threads};
 use crate::io::format::{Format, Notes, Write, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{replace_all, replace_folder, replace_with};
@@ -144,6 +144,14 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh> {
 /// # Errors
 /// The errors of [`read`].
 pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
+    read_on(path, &Threads::single())
+}
+
+/// Reads like [`read_noted`], on several threads where the format allows it. The mesh does not depend on them.
+///
+/// # Errors
+/// The errors of [`read`].
+pub fn read_on(path: impl AsRef<Path>, threads: &Threads) -> Result<(Mesh, Vec<String>)> {
     let path = path.as_ref();
     let notes = Notes::default();
     if let Some(step) = vtkhdf::StepPath::of(path) {
@@ -151,7 +159,7 @@ pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
         return Ok((mesh, notes.into_vec()));
     }
     let format = if path.is_dir() { folder_format(path) } else { by_extension(path)? };
-    let mesh = read_file(format, path, &notes)?;
+    let mesh = read_file(format, path, threads, &notes)?;
     Ok((mesh, notes.into_vec()))
 }
 
@@ -163,17 +171,30 @@ pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
 /// # Errors
 /// If the format cannot hold the mesh, or the file cannot be written.
 pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Result<Vec<String>> {
+    write_on(path, mesh, options, &Threads::single())
+}
+
+/// Writes like [`write`], on several threads where the format allows it. The bytes do not depend on them.
+///
+/// # Errors
+/// The errors of [`write`].
+pub fn write_on(
+    path: impl AsRef<Path>,
+    mesh: &Mesh,
+    options: &WriteOptions,
+    threads: &Threads,
+) -> Result<Vec<String>> {
     let path = path.as_ref();
     let format = for_writing(path)?;
     let write = format.write.ok_or_else(|| format.only_read().in_file(path))?;
     mesh.validate()?;
     let written = match write {
         Write::File(write) => {
-            let (mut lost, note) = replace_with(path, |sink| write(mesh, options, sink))?;
+            let (mut lost, note) = replace_with(path, threads, |output| write(mesh, options, output))?;
             lost.extend(note);
             return Ok(lost);
         }
-        Write::Files(write) => write(mesh, options).map_err(|e| e.in_file(path))?,
+        Write::Files(write) => write(mesh, options, threads).map_err(|e| e.in_file(path))?,
     };
     if format.is_folder() {
         refuse_full_folder(path)?;

@@ -6,12 +6,13 @@
 //! keep the old content, which is reported.
 
 use std::fs::{File, Metadata, OpenOptions};
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, Threads};
+use crate::io::output::Output;
 
 /// Maximum length of a chain of symbolic links; a longer one is a cycle.
 const MAX_LINKS: usize = 40;
@@ -35,7 +36,7 @@ pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<Vec<String>> {
         .map(|(path, bytes)| {
             let failed = |e: std::io::Error| Error::output(path, e);
             let mut draft = Draft::new(path)?;
-            draft.sink().write_all(bytes).map_err(failed)?;
+            draft.file().write_all(bytes).map_err(failed)?;
             Ok((path.as_path(), draft))
         })
         .collect::<Result<_>>()?;
@@ -49,10 +50,11 @@ pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<Vec<String>> {
 /// Replaces a file like [`replace`], with the output of `write`; also returns the result of `write`.
 pub(super) fn replace_with<T>(
     path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> Result<T>,
+    threads: &Threads,
+    write: impl FnOnce(&mut Output<'_>) -> Result<T>,
 ) -> Result<(T, Option<String>)> {
     let mut draft = Draft::new(path)?;
-    let result = write(draft.sink()).map_err(|e| e.in_file(path))?;
+    let result = draft.fill(path, threads, write).map_err(|e| e.in_file(path))?;
     Ok((result, draft.persist(path)?))
 }
 
@@ -110,11 +112,27 @@ impl Draft {
         Ok(Self::Beside(file, place, old))
     }
 
-    fn sink(&mut self) -> &mut dyn Write {
+    fn file(&mut self) -> &mut File {
         match self {
-            Self::Beside(file, ..) => file,
+            Self::Beside(file, ..) => file.as_file_mut(),
             Self::Into(file) => file,
         }
+    }
+
+    /// Writes the output of `write`. A device or pipe, which has no positions, gets it as a whole.
+    fn fill<T>(
+        &mut self,
+        path: &Path,
+        threads: &Threads,
+        write: impl FnOnce(&mut Output<'_>) -> Result<T>,
+    ) -> Result<T> {
+        if let Self::Beside(file, ..) = self {
+            return write(&mut Output::to_file(file.as_file_mut(), threads));
+        }
+        let mut bytes = Vec::new();
+        let result = write(&mut Output::to_memory(&mut bytes, threads))?;
+        self.file().write_all(&bytes).map_err(|e| Error::output(path, e))?;
+        Ok(result)
     }
 
     /// Moves the file to its target.

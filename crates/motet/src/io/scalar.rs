@@ -4,7 +4,12 @@ use std::borrow::Cow;
 use std::io::Write as _;
 
 use crate::base::{Point, Result};
+use crate::io::output::Output;
 use crate::mesh::Values;
+
+const NUMBERS_PER_LINE: usize = 12;
+/// Numbers that a thread writes as text at a time, whole lines.
+const NUMBERS_PER_PART: usize = 1024 * NUMBERS_PER_LINE;
 
 /// The byte order of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,19 +74,19 @@ macro_rules! scalars {
             }
         }
 
-        /// The bytes of all numbers in big-endian order; empty for texts.
-        pub(super) fn big_bytes(values: &Values) -> Vec<u8> {
+        /// Writes the bytes of all numbers in big-endian order; texts are skipped.
+        pub(super) fn write_big_values(output: &mut Output<'_>, values: &Values) -> Result<()> {
             match values {
-                $(Values::$name(v) => v.iter().flat_map(|x| x.to_be_bytes()).collect(),)*
-                Values::Text(_) => Vec::new(),
+                $(Values::$name(v) => write_big(output, v, |x| x.to_be_bytes()),)*
+                Values::Text(_) => Ok(()),
             }
         }
 
-        /// Appends numbers as text; texts are skipped.
-        pub(super) fn write_text(out: &mut Vec<u8>, values: &Values) {
+        /// Writes numbers as text; texts are skipped.
+        pub(super) fn write_text(output: &mut Output<'_>, values: &Values) -> Result<()> {
             match values {
-                $(Values::$name(v) => write_lines(out, v),)*
-                Values::Text(_) => {}
+                $(Values::$name(v) => write_lines(output, v),)*
+                Values::Text(_) => Ok(()),
             }
         }
 
@@ -134,15 +139,37 @@ impl Scalar {
     }
 }
 
-/// Appends numbers as text, up to twelve per line; floats with the fewest digits that recover them exactly.
-pub(super) fn write_lines<T: std::fmt::Debug>(out: &mut Vec<u8>, values: &[T]) {
-    for line in values.chunks(12) {
-        for value in line {
-            write!(out, "{value:?} ").expect("writing into memory does not fail");
+/// Writes numbers as text, up to twelve per line; floats with the fewest digits that recover them exactly.
+pub(super) fn write_lines<T: std::fmt::Debug + Sync>(output: &mut Output<'_>, values: &[T]) -> Result<()> {
+    let parts: Vec<&[T]> = values.chunks(NUMBERS_PER_PART).collect();
+    output.parts(parts.len(), |(), i, out| {
+        for line in parts[i].chunks(NUMBERS_PER_LINE) {
+            for value in line {
+                write!(out, "{value:?} ").expect("writing into memory does not fail");
+            }
+            out.pop();
+            out.push(b'\n');
         }
-        out.pop();
-        out.push(b'\n');
-    }
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// Writes `bytes` of each value.
+pub(super) fn write_big<T: Copy + Sync, const N: usize>(
+    output: &mut Output<'_>,
+    values: &[T],
+    bytes: impl Fn(T) -> [u8; N] + Sync + Send,
+) -> Result<()> {
+    let parts: Vec<&[T]> = values.chunks(NUMBERS_PER_PART).collect();
+    output.parts(parts.len(), |(), i, out| {
+        out.resize(parts[i].len() * N, 0);
+        for (place, &value) in out.as_chunks_mut::<N>().0.iter_mut().zip(parts[i]) {
+            *place = bytes(value);
+        }
+        Ok(())
+    })?;
+    Ok(())
 }
 
 /// Reverses the bytes of every number of `size` bytes.
@@ -170,33 +197,27 @@ pub(super) fn to_points(values: Values) -> Option<Vec<Point>> {
     )
 }
 
-/// Appends integers of 32 or 64 bits as ids; returns `false` if one is negative or too large.
-pub(super) fn extend_ids(ids: &mut Vec<u32>, kind: Scalar, order: ByteOrder, bytes: &[u8]) -> bool {
-    // The combined bits of all numbers, which avoids a branch in the loop.
-    let mut bits = 0u64;
-    let mut add = |wide: u64| {
-        bits |= wide;
-        wide as u32
-    };
-    let (fours, eights) = (bytes.as_chunks::<4>().0, bytes.as_chunks::<8>().0);
-    match (kind, order) {
-        (Scalar::I32, ByteOrder::Little) => {
-            ids.extend(fours.iter().map(|&b| add(i32::from_le_bytes(b) as u64)))
+/// Fills ids from the bytes of integers of 32 or 64 bits; returns `false` if one is negative or too large.
+pub(super) fn fill_ids(ids: &mut [u32], kind: Scalar, order: ByteOrder, bytes: &[u8]) -> bool {
+    /// The combined bits of all numbers show whether all fit, without a branch in the loop.
+    fn fill<const N: usize>(ids: &mut [u32], bytes: &[u8], wide: impl Fn([u8; N]) -> u64) -> bool {
+        let mut bits = 0;
+        for (id, &number) in ids.iter_mut().zip(bytes.as_chunks::<N>().0) {
+            let wide = wide(number);
+            bits |= wide;
+            *id = wide as u32;
         }
-        (Scalar::I32, ByteOrder::Big) => ids.extend(fours.iter().map(|&b| add(i32::from_be_bytes(b) as u64))),
-        (Scalar::U32, ByteOrder::Little) => {
-            ids.extend(fours.iter().map(|&b| add(u32::from_le_bytes(b).into())))
-        }
-        (Scalar::U32, ByteOrder::Big) => ids.extend(fours.iter().map(|&b| add(u32::from_be_bytes(b).into()))),
-        (Scalar::I64 | Scalar::U64, ByteOrder::Little) => {
-            ids.extend(eights.iter().map(|&b| add(u64::from_le_bytes(b))));
-        }
-        (Scalar::I64 | Scalar::U64, ByteOrder::Big) => {
-            ids.extend(eights.iter().map(|&b| add(u64::from_be_bytes(b))))
-        }
-        _ => return false,
+        bits >> 32 == 0
     }
-    bits >> 32 == 0
+    match (kind, order) {
+        (Scalar::I32, ByteOrder::Little) => fill(ids, bytes, |b| i32::from_le_bytes(b) as u64),
+        (Scalar::I32, ByteOrder::Big) => fill(ids, bytes, |b| i32::from_be_bytes(b) as u64),
+        (Scalar::U32, ByteOrder::Little) => fill(ids, bytes, |b| u32::from_le_bytes(b).into()),
+        (Scalar::U32, ByteOrder::Big) => fill(ids, bytes, |b| u32::from_be_bytes(b).into()),
+        (Scalar::I64 | Scalar::U64, ByteOrder::Little) => fill(ids, bytes, u64::from_le_bytes),
+        (Scalar::I64 | Scalar::U64, ByteOrder::Big) => fill(ids, bytes, u64::from_be_bytes),
+        _ => false,
+    }
 }
 
 /// Converts numbers to 32-bit ids. `Err` describes the first value that is not an id: negative, too large, or

@@ -7,11 +7,11 @@ use quick_xml::Reader;
 use quick_xml::escape::{escape, unescape};
 use quick_xml::events::{BytesStart, Event};
 
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, Threads};
 use crate::io::format::WriteOptions;
 use crate::io::lock::OutputLock;
 use crate::io::replace::replace_with;
-use crate::io::{replace, vtkhdf, write};
+use crate::io::{replace, vtkhdf, write_on};
 use crate::mesh::Mesh;
 
 /// Whether a path is that of a series: a `.pvd` file by its extension, or an existing VTKHDF file with
@@ -126,6 +126,7 @@ pub fn write_series(
     path: impl AsRef<Path>,
     frames: impl IntoIterator<Item = Result<(f64, Mesh)>>,
     options: &WriteOptions,
+    threads: &Threads,
 ) -> Result<Vec<String>> {
     let path = path.as_ref();
     let mut lost = Vec::new();
@@ -133,7 +134,7 @@ pub fn write_series(
         let mut series = SeriesWriter::new(path, options.clone());
         for frame in frames {
             let (time, mesh) = frame?;
-            lost = series.add(time, &mesh)?.1;
+            lost = series.add_on(time, &mesh, threads)?.1;
         }
         return Ok(lost);
     }
@@ -145,7 +146,7 @@ pub fn write_series(
         let (time, mesh) = frame?;
         steps.add(time, &mesh).map_err(|e| e.in_file(path))?;
     }
-    let (mut lost, note) = replace_with(path, |sink| steps.write_to(options, sink))?;
+    let (mut lost, note) = replace_with(path, threads, |output| steps.write_to(options, output))?;
     lost.extend(note);
     Ok(lost)
 }
@@ -214,10 +215,18 @@ impl SeriesWriter {
     /// # Errors
     /// The errors of [`write()`]; if another writer is writing this series.
     pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<(PathBuf, Vec<String>)> {
+        self.add_on(time, mesh, &Threads::single())
+    }
+
+    /// Adds a frame like [`add`](Self::add), on several threads.
+    ///
+    /// # Errors
+    /// The errors of [`add`](Self::add).
+    pub fn add_on(&mut self, time: f64, mesh: &Mesh, threads: &Threads) -> Result<(PathBuf, Vec<String>)> {
         self.lock()?;
         let k = self.frames.len();
         let file = self.frame_path(k);
-        let mut lost = write(&file, mesh, &self.options)?;
+        let mut lost = write_on(&file, mesh, &self.options, threads)?;
         self.frames.push((time, self.frame_name(k)));
         lost.extend(replace(&self.path, self.text().as_bytes())?);
         Ok((file, lost))

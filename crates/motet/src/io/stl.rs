@@ -14,7 +14,8 @@ use std::io::Write as _;
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector;
-use crate::io::format::{Encoding, Format, Input, Write, WriteOptions, write_all};
+use crate::io::format::{Encoding, Format, Input, Write, WriteOptions};
+use crate::io::output::{Output, write_all};
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, push_floats, quoted};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
@@ -210,7 +211,7 @@ fn words(text: &mut Text<'_>, expected: &[&str]) -> Result<()> {
     Ok(())
 }
 
-fn write(mesh: &Mesh, options: &WriteOptions, sink: &mut dyn std::io::Write) -> Result<Vec<String>> {
+fn write(mesh: &Mesh, options: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let (surface, boundary_only) = surface_of(mesh, "STL");
     let (mesh, mut lost) = keep_cells(&surface, "STL", |kind| fan(kind).is_some());
     lost.extend(boundary_only);
@@ -222,7 +223,7 @@ fn write(mesh: &Mesh, options: &WriteOptions, sink: &mut dyn std::io::Write) -> 
     lost.extend(lost_arrays("STL", "field", &mesh.field_data));
     let bytes =
         if binary { write_binary(&mesh, &triangles, &mut lost)? } else { write_ascii(&mesh, &triangles) };
-    write_all(sink, &bytes)?;
+    write_all(output, &bytes)?;
     Ok(lost)
 }
 

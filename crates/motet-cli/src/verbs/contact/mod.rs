@@ -68,9 +68,10 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
         errors.into_iter().for_each(|errors| output::add_errors(&mut mesh, errors));
         let writing = Instant::now();
         let file = match &mut series {
-            Some(series) => Some(series.add(frames.times[k], &mesh)?),
+            Some(series) => Some(series.add_on(frames.times[k], &mesh, &threads)?),
             None if is_last => {
-                Some((args.output.clone(), io::write(&args.output, &mesh, &args.writing.options())?))
+                let lost = io::write_on(&args.output, &mesh, &args.writing.options(), &threads)?;
+                Some((args.output.clone(), lost))
             }
             None => None,
         };
@@ -127,7 +128,8 @@ fn by_delaunay(
     let (between, seconds) = delaunay::between(contact, threads)?;
     if let Some(file) = &args.gap_tets {
         let (mesh, n_flat) = delaunay::tets(contact, &between);
-        io::write(file, &mesh, &args.writing.options())?.iter().for_each(|what| console.warn(what));
+        let lost = io::write_on(file, &mesh, &args.writing.options(), threads)?;
+        lost.iter().for_each(|what| console.warn(what));
         if n_flat > 0 {
             console.warn(format_args!(
                 "{n_flat} gap tets are not written: they are triangles or segments, since all vertices lie \

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     let meter = console.meter("implanting", None);
     let threads = common.threads()?.watched(meter.watch());
     meter.stage("reading");
-    let (host, notes) = io::read_noted(&args.host)?;
+    let (host, notes) = io::read_on(&args.host, &threads)?;
     notes.iter().for_each(|what| console.warn(what));
     let rules = args.arrays.rules(&host).map_err(|e| e.in_file(&args.host))?;
     let devices = read(args, &words, &host.label_names, console)?;
@@ -43,7 +43,7 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     let quality = [&host, &mesh].map(|mesh| Qualities::of_mesh(mesh, &threads));
     meter.stage("writing");
     let Written { lost, seconds: write } =
-        args.arrays.write(&mut mesh, Some(&history), &args.output, &args.writing)?;
+        args.arrays.write(&mut mesh, Some(&history), &args.output, &args.writing, &threads)?;
     drop(meter);
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));

@@ -7,6 +7,7 @@ mod report;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use motet::base::Threads;
 use motet::mesh::Qualities;
 use motet::meshing::{Dividing, Surfaces, fill, sizes_by};
 use motet::preflight::{Preflight, Role, culprits};
@@ -33,7 +34,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     let meter = console.meter("meshing", None);
     let threads = common.threads()?.watched(meter.watch());
     meter.stage("reading surfaces");
-    let (mut surfaces, sizes) = read(args, console)?;
+    let (mut surfaces, sizes) = read(args, &threads, console)?;
     let read = begin.elapsed().as_secs_f64();
     meter.stage("checking surfaces");
     let done = words.repairs().map(|repairs| surfaces.repair(&repairs, &threads)).transpose()?;
@@ -45,10 +46,11 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     let preflight = surfaces.preflight(&threads);
     let check = checking.elapsed().as_secs_f64();
     if let Some(file) = &args.culprits {
-        io::write(
+        io::write_on(
             file,
             &culprits(&surfaces.points, &surfaces.triangles, &preflight),
             &args.writing.options(),
+            &threads,
         )?;
     }
     let mut report = Report::new(args, &preflight, done.as_ref().map_or(&[], |done| &done.done));
@@ -69,7 +71,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     let quality = Qualities::of_mesh(&filled.mesh, &threads);
     meter.stage("writing");
     let writing = Instant::now();
-    let lost = io::write(&args.output, &filled.mesh, &args.writing.options())?;
+    let lost = io::write_on(&args.output, &filled.mesh, &args.writing.options(), &threads)?;
     let write = writing.elapsed().as_secs_f64();
     drop(meter);
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
@@ -88,13 +90,17 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
 }
 
 /// Reads the surfaces, and the sizes at their points from the array that the call names.
-fn read(args: &MeshArgs, console: &Console) -> motet::Result<(Surfaces, Option<Vec<f64>>)> {
+fn read(
+    args: &MeshArgs,
+    threads: &Threads,
+    console: &Console,
+) -> motet::Result<(Surfaces, Option<Vec<f64>>)> {
     let mut meshes: Vec<(Mesh, Role, String)> = Vec::new();
     let mut sizes = Vec::new();
     let roles = [(&args.surfaces, Role::Boundary), (&args.membrane, Role::Membrane)];
     for (file, role) in roles.into_iter().flat_map(|(files, role)| files.iter().map(move |file| (file, role)))
     {
-        let (mesh, notes) = io::read_noted(file)?;
+        let (mesh, notes) = io::read_on(file, threads)?;
         notes.iter().for_each(|what| console.warn(what));
         if let Some(array) = &args.size_array {
             sizes.push(sizes_by(&mesh, array).map_err(|e| e.in_file(file))?);

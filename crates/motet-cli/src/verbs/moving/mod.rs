@@ -39,7 +39,7 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> Result
         outputs::check_beside(&nodal.file, others, "displacements")?;
     }
     let threads = common.threads()?;
-    let (mesh, notes) = io::read_noted(&args.mesh)?;
+    let (mesh, notes) = io::read_on(&args.mesh, &threads)?;
     notes.iter().for_each(|note| console.warn(note));
     let mut report = Report::new(args, &mesh);
     report.seconds.read = begin.elapsed().as_secs_f64();
@@ -179,7 +179,7 @@ fn frames(
         let is_last = k + 1 == n || !certificate.complete;
         let velocity = if plan.timed { Some(velocity(&before, time, &points)?) } else { None };
         let writing = Instant::now();
-        let file = sink.take(time, &points, velocity, is_last)?;
+        let file = sink.take(time, &points, velocity, is_last, &threads)?;
         report.seconds.write += writing.elapsed().as_secs_f64();
         if let Some(file) = &file {
             console.detail(format_args!("wrote {}", file.display()));

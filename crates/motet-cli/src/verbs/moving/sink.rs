@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use motet::Mesh;
-use motet::base::{Point, VertexId};
+use motet::base::{Point, Threads, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::vector::sub;
 use motet::io::{self, NodalSeries, SeriesWriter, WriteOptions};
@@ -64,6 +64,7 @@ impl<'a> Sink<'a> {
         points: &[Point],
         velocity: Option<Vec<Point>>,
         is_last: bool,
+        threads: &Threads,
     ) -> motet::Result<Option<PathBuf>> {
         let displacement_of = |v: usize| sub(points[v], self.reference.points[v]);
         self.times.push(time);
@@ -84,11 +85,11 @@ impl<'a> Sink<'a> {
         }
         match &mut self.series {
             None => {
-                self.lost = io::write(self.path, &self.mesh, &self.options)?;
+                self.lost = io::write_on(self.path, &self.mesh, &self.options, threads)?;
                 Ok(Some(self.path.to_owned()))
             }
             Some(series) => {
-                let (file, lost) = series.add(time, &self.mesh)?;
+                let (file, lost) = series.add_on(time, &self.mesh, threads)?;
                 self.lost = lost;
                 Ok(Some(file))
             }

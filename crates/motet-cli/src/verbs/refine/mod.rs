@@ -28,7 +28,7 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     let threads = common.threads()?.watched(meter.watch());
     meter.stage("reading");
     let mut wanted = wanted(args, &threads)?;
-    let (old, notes) = io::read_noted(&args.mesh)?;
+    let (old, notes) = io::read_on(&args.mesh, &threads)?;
     let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
     let mut given = if args.forget { MeshRefinement::forget(&old) } else { old };
     let sizes = fix_sizes(&mut wanted.criteria, &mut given, &threads).map_err(|e| e.in_file(&args.mesh))?;
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     let mut mesh = refinement.with_memory(&threads);
     mesh.point_data.retain(|field| !sizes.contains(&field.name));
     let Written { lost, seconds: write } =
-        args.arrays.write(&mut mesh, done.history.as_ref(), &args.output, &args.writing)?;
+        args.arrays.write(&mut mesh, done.history.as_ref(), &args.output, &args.writing, &threads)?;
     drop(meter);
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));

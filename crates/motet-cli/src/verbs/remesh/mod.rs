@@ -27,7 +27,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let meter = console.meter("remeshing", None);
     let threads = common.threads()?.watched(meter.watch());
     meter.stage("reading");
-    let (old, notes) = io::read_noted(&args.mesh)?;
+    let (old, notes) = io::read_on(&args.mesh, &threads)?;
     let read = begin.elapsed().as_secs_f64();
     let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
     let options = words.options(&old).map_err(|e| e.in_file(&args.mesh))?;
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let fields = field_ledger(&old, &mesh, &rules);
     let on_fields = begin_fields.elapsed().as_secs_f64();
     let Written { lost, seconds: write } =
-        args.arrays.write(&mut mesh, history.as_ref(), &args.output, &args.writing)?;
+        args.arrays.write(&mut mesh, history.as_ref(), &args.output, &args.writing, &threads)?;
     drop(meter);
 
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));

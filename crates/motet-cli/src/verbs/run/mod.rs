@@ -52,7 +52,7 @@ pub(crate) fn execute(args: &RunArgs, common: &Common, console: &Console) -> Res
     let threads = threads.watched(meter.watch());
     for k in run.moving.step() + 1..=last {
         let step = run.step(job.time(k), job.time.period, &threads)?;
-        output.take(&run.moving, &step)?;
+        output.take(&run.moving, &step, &threads)?;
         meter.suspend(|| report::line(&step, console));
         report.add(&step);
         meter.step();
@@ -107,7 +107,7 @@ impl Run {
         let mut changes = run.refine(0, threads)?;
         changes.extend(run.moving.repair(threads)?);
         let step = Step { changes, ..run.moving.certify(threads)? };
-        output.first(&record, &run.moving, &step)?;
+        output.first(&record, &run.moving, &step, threads)?;
         report::line(&step, console);
         report.add(&step);
         Ok(run)

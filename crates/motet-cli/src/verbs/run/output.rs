@@ -8,6 +8,7 @@ use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use motet::base::Threads;
 use motet::geometry::quality::eas;
 use motet::io::{SeriesWriter, WriteOptions, remove_drafts, replace, settle, sync};
 use motet::mesh::Field;
@@ -115,7 +116,13 @@ impl Output {
     }
 
     /// Writes the first frame; removes what an earlier run has left.
-    pub(super) fn first(&mut self, record: &Record, moving: &MovingMesh, step: &Step) -> Result<()> {
+    pub(super) fn first(
+        &mut self,
+        record: &Record,
+        moving: &MovingMesh,
+        step: &Step,
+        threads: &Threads,
+    ) -> Result<()> {
         if self.state.is_file() {
             std::fs::remove_file(&self.state).map_err(|e| Error::output(&self.state, e))?;
         }
@@ -123,14 +130,16 @@ impl Output {
         for file in [&self.log, &self.times] {
             replace(file, b"")?;
         }
-        self.take(moving, step)
+        self.take(moving, step, threads)
     }
 
     /// Writes a step: the frame where one is due, then the lines, then the state.
-    pub(super) fn take(&mut self, moving: &MovingMesh, step: &Step) -> Result<()> {
+    pub(super) fn take(&mut self, moving: &MovingMesh, step: &Step, threads: &Threads) -> Result<()> {
         let is_due = step.step.is_multiple_of(self.every) || !step.complete;
-        let file =
-            is_due.then(|| self.series.add(step.time, &frame(moving))).transpose()?.map(|(file, _)| file);
+        let file = is_due
+            .then(|| self.series.add_on(step.time, &frame(moving), threads))
+            .transpose()?
+            .map(|(file, _)| file);
         let mut line = serde_json::to_value(step).map_err(|e| Error::io(&self.log, e.into()))?;
         let seconds = line.as_object_mut().and_then(|line| line.remove("seconds")).unwrap_or(Value::Null);
         if let (Some(line), Some(file)) = (line.as_object_mut(), &file) {

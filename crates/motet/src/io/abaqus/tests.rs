@@ -1,13 +1,14 @@
 use std::path::Path;
 
 use super::*;
-use crate::base::{Result, VertexId};
+use crate::base::{Result, Threads, VertexId};
 use crate::io::format::{Input, Notes, WriteOptions};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 fn parse_at(path: &Path, bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
     let notes = Notes::default();
-    let mesh = crate::io::read_as(&FORMAT, &Input { path, bytes, notes: &notes });
+    let mesh =
+        crate::io::read_as(&FORMAT, &Input { path, bytes, threads: &Threads::single(), notes: &notes });
     (mesh, notes.into_vec())
 }
 
@@ -21,7 +22,7 @@ fn error_of(text: &str) -> String {
 }
 
 fn print(mesh: &Mesh) -> (String, Vec<String>) {
-    let written = FORMAT.to_files(mesh, &WriteOptions::default()).unwrap();
+    let written = FORMAT.to_files(mesh, &WriteOptions::default(), &Threads::single()).unwrap();
     (String::from_utf8(written.files.into_iter().next().unwrap().1).unwrap(), written.lost)
 }
 
@@ -357,7 +358,7 @@ fn truncated_and_damaged_files_never_panic() {
         let check = |bytes: &[u8]| {
             if let Ok(mesh) = parse_at(Path::new("in.inp"), bytes).0 {
                 mesh.validate().unwrap();
-                let again = FORMAT.to_files(&mesh, &WriteOptions::default()).unwrap();
+                let again = FORMAT.to_files(&mesh, &WriteOptions::default(), &Threads::single()).unwrap();
                 parse_at(Path::new("in.inp"), &again.files[0].1).0.unwrap();
             }
         };

@@ -9,7 +9,8 @@ use super::surfaces::{FacetKey, facet_key};
 use super::{ELSET, NSET, SURFACE};
 use crate::base::{Result, VertexId};
 use crate::io::cell_labels::{cell_labels, labels_cover};
-use crate::io::format::{WriteOptions, write_all};
+use crate::io::format::WriteOptions;
+use crate::io::output::{Output, write_all};
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::io::text::push_float;
 use crate::mesh::facets::facet_shapes;
@@ -26,7 +27,7 @@ type Sets = Vec<(String, Vec<usize>)>;
 /// The name and the cells of each label.
 type ByLabel = BTreeMap<i32, (String, Vec<usize>)>;
 
-pub(super) fn write(mesh: &Mesh, _: &WriteOptions, sink: &mut dyn std::io::Write) -> Result<Vec<String>> {
+pub(super) fn write(mesh: &Mesh, _: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let (mesh, mut lost) = keep_cells(mesh, "Abaqus", |kind| written_as(kind).is_some());
     let mut out = b"*HEADING\nmesh written by motet\n".to_vec();
     nodes(&mut out, &mesh);
@@ -40,7 +41,7 @@ pub(super) fn write(mesh: &Mesh, _: &WriteOptions, sink: &mut dyn std::io::Write
     named.extend(sets_from_arrays(&mesh.cell_data, SURFACE));
     surfaces(&mut out, &mesh, &named, &mut lost);
     report_losses(&mesh, &mut lost);
-    write_all(sink, &out)?;
+    write_all(output, &out)?;
     Ok(lost)
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::base::{Csr, Result, VertexId};
+use crate::base::{Csr, Result, Threads, VertexId};
 use crate::io::cgns::FORMAT;
 use crate::io::cgns::kinds::ElementType;
 use crate::io::cgns::tree::Tree;
@@ -12,7 +12,10 @@ use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
 fn parse(bytes: &[u8]) -> Result<(Mesh, Vec<String>)> {
     let notes = Notes::default();
-    let mesh = read_as(&FORMAT, &Input { path: Path::new("a.cgns"), bytes, notes: &notes })?;
+    let mesh = read_as(
+        &FORMAT,
+        &Input { path: Path::new("a.cgns"), bytes, threads: &Threads::single(), notes: &notes },
+    )?;
     Ok((mesh, notes.into_vec()))
 }
 
@@ -23,7 +26,7 @@ fn refused(bytes: &[u8]) -> String {
 }
 
 fn print(mesh: &Mesh) -> (Vec<u8>, Vec<String>) {
-    let mut written = FORMAT.to_files(mesh, &WriteOptions::default()).unwrap();
+    let mut written = FORMAT.to_files(mesh, &WriteOptions::default(), &Threads::single()).unwrap();
     (written.files.remove(0).1, written.lost)
 }
 

@@ -6,7 +6,8 @@ use crate::io::cgns::kinds::{ElementType, MIXED, NFACE, NGON};
 use crate::io::cgns::parts::{INNER_FACES, Part, ZONE, element_type, parts};
 use crate::io::cgns::solutions::solutions;
 use crate::io::cgns::tree::{Ints, Tree};
-use crate::io::format::{WriteOptions, write_all};
+use crate::io::format::WriteOptions;
+use crate::io::output::{Output, write_all};
 use crate::io::select::keep_cells;
 use crate::mesh::{Mesh, Values};
 
@@ -15,7 +16,7 @@ use crate::mesh::{Mesh, Values};
 const VERSION: f32 = 3.4;
 
 /// Writes uncompressed data: the CGNS libraries reject the HDF5 format that the compression used here needs.
-pub(super) fn write(mesh: &Mesh, _: &WriteOptions, sink: &mut dyn std::io::Write) -> Result<Vec<String>> {
+pub(super) fn write(mesh: &Mesh, _: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let of_faces = mesh.cells.kinds().iter().any(|&kind| needs_faces(kind));
     let (mesh, mut lost) = keep_cells(mesh, "CGNS", |kind| match of_faces {
         true => faces::holds(kind),
@@ -43,7 +44,7 @@ pub(super) fn write(mesh: &Mesh, _: &WriteOptions, sink: &mut dyn std::io::Write
     base.child(zone);
     parts.iter().filter(|part| part.has_label).for_each(|part| base.child(family(part)));
     let version = Tree::with("CGNSLibraryVersion", "CGNSLibraryVersion_t", Values::F32(vec![VERSION]));
-    write_all(sink, &Tree::file(vec![version, base])?)?;
+    write_all(output, &Tree::file(vec![version, base])?)?;
     Ok(lost)
 }
 

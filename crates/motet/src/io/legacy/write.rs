@@ -1,20 +1,17 @@
 //! Writes a mesh as an unstructured grid to a legacy VTK file.
 
-use std::io::Write as _;
+use std::borrow::Cow;
 
 use crate::base::{Error, Result};
-use crate::io::format::{Encoding, WriteOptions, drain};
+use crate::io::format::{Encoding, WriteOptions};
 use crate::io::labels::label_fields;
 use crate::io::legacy::arrays::{encode, encode_length};
+use crate::io::output::{Output, write_all};
 use crate::io::polyhedra::face_stream;
-use crate::io::scalar::{big_bytes, write_text};
-use crate::mesh::{CellKind, Field, Mesh, Values};
+use crate::io::scalar::{write_big, write_big_values, write_lines, write_text};
+use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
-pub(super) fn write(
-    mesh: &Mesh,
-    options: &WriteOptions,
-    sink: &mut dyn std::io::Write,
-) -> Result<Vec<String>> {
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let offsets = match options.version.as_deref() {
         None | Some("5.1") => true,
         Some("4.2") => false,
@@ -23,103 +20,113 @@ pub(super) fn write(
                 .remedy("choose 5.1 or 4.2"));
         }
     };
-    let mut writer =
-        Writer { out: Vec::new(), ascii: options.encoding == Encoding::Ascii, offsets, lost: Vec::new() };
+    let mut writer = Writer { output, ascii: options.encoding == Encoding::Ascii, offsets, lost: Vec::new() };
     let version = if offsets { "5.1" } else { "4.2" };
     let encoding = if writer.ascii { "ASCII" } else { "BINARY" };
     writer.line(&format!(
         "# vtk DataFile Version {version}\nwritten by motet\n{encoding}\nDATASET UNSTRUCTURED_GRID"
-    ));
+    ))?;
     let (label_cells, label_names) = label_fields(mesh);
-    writer.fields(&mesh.field_data.iter().chain(&label_names).collect::<Vec<_>>());
-    writer.line(&format!("POINTS {} double", mesh.points.len()));
-    writer.numbers(&Values::F64(mesh.points.as_flattened().to_vec()));
-    drain(&mut writer.out, sink)?;
+    writer.fields(&mesh.field_data.iter().chain(&label_names).collect::<Vec<_>>())?;
+    writer.line(&format!("POINTS {} double", mesh.points.len()))?;
+    writer.each(mesh.points.as_flattened(), |x| x.to_be_bytes())?;
     if !mesh.cells.is_empty() {
         writer.cells(mesh)?;
     }
-    drain(&mut writer.out, sink)?;
     writer.data(
         "CELL_DATA",
         mesh.cells.len(),
         &mesh.cell_data.iter().chain(&label_cells).collect::<Vec<_>>(),
-    );
-    writer.data("POINT_DATA", mesh.points.len(), &mesh.point_data.iter().collect::<Vec<_>>());
-    drain(&mut writer.out, sink)?;
+    )?;
+    writer.data("POINT_DATA", mesh.points.len(), &mesh.point_data.iter().collect::<Vec<_>>())?;
     Ok(writer.lost)
 }
 
-struct Writer {
-    out: Vec<u8>,
+struct Writer<'a, 'o> {
+    output: &'a mut Output<'o>,
     ascii: bool,
     /// Whether cells are written in the layout used since 5.0.
     offsets: bool,
     lost: Vec<String>,
 }
 
-impl Writer {
-    fn line(&mut self, text: &str) {
-        self.out.extend(text.as_bytes());
-        self.out.push(b'\n');
+impl Writer<'_, '_> {
+    fn line(&mut self, text: &str) -> Result<()> {
+        write_all(self.output, text.as_bytes())?;
+        write_all(self.output, b"\n")
     }
 
-    fn numbers(&mut self, values: &Values) {
+    fn numbers(&mut self, values: &Values) -> Result<()> {
         match (values, self.ascii) {
-            (Values::Text(texts), _) => texts.iter().for_each(|text| self.text(text)),
-            (_, true) => write_text(&mut self.out, values),
-            (_, false) => self.out.extend(&*big_bytes(values)),
+            (Values::Text(texts), _) => texts.iter().try_for_each(|text| self.text(text))?,
+            (_, true) => write_text(self.output, values)?,
+            (_, false) => write_big_values(self.output, values)?,
         }
-        self.out.push(b'\n');
+        write_all(self.output, b"\n")
     }
 
-    fn text(&mut self, text: &str) {
-        if self.ascii {
-            self.line(&encode(text));
-        } else {
-            self.out.extend(encode_length(text.len()));
-            self.out.extend(text.as_bytes());
+    /// Writes numbers as text, or the `bytes` of each.
+    fn each<T: Copy + std::fmt::Debug + Sync, const N: usize>(
+        &mut self,
+        numbers: &[T],
+        bytes: impl Fn(T) -> [u8; N] + Sync + Send,
+    ) -> Result<()> {
+        match self.ascii {
+            true => write_lines(self.output, numbers)?,
+            false => write_big(self.output, numbers, bytes)?,
         }
+        write_all(self.output, b"\n")
+    }
+
+    fn text(&mut self, text: &str) -> Result<()> {
+        if self.ascii {
+            return self.line(&encode(text));
+        }
+        write_all(self.output, &encode_length(text.len()))?;
+        write_all(self.output, text.as_bytes())
     }
 
     fn cells(&mut self, mesh: &Mesh) -> Result<()> {
-        let lists = lists(mesh);
-        let n_ids: usize = lists.iter().map(Vec::len).sum();
+        let (offsets, ids) = lists(&mesh.cells)?;
+        let long = |id| i64::from(id).to_be_bytes();
         if self.offsets {
-            let mut ends = vec![0i64];
-            ends.extend(lists.iter().scan(0, |end, list| {
-                *end += list.len() as i64;
-                Some(*end)
-            }));
-            self.line(&format!("CELLS {} {n_ids}\nOFFSETS vtktypeint64", ends.len()));
-            self.numbers(&Values::I64(ends));
-            self.line("CONNECTIVITY vtktypeint64");
-            self.numbers(&Values::I64(lists.concat().into_iter().map(i64::from).collect()));
+            self.line(&format!("CELLS {} {}\nOFFSETS vtktypeint64", offsets.len(), ids.len()))?;
+            self.each::<u32, 8>(&offsets, long)?;
+            self.line("CONNECTIVITY vtktypeint64")?;
+            self.each::<u32, 8>(&ids, long)?;
         } else {
-            self.line(&format!("CELLS {} {}", lists.len(), n_ids + lists.len()));
-            let counted =
-                lists.iter().flat_map(|list| std::iter::once(list.len() as u32).chain(list.iter().copied()));
-            let counted = counted.map(i32::try_from).collect::<Result<_, _>>();
-            self.numbers(&Values::I32(counted.map_err(|_| {
-                Error::options("ids above 2^31 - 1 do not fit in version 4.2").remedy("choose 5.1")
-            })?));
+            let n = mesh.cells.len();
+            self.line(&format!("CELLS {n} {}", ids.len() + n))?;
+            let mut counted = Vec::with_capacity(ids.len() + n);
+            for ends in offsets.windows(2) {
+                counted.push(ends[1] - ends[0]);
+                counted.extend(&ids[ends[0] as usize..ends[1] as usize]);
+            }
+            if counted.iter().any(|&id| i32::try_from(id).is_err()) {
+                return Err(
+                    Error::options("ids above 2^31 - 1 do not fit in version 4.2").remedy("choose 5.1")
+                );
+            }
+            self.each(&counted, u32::to_be_bytes)?;
         }
-        self.line(&format!("CELL_TYPES {}", lists.len()));
-        self.numbers(&Values::I32(mesh.cells.kinds().iter().map(|k| i32::from(k.0)).collect()));
-        Ok(())
+        self.line(&format!("CELL_TYPES {}", mesh.cells.len()))?;
+        let kinds: &[u8] = bytemuck::cast_slice(mesh.cells.kinds());
+        self.each(kinds, |kind| i32::from(kind).to_be_bytes())
     }
 
-    fn data(&mut self, section: &str, n: usize, fields: &[&Field]) {
-        if !fields.is_empty() {
-            self.line(&format!("{section} {n}"));
-            self.fields(fields);
-        }
-    }
-
-    fn fields(&mut self, fields: &[&Field]) {
+    fn data(&mut self, section: &str, n: usize, fields: &[&Field]) -> Result<()> {
         if fields.is_empty() {
-            return;
+            return Ok(());
         }
-        self.line(&format!("FIELD FieldData {}", fields.len()));
+        self.line(&format!("{section} {n}"))?;
+        self.fields(fields)
+    }
+
+    fn fields(&mut self, fields: &[&Field]) -> Result<()> {
+        if fields.is_empty() {
+            return Ok(());
+        }
+        self.line(&format!("FIELD FieldData {}", fields.len()))?;
         for field in fields {
             let kind = type_name(&field.values, self.offsets);
             let (mut name, components) = (encode(&field.name), field.components);
@@ -127,21 +134,32 @@ impl Writer {
                 name += "unnamed";
                 self.lost.push("an array without a name is written as `unnamed`".into());
             }
-            writeln!(self.out, "{name} {components} {} {kind}", field.n_rows())
-                .expect("writing into memory does not fail");
-            self.numbers(&field.values);
+            self.line(&format!("{name} {components} {} {kind}", field.n_rows()))?;
+            self.numbers(&field.values)?;
         }
+        Ok(())
     }
 }
 
-/// The list of each cell: its vertices, or the face stream of a polyhedron.
-fn lists(mesh: &Mesh) -> Vec<Vec<u32>> {
-    let mut polyhedra = mesh.cells.polyhedron_faces().iter();
-    let list = |(_, kind, vertices): (_, CellKind, &[crate::base::VertexId])| match kind {
-        CellKind::POLYHEDRON => polyhedra.next().map(face_stream).unwrap_or_default(),
-        _ => vertices.iter().map(|v| v.0).collect(),
-    };
-    mesh.cells.iter().map(list).collect()
+/// Where the list of each cell starts and the last ends, and all lists: vertices, or the face stream of a
+/// polyhedron.
+fn lists(cells: &Cells) -> Result<(Cow<'_, [u32]>, Cow<'_, [u32]>)> {
+    let vertices = cells.connectivity();
+    if cells.polyhedron_faces().is_empty() {
+        let ids: &[u32] = bytemuck::cast_slice(vertices.items());
+        return Ok((Cow::Borrowed(vertices.offsets()), Cow::Borrowed(ids)));
+    }
+    let mut polyhedra = cells.polyhedron_faces().iter();
+    let (mut offsets, mut ids) = (vec![0], Vec::new());
+    for (_, kind, vertices) in cells.iter() {
+        match kind {
+            CellKind::POLYHEDRON => ids.extend(polyhedra.next().map(face_stream).unwrap_or_default()),
+            _ => ids.extend(vertices.iter().map(|v| v.0)),
+        }
+        let end = u32::try_from(ids.len());
+        offsets.push(end.map_err(|_| Error::input("the polyhedra have more faces than can be written"))?);
+    }
+    Ok((Cow::Owned(offsets), Cow::Owned(ids)))
 }
 
 /// VTK's name of a type. meshio accepts `long` only in files before 5.0, and `vtktypeint64` only in later

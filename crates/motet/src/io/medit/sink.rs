@@ -3,13 +3,16 @@
 use std::io::Write as _;
 
 use super::{DIMENSION, END, Keyword, TEXT_ONLY};
+use crate::base::{Result, Threads};
+use crate::io::output::Output;
 use crate::io::text::push_float;
 
 /// A file being written.
-pub(super) struct Sink {
+pub(super) struct Sink<'t> {
     out: Vec<u8>,
     /// The version of a binary file; `None` for text.
     version: Option<i32>,
+    threads: &'t Threads,
     /// Where to store the position of the next section.
     next_at: usize,
 }
@@ -23,10 +26,10 @@ pub(super) fn version_for(n_points: usize, n_bytes: u64) -> i32 {
     }
 }
 
-impl Sink {
+impl<'t> Sink<'t> {
     /// Starts a file with its head; as text if there is no version.
-    pub(super) fn new(version: Option<i32>) -> Self {
-        let mut sink = Self { out: Vec::new(), version, next_at: 0 };
+    pub(super) fn new(version: Option<i32>, threads: &'t Threads) -> Self {
+        let mut sink = Self { out: Vec::new(), version, threads, next_at: 0 };
         match version {
             None => sink.out.extend(b"MeshVersionFormatted 2\n\nDimension 3\n"),
             Some(version) => {
@@ -53,6 +56,19 @@ impl Sink {
         } else {
             write!(self.out, "\n{}\n{n}\n", keyword.name).expect("writing into memory does not fail");
         }
+    }
+
+    /// Writes `n` rows on all threads, each by `put`, which gets its number.
+    pub(super) fn rows(&mut self, n: usize, put: impl Fn(&mut Self, usize) + Sync + Send) -> Result<()> {
+        let (version, threads) = (self.version, self.threads);
+        Output::to_memory(&mut self.out, threads).rows(n, |rows, out| {
+            let mut part = Self { out, version, threads, next_at: 0 };
+            for i in rows {
+                put(&mut part, i);
+                part.end_row();
+            }
+            part.out
+        })
     }
 
     pub(super) fn end_section(&mut self) {
@@ -115,7 +131,7 @@ impl Sink {
     }
 
     fn blank(&mut self) {
-        if self.out.last() != Some(&b'\n') {
+        if self.out.last().is_some_and(|&last| last != b'\n') {
             self.out.push(b' ');
         }
     }

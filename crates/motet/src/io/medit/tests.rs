@@ -1,7 +1,7 @@
 use std::path::Path;
 
 use super::*;
-use crate::base::{Result, VertexId};
+use crate::base::{Result, Threads, VertexId};
 use crate::io::format::{Input, Notes, WriteOptions, Written};
 use crate::mesh::{Cells, Field, Mesh, Values};
 
@@ -79,7 +79,7 @@ const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.5, 0.0, 0.0], [0.0, 1.0, 0.0
 
 fn parse(path: &Path, format: &Format, bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
     let notes = Notes::default();
-    let mesh = crate::io::read_as(format, &Input { path, bytes, notes: &notes });
+    let mesh = crate::io::read_as(format, &Input { path, bytes, threads: &Threads::single(), notes: &notes });
     (mesh, notes.into_vec())
 }
 
@@ -220,7 +220,7 @@ fn a_tensor_is_stored_by_rows_of_its_lower_triangle() {
         components: 6,
         values: vec![11.0, 22.0, 33.0, 12.0, 23.0, 13.0].into(),
     });
-    let Written { files, lost } = write::solution(&mesh, false).unwrap();
+    let Written { files, lost } = write::solution(&mesh, false, &Threads::single()).unwrap();
     let text = String::from_utf8(files[0].1.clone()).unwrap();
     assert!(text.contains("SolAtVertices\n1\n1 3\n11.0 12.0 22.0 13.0 23.0 33.0\n"), "{text}");
     assert_eq!(lost, ["array names are not written (Medit solutions have none): t"]);
@@ -250,15 +250,20 @@ fn only_solution_arrays_are_written_beside_a_mesh() {
     mesh.set_point_field(field("pressure", 1, 4));
     mesh.set_cell_field(field("pair", 2, 2));
     mesh.set_point_field(Field::scalars("n", vec![1i32; 4]));
-    let Written { files, lost } = write::mesh(&mesh, false).unwrap();
+    let Written { files, lost } = write::mesh(&mesh, false, &Threads::single()).unwrap();
     assert_eq!(files.len(), 1);
     assert!(lost.iter().any(|l| l.contains("pressure, n")) && lost.iter().any(|l| l.contains(".solb")));
-    let Written { files, lost } = write::solution(&mesh, true).unwrap();
+    let Written { files, lost } = write::solution(&mesh, true, &Threads::single()).unwrap();
     assert_eq!(files.iter().map(|f| f.0.as_str()).collect::<Vec<_>>(), ["", ".meshb"]);
     assert!(lost.iter().any(|l| l == "cell arrays are not written (Medit has none): pair"), "{lost:?}");
     assert!(lost.iter().any(|l| l == "point arrays are not written (Medit has none): n"), "{lost:?}");
     mesh.point_data.clear();
-    assert!(write::solution(&mesh, true).unwrap_err().to_string().contains("no real-valued array"));
+    assert!(
+        write::solution(&mesh, true, &Threads::single())
+            .unwrap_err()
+            .to_string()
+            .contains("no real-valued array")
+    );
 }
 
 #[test]
@@ -321,7 +326,7 @@ fn a_solution_that_does_not_fit_is_skipped_with_the_mesh_and_refused_on_its_own(
 fn truncated_binary_solutions_are_reported() {
     let mut mesh = two_kinds();
     mesh.set_point_field(field("medit:sol", 6, 4));
-    let Written { files, .. } = write::solution(&mesh, true).unwrap();
+    let Written { files, .. } = write::solution(&mesh, true, &Threads::single()).unwrap();
     for n in 0..files[0].1.len() - 4 {
         let notes = Notes::default();
         let content = content::Content::read(&files[0].1[..n], &notes);
@@ -335,7 +340,7 @@ fn marks_without_a_section_are_reported() {
     mesh.set_cell_field(Field::scalars(RIDGE, vec![1u8, 0]));
     mesh.set_cell_field(Field::scalars(REQUIRED, vec![1u8, 1]));
     let ridge = "medit:ridge of 1 Triangles is not written: there is no section for it";
-    assert_eq!(write::mesh(&mesh, false).unwrap().lost, [ridge]);
+    assert_eq!(write::mesh(&mesh, false, &Threads::single()).unwrap().lost, [ridge]);
     let required = "medit:required of 1 Tetrahedra is not written: there is no section for it";
-    assert_eq!(write::mesh(&mesh, true).unwrap().lost, [ridge, required]);
+    assert_eq!(write::mesh(&mesh, true, &Threads::single()).unwrap().lost, [ridge, required]);
 }

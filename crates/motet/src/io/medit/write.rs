@@ -3,36 +3,36 @@
 use super::sink::{Sink, version_for};
 use super::solution::{KINDS, Kind, places_of};
 use super::{Keyword, REF, SECTIONS, SOLUTION, Section};
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, Threads};
 use crate::io::cell_labels::{cell_labels, labels_cover, lost_names};
 use crate::io::format::Written;
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
 /// Writes a mesh, and its arrays `medit:sol...` as a solution beside it.
-pub(super) fn mesh(mesh: &Mesh, binary: bool) -> Result<Written> {
+pub(super) fn mesh(mesh: &Mesh, binary: bool, threads: &Threads) -> Result<Written> {
     let (mesh, lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
     let mut parts = Parts::of(&mesh, binary, |f| is_solution(f) && f.name.starts_with(SOLUTION), lost);
     if parts.omits_any(is_solution) {
         parts.lost.push("real-valued arrays are written only to .sol and .solb files".into());
     }
-    let mut files = vec![(String::new(), parts.mesh_file())];
+    let mut files = vec![(String::new(), parts.mesh_file(threads)?)];
     if parts.has_solution() {
-        files.push((if binary { ".solb" } else { ".sol" }.into(), parts.solution_file()));
+        files.push((if binary { ".solb" } else { ".sol" }.into(), parts.solution_file(threads)?));
     }
     Ok(Written { files, lost: parts.lost })
 }
 
 /// Writes a solution with all arrays that it can hold, and the mesh.
-pub(super) fn solution(mesh: &Mesh, binary: bool) -> Result<Written> {
+pub(super) fn solution(mesh: &Mesh, binary: bool, threads: &Threads) -> Result<Written> {
     let (mesh, lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
     let mut parts = Parts::of(&mesh, binary, is_solution, lost);
     if !parts.has_solution() {
         return Err(Error::input("there is no real-valued array to write as a solution")
             .remedy("write the mesh alone, as .mesh or .meshb"));
     }
-    let mut files = vec![(String::new(), parts.solution_file())];
-    files.push((if binary { ".meshb" } else { ".mesh" }.into(), parts.mesh_file()));
+    let mut files = vec![(String::new(), parts.solution_file(threads)?)];
+    files.push((if binary { ".meshb" } else { ".mesh" }.into(), parts.mesh_file(threads)?));
     Ok(Written { files, lost: parts.lost })
 }
 
@@ -130,8 +130,8 @@ impl<'m> Parts<'m> {
         self.lost.extend(lost);
     }
 
-    fn mesh_file(&mut self) -> Vec<u8> {
-        let mut sink = Sink::new(self.version);
+    fn mesh_file(&mut self, threads: &Threads) -> Result<Vec<u8>> {
+        let mut sink = Sink::new(self.version, threads);
         for (of, section) in SECTIONS.iter().enumerate() {
             let places = places_of(self.mesh, of);
             if places.is_empty() && section.cells.is_some() {
@@ -139,41 +139,40 @@ impl<'m> Parts<'m> {
             }
             sink.section(&section.list, places.len());
             match section.cells {
-                None => self.points(&mut sink),
-                Some(_) => self.cells(&mut sink, &places),
+                None => self.points(&mut sink)?,
+                Some(_) => self.cells(&mut sink, &places)?,
             }
             sink.end_section();
-            self.marks(&mut sink, section, &places);
+            self.marks(&mut sink, section, &places)?;
         }
-        sink.finish()
+        Ok(sink.finish())
     }
 
-    fn points(&self, sink: &mut Sink) {
+    fn points(&self, sink: &mut Sink<'_>) -> Result<()> {
         let refs = point_refs(self.mesh);
-        for (i, point) in self.mesh.points.iter().enumerate() {
-            point.iter().for_each(|&x| sink.float(x));
+        sink.rows(self.mesh.points.len(), |sink, i| {
+            self.mesh.points[i].iter().for_each(|&x| sink.float(x));
             sink.int(refs.as_ref().map_or(0, |r| r[i].into()));
-            sink.end_row();
-        }
+        })
     }
 
-    fn cells(&self, sink: &mut Sink, places: &[usize]) {
-        for &i in places {
-            self.mesh.cells.connectivity().list(i).iter().for_each(|v| sink.int(i64::from(v.0) + 1));
-            sink.int(self.labels[i].into());
-            sink.end_row();
-        }
+    fn cells(&self, sink: &mut Sink<'_>, places: &[usize]) -> Result<()> {
+        sink.rows(places.len(), |sink, i| {
+            let cell = places[i];
+            self.mesh.cells.connectivity().list(cell).iter().for_each(|v| sink.int(i64::from(v.0) + 1));
+            sink.int(self.labels[cell].into());
+        })
     }
 
     /// Writes the sections that mark entities of another section.
-    fn marks(&mut self, sink: &mut Sink, section: &Section, places: &[usize]) {
+    fn marks(&mut self, sink: &mut Sink<'_>, section: &Section, places: &[usize]) -> Result<()> {
         let fields = if section.cells.is_none() { &self.mesh.point_data } else { &self.mesh.cell_data };
         for field in fields.iter().filter(|f| is_mark(f)) {
             let marked = marked(field, places);
             let list = section.marks.iter().find(|(list, array)| *array == field.name && sink.has(list));
             match list {
                 _ if marked.is_empty() => {}
-                Some((list, _)) => write_places(sink, list, &marked),
+                Some((list, _)) => write_places(sink, list, &marked)?,
                 None => self.lost.push(format!(
                     "{} of {} {} is not written: there is no section for it",
                     field.name,
@@ -182,10 +181,11 @@ impl<'m> Parts<'m> {
                 )),
             }
         }
+        Ok(())
     }
 
-    fn solution_file(&self) -> Vec<u8> {
-        let mut sink = Sink::new(self.version);
+    fn solution_file(&self, threads: &Threads) -> Result<Vec<u8>> {
+        let mut sink = Sink::new(self.version, threads);
         for (of, section) in SECTIONS.iter().enumerate() {
             let fields = if section.cells.is_none() { &self.points } else { &self.cells };
             let places = places_of(self.mesh, of);
@@ -200,34 +200,32 @@ impl<'m> Parts<'m> {
             if section.cells.is_some() && fields.iter().all(has_no_values) {
                 continue;
             }
-            write_values(&mut sink, values, fields, &places);
+            write_values(&mut sink, values, fields, &places)?;
         }
-        sink.finish()
+        Ok(sink.finish())
     }
 }
 
-fn write_places(sink: &mut Sink, list: &Keyword, places: &[usize]) {
+fn write_places(sink: &mut Sink<'_>, list: &Keyword, places: &[usize]) -> Result<()> {
     sink.section(list, places.len());
-    for place in places {
-        sink.int(*place as i64 + 1);
-        sink.end_row();
-    }
+    sink.rows(places.len(), |sink, i| sink.int(places[i] as i64 + 1))?;
     sink.end_section();
+    Ok(())
 }
 
-fn write_values(sink: &mut Sink, keyword: &Keyword, fields: &[&Field], places: &[usize]) {
+fn write_values(sink: &mut Sink<'_>, keyword: &Keyword, fields: &[&Field], places: &[usize]) -> Result<()> {
     sink.section(keyword, places.len());
     sink.fixed_i32(fields.len() as i32);
     let kinds: Vec<&Kind> = fields.iter().filter_map(|f| kind_of(f)).collect();
     kinds.iter().for_each(|kind| sink.fixed_i32(kind.number));
     sink.end_row();
-    for &i in places {
+    sink.rows(places.len(), |sink, i| {
         for (field, kind) in fields.iter().zip(&kinds) {
-            kind.places.iter().for_each(|place| sink.float(value(field, i * kind.components + place)));
+            kind.places.iter().for_each(|k| sink.float(value(field, places[i] * kind.components + k)));
         }
-        sink.end_row();
-    }
+    })?;
     sink.end_section();
+    Ok(())
 }
 
 fn value(field: &Field, i: usize) -> f64 {

@@ -2,7 +2,12 @@
 
 use std::io::Write as _;
 
+use crate::base::Result;
+use crate::io::output::{Output, ROWS_PER_PART, drain};
 use crate::io::text::push_floats;
+
+/// Bytes that may wait until they are written.
+const MAX_PENDING: usize = 1 << 20;
 
 /// The output, as text or binary.
 pub(super) struct Sink {
@@ -11,6 +16,26 @@ pub(super) struct Sink {
 }
 
 impl Sink {
+    /// Writes `n` rows, each by `put`, which gets its number; many rows on all threads.
+    pub(super) fn rows(
+        &mut self,
+        output: &mut Output<'_>,
+        n: usize,
+        put: impl Fn(&mut Self, usize) + Sync + Send,
+    ) -> Result<()> {
+        if n <= ROWS_PER_PART {
+            (0..n).for_each(|i| put(self, i));
+            return if self.out.len() > MAX_PENDING { drain(&mut self.out, output) } else { Ok(()) };
+        }
+        drain(&mut self.out, output)?;
+        let binary = self.binary;
+        output.rows(n, |rows, out| {
+            let mut part = Self { out, binary };
+            rows.for_each(|i| put(&mut part, i));
+            part.out
+        })
+    }
+
     pub(super) fn int(&mut self, n: i32) {
         if self.binary { self.out.extend(n.to_ne_bytes()) } else { self.word(n) }
     }

@@ -6,7 +6,8 @@ use super::kinds::{ElementType, element_types};
 use super::sink::Sink;
 use crate::base::{Error, Result};
 use crate::io::cell_labels::{cell_labels, int_column, labels_cover};
-use crate::io::format::{Encoding, WriteOptions, drain};
+use crate::io::format::{Encoding, WriteOptions};
+use crate::io::output::{Output, drain};
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
@@ -32,11 +33,7 @@ struct CellTags {
 /// Writes an MSH file in the requested version. The default is 4.1, or 2.2 if only some cells have a label,
 /// which meshio (5.3) cannot read in 4.1, and there are no cell arrays, which meshio cannot read on several
 /// kinds of cells in 2.2.
-pub(super) fn write(
-    mesh: &Mesh,
-    options: &WriteOptions,
-    sink: &mut dyn std::io::Write,
-) -> Result<Vec<String>> {
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let types = element_types();
     let requested = match options.version.as_deref() {
         None => None,
@@ -59,19 +56,16 @@ pub(super) fn write(
     header(&mut text, if version2 { "2.2" } else { "4.1" });
     physical_names(&mut text, &mesh);
     if version2 {
-        nodes2(&mut text, &mesh);
-        drain(&mut text.out, sink)?;
-        elements2(&mut text, &mesh, &types, &tagged);
+        nodes2(&mut text, output, &mesh)?;
+        elements2(&mut text, output, &mesh, &types, &tagged)?;
     } else {
         let node_entities = node_entities(&mesh, &tagged);
         entities4(&mut text, &mesh, &tagged, &node_entities);
-        nodes4(&mut text, &mesh, &node_entities);
-        drain(&mut text.out, sink)?;
-        elements4(&mut text, &mesh, &types, &tagged);
+        nodes4(&mut text, output, &mesh, &node_entities)?;
+        elements4(&mut text, output, &mesh, &types, &tagged)?;
     }
-    drain(&mut text.out, sink)?;
-    data(&mut text, &mesh, &tagged, version2, &mut lost);
-    drain(&mut text.out, sink)?;
+    data(&mut text, output, &mesh, &tagged, version2, &mut lost)?;
+    drain(&mut text.out, output)?;
     Ok(lost)
 }
 
@@ -262,7 +256,7 @@ fn entities4(sink: &mut Sink, mesh: &Mesh, tagged: &CellTags, node_entities: &[[
     sink.end_section("Entities");
 }
 
-fn nodes4(sink: &mut Sink, mesh: &Mesh, node_entities: &[[i32; 2]]) {
+fn nodes4(sink: &mut Sink, output: &mut Output<'_>, mesh: &Mesh, node_entities: &[[i32; 2]]) -> Result<()> {
     let runs: Vec<&[[i32; 2]]> = node_entities.chunk_by(|a, b| a == b).collect();
     sink.line("$Nodes");
     for n in [runs.len(), mesh.points.len(), usize::from(!mesh.points.is_empty()), mesh.points.len()] {
@@ -275,20 +269,27 @@ fn nodes4(sink: &mut Sink, mesh: &Mesh, node_entities: &[[i32; 2]]) {
         [dim, tag, 0].into_iter().for_each(|n| sink.int(n));
         sink.size(run.len());
         sink.end_line();
-        for i in first..first + run.len() {
-            sink.size(i + 1);
+        sink.rows(output, run.len(), |sink, i| {
+            sink.size(first + i + 1);
             sink.end_line();
-        }
-        for point in &mesh.points[first..first + run.len()] {
-            sink.doubles(point);
+        })?;
+        sink.rows(output, run.len(), |sink, i| {
+            sink.doubles(&mesh.points[first + i]);
             sink.end_line();
-        }
+        })?;
         first += run.len();
     }
     sink.end_section("Nodes");
+    Ok(())
 }
 
-fn elements4(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &CellTags) {
+fn elements4(
+    sink: &mut Sink,
+    output: &mut Output<'_>,
+    mesh: &Mesh,
+    types: &[ElementType],
+    tagged: &CellTags,
+) -> Result<()> {
     let n = mesh.cells.len();
     let kinds = mesh.cells.kinds();
     let key = |i: usize| (tagged.entities[i], kinds[i]);
@@ -304,27 +305,35 @@ fn elements4(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &CellT
         sink.int(t.number);
         sink.size(run.len());
         sink.end_line();
-        for &i in run {
-            sink.size(i + 1);
-            gmsh_nodes(mesh, i, t, |node| sink.size(node));
+        sink.rows(output, run.len(), |sink, i| {
+            sink.size(run[i] + 1);
+            gmsh_nodes(mesh, run[i], t, |node| sink.size(node));
             sink.end_line();
-        }
+        })?;
     }
     sink.end_section("Elements");
+    Ok(())
 }
 
-fn nodes2(sink: &mut Sink, mesh: &Mesh) {
+fn nodes2(sink: &mut Sink, output: &mut Output<'_>, mesh: &Mesh) -> Result<()> {
     sink.line("$Nodes");
     sink.line(mesh.points.len());
-    for (i, point) in (1..).zip(&mesh.points) {
-        sink.int(i);
-        sink.doubles(point);
+    sink.rows(output, mesh.points.len(), |sink, i| {
+        sink.int(i as i32 + 1);
+        sink.doubles(&mesh.points[i]);
         sink.end_line();
-    }
+    })?;
     sink.end_section("Nodes");
+    Ok(())
 }
 
-fn elements2(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &CellTags) {
+fn elements2(
+    sink: &mut Sink,
+    output: &mut Output<'_>,
+    mesh: &Mesh,
+    types: &[ElementType],
+    tagged: &CellTags,
+) -> Result<()> {
     sink.line("$Elements");
     sink.line(mesh.cells.len());
     let n_tags = if tagged.partitions.is_some() { 4 } else { 2 };
@@ -335,7 +344,8 @@ fn elements2(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &CellT
         if sink.binary {
             [t.number, run.len() as i32, n_tags].into_iter().for_each(|n| sink.int(n));
         }
-        for &i in run {
+        sink.rows(output, run.len(), |sink, i| {
+            let i = run[i];
             sink.int(i as i32 + 1);
             if !sink.binary {
                 sink.int(t.number);
@@ -349,9 +359,10 @@ fn elements2(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &CellT
             }
             gmsh_nodes(mesh, i, t, |node| sink.int(node as i32));
             sink.end_line();
-        }
+        })?;
     }
     sink.end_section("Elements");
+    Ok(())
 }
 
 fn type_of(types: &[ElementType], kind: CellKind) -> &ElementType {
@@ -368,14 +379,21 @@ fn gmsh_nodes(mesh: &Mesh, i: usize, t: &ElementType, mut put: impl FnMut(usize)
     nodes[..vertices.len()].iter().for_each(|&node| put(node));
 }
 
-fn data(sink: &mut Sink, mesh: &Mesh, tagged: &CellTags, version2: bool, lost: &mut Vec<String>) {
+fn data(
+    sink: &mut Sink,
+    output: &mut Output<'_>,
+    mesh: &Mesh,
+    tagged: &CellTags,
+    version2: bool,
+    lost: &mut Vec<String>,
+) -> Result<()> {
     let is_entity = |f: &&Field| !version2 && f.name == NODE_ENTITIES;
     let point_data: Vec<_> = mesh.point_data.iter().filter(|f| !is_entity(f)).collect();
     let cell_data: Vec<_> = mesh.cell_data.iter().filter(|f| !tagged.is_in_tags(mesh, f, version2)).collect();
     for (section, fields) in [("NodeData", &point_data), ("ElementData", &cell_data)] {
         for field in fields {
             if let Some(values) = field.values.to_f64().filter(|values| !values.is_empty()) {
-                data_section(sink, section, field, &values);
+                data_section(sink, output, section, field, &values)?;
             }
         }
     }
@@ -390,18 +408,27 @@ fn data(sink: &mut Sink, mesh: &Mesh, tagged: &CellTags, version2: bool, lost: &
     }
     let names = |f: &&Field| !f.name.starts_with("point:") && !f.name.starts_with("curve:");
     lost.extend(lost_arrays("MSH", "field", mesh.field_data.iter().filter(names)));
+    Ok(())
 }
 
-fn data_section(sink: &mut Sink, section: &str, field: &Field, values: &[f64]) {
+fn data_section(
+    sink: &mut Sink,
+    output: &mut Output<'_>,
+    section: &str,
+    field: &Field,
+    values: &[f64],
+) -> Result<()> {
     sink.line(format_args!("${section}"));
     sink.line(format_args!("1\n\"{}\"\n1\n0.0\n3\n0", one_line(&field.name)));
     sink.line(format_args!("{}\n{}", field.components, field.n_rows()));
-    for (i, row) in (1..).zip(values.chunks_exact(field.components)) {
-        sink.int(i);
-        sink.doubles(row);
+    let n = field.components;
+    sink.rows(output, values.len() / n, |sink, i| {
+        sink.int(i as i32 + 1);
+        sink.doubles(&values[i * n..(i + 1) * n]);
         sink.end_line();
-    }
+    })?;
     sink.end_section(section);
+    Ok(())
 }
 
 #[cfg(test)]

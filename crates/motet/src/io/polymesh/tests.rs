@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use crate::base::{Error, Point, VertexId};
+use crate::base::{Error, Point, Threads, VertexId};
 use crate::io::format::{Encoding, Input, Notes, WriteOptions, Written};
 use crate::io::polymesh::{FORMAT, is_case, read, write};
 use crate::mesh::shapes::{mixed, quadratic, sphere_in_box};
 use crate::mesh::{CellKind, Cells, Field, Mesh, cell_volumes};
 
 fn written(mesh: &Mesh, encoding: Encoding) -> Written {
-    write::write(mesh, &WriteOptions { encoding, ..WriteOptions::default() }).unwrap()
+    write::write(mesh, &WriteOptions { encoding, ..WriteOptions::default() }, &Threads::single()).unwrap()
 }
 
 fn put(folder: &Path, written: &Written) {
@@ -18,7 +18,7 @@ fn put(folder: &Path, written: &Written) {
 
 fn get(folder: &Path) -> Result<Mesh, Error> {
     let notes = Notes::default();
-    let mesh = read::read(&Input { path: folder, bytes: &[], notes: &notes })?;
+    let mesh = read::read(&Input { path: folder, bytes: &[], threads: &Threads::single(), notes: &notes })?;
     mesh.validate().map(|()| mesh)
 }
 
@@ -61,7 +61,9 @@ fn losses_are_reported() {
     let written = written(&mesh, Encoding::Binary);
     assert!(written.lost.iter().any(|lost| lost.contains("middle nodes")), "{:?}", written.lost);
     assert!(written.lost.iter().any(|lost| lost.contains('u')), "{:?}", written.lost);
-    let refused = |mesh: &Mesh| write::write(mesh, &WriteOptions::default()).unwrap_err().to_string();
+    let refused = |mesh: &Mesh| {
+        write::write(mesh, &WriteOptions::default(), &Threads::single()).unwrap_err().to_string()
+    };
     let triangle = Cells::uniform(CellKind::TRIANGLE, [0, 1, 2].map(VertexId).to_vec()).unwrap();
     let flat: Vec<Point> = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     assert!(refused(&Mesh::new(flat, triangle)).contains("volume cells"));

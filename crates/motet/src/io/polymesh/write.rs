@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::io::Write as _;
 
-use crate::base::{CellId, Csr, Error, Point, Result, VertexId, rising_list};
+use crate::base::{CellId, Csr, Error, Point, Result, Threads, VertexId, rising_list};
 use crate::geometry::vector::is_finite;
 use crate::io::format::{Encoding, WriteOptions, Written};
 use crate::io::select::lost_arrays;
@@ -14,7 +14,7 @@ use crate::mesh::{CellKind, Mesh, cell_volume, unused_name};
 /// The patch of faces without a label.
 const DEFAULT: &str = "defaultFaces";
 
-pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions, _: &Threads) -> Result<Written> {
     let mut lost = Vec::new();
     let numbers = cell_numbers(mesh)?;
     let mut sorted = Sorted::of(mesh, &numbers)?;

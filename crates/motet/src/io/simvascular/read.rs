@@ -30,7 +30,7 @@ struct Layout {
 
 pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let layout = Layout::of(input.path)?;
-    let mut mesh = read_file(&vtkxml::VTU, &layout.volume, input.notes)?;
+    let mut mesh = read_file(&vtkxml::VTU, &layout.volume, input.threads, input.notes)?;
     let by_id = node_ids(&mesh).map(|ids| Tags::new(&ids, NODE_ID)).transpose();
     let by_id = by_id.map_err(|e| e.in_file(&layout.volume))?;
     let point_index = PointIndex::new(&mesh);
@@ -42,7 +42,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let mut labels = vec![0; mesh.cells.len()];
     let mut faces = Vec::new();
     for (name, path) in &layout.faces {
-        let face = read_file(&vtkxml::VTP, path, input.notes)?;
+        let face = read_file(&vtkxml::VTP, path, input.threads, input.notes)?;
         if face.cells.dim() == Some(3) {
             return Err(Error::input("contains volume cells, but a face must be a surface")
                 .in_file(path)

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use crate::base::{Error, Result, VertexId, rising_list};
+use crate::base::{Error, Result, Threads, VertexId, rising_list};
 use crate::io::format::{WriteOptions, Written};
 use crate::io::select::{facet_mesh, restricted_to_kinds};
 use crate::io::simvascular::read::node_ids;
@@ -15,7 +15,7 @@ use crate::io::tags::Tags;
 use crate::io::vtkxml;
 use crate::mesh::{Boundary, Field, Labels, Mesh, Values, corners};
 
-pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions, threads: &Threads) -> Result<Written> {
     let of_dim = |dim| -> Vec<usize> {
         (0..mesh.cells.len()).filter(|&i| mesh.cells.kinds()[i].dim() == Some(dim)).collect()
     };
@@ -32,11 +32,11 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let numbered = WithIds::new(mesh, &volume_cells);
     let mut written = Written::default();
     let volume = numbered.volume(&volume_cells);
-    add(&mut written, VOLUME.into(), vtkxml::VTU.to_files(&volume, options)?);
+    add(&mut written, VOLUME.into(), vtkxml::VTU.to_files(&volume, options, threads)?);
     let mut unknown = 0;
     let face = |written: &mut Written, path: String, cells: &[usize]| -> Result<usize> {
         let (face, inside) = numbered.face(cells, &labels);
-        add(written, path, vtkxml::VTP.to_files(&face, options)?);
+        add(written, path, vtkxml::VTP.to_files(&face, options, threads)?);
         Ok(inside)
     };
     for (name, cells) in &faces {

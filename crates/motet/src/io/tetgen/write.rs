@@ -3,7 +3,7 @@
 use std::io::Write as _;
 
 use super::EDGE_NODES;
-use crate::base::{Result, VertexId};
+use crate::base::{Result, Threads, VertexId};
 use crate::io::cell_labels::{cell_labels, labels_cover, lost_names};
 use crate::io::format::{WriteOptions, Written};
 use crate::io::node_order::vtk_to_other;
@@ -12,7 +12,7 @@ use crate::io::text::push_float;
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
 /// Writes `.node`, `.ele` and `.face`, and `.edge` if there are edges.
-pub(super) fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
+pub(super) fn write(mesh: &Mesh, _: &WriteOptions, _: &Threads) -> Result<Written> {
     let n_tets = |kind| mesh.cells.kinds().iter().filter(|k| **k == kind).count();
     let quadratic = n_tets(CellKind::TETRA) == 0 && n_tets(CellKind::QUADRATIC_TETRA) > 0;
     let tetra = if quadratic { CellKind::QUADRATIC_TETRA } else { CellKind::TETRA };

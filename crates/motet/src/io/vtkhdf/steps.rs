@@ -1,12 +1,11 @@
 //! Writes meshes over time to one VTKHDF file. Cells and arrays that equal those of the previous step are
 //! stored once.
 
-use std::io::Write;
-
 use crate::base::{Error, Result};
-use crate::io::format::{WriteOptions, write_all};
+use crate::io::format::WriteOptions;
 use crate::io::hdf::{Attribute, Node, Storage};
 use crate::io::labels::label_fields;
+use crate::io::output::{Output, write_all};
 use crate::io::vtkhdf::write::{storage, valid_name};
 use crate::mesh::{Cells, Field, Mesh, Values};
 
@@ -102,13 +101,13 @@ impl Steps {
         self.last = Some(mesh.cells.clone());
     }
 
-    /// Writes the file to a sink; returns what the format could not hold.
+    /// Writes the file; returns what the format could not hold.
     ///
     /// Fails if there are no frames, or the options request an unsupported compression.
     pub(in crate::io) fn write_to(
         mut self,
         options: &WriteOptions,
-        sink: &mut dyn Write,
+        output: &mut Output<'_>,
     ) -> Result<Vec<String>> {
         let storage = storage(options)?;
         let n = self.times.len();
@@ -176,7 +175,7 @@ impl Steps {
         root.group(steps);
         let mut file = Node::new("");
         file.group(root);
-        write_all(sink, &file.into_file()?)?;
+        write_all(output, &file.into_file()?)?;
         Ok(lost)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::base::{Csr, Result, VertexId};
+use crate::base::{Csr, Result, Threads, VertexId};
 use crate::io::format::{Compression, Input, Notes, WriteOptions};
 use crate::io::hdf::{Attribute, Node, Storage};
 use crate::io::reading::read_as;
@@ -11,7 +11,10 @@ use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
 fn parse(bytes: &[u8]) -> Result<(Mesh, Vec<String>)> {
     let notes = Notes::default();
-    let mesh = read_as(&FORMAT, &Input { path: Path::new("a.vtkhdf"), bytes, notes: &notes })?;
+    let mesh = read_as(
+        &FORMAT,
+        &Input { path: Path::new("a.vtkhdf"), bytes, threads: &Threads::single(), notes: &notes },
+    )?;
     Ok((mesh, notes.into_vec()))
 }
 
@@ -21,7 +24,7 @@ fn refused(bytes: &[u8]) -> String {
 
 fn print(mesh: &Mesh, compression: Compression) -> (Vec<u8>, Vec<String>) {
     let options = WriteOptions { compression, ..WriteOptions::default() };
-    let mut written = FORMAT.to_files(mesh, &options).unwrap();
+    let mut written = FORMAT.to_files(mesh, &options, &Threads::single()).unwrap();
     (written.files.remove(0).1, written.lost)
 }
 
@@ -113,7 +116,7 @@ fn names_that_hdf5_cannot_hold_are_reported() {
     let names: Vec<_> = parse(&bytes).unwrap().0.point_data.into_iter().map(|f| f.name).collect();
     assert_eq!(names, ["a_b", "a_b_2", "a_b_3", "unnamed"]);
     let lz4 = WriteOptions { compression: Compression::Lz4, ..WriteOptions::default() };
-    assert!(FORMAT.to_files(&mesh, &lz4).unwrap_err().remedy_text().is_some());
+    assert!(FORMAT.to_files(&mesh, &lz4, &Threads::single()).unwrap_err().remedy_text().is_some());
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! Writes a mesh as a VTKHDF file.
 
 use crate::base::{Csr, Error, Result, VertexId};
-use crate::io::format::{Compression, WriteOptions, write_all};
+use crate::io::format::{Compression, WriteOptions};
 use crate::io::hdf::{Attribute, Node, Storage};
 use crate::io::labels::label_fields;
+use crate::io::output::{Output, write_all};
 use crate::io::polygonal::{kind_in_section, section_of};
 use crate::io::vtkhdf::SECTIONS;
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values, unused_name};
@@ -11,11 +12,7 @@ use crate::mesh::{CellKind, Cells, Field, Mesh, Values, unused_name};
 /// The version that every reader of VTKHDF supports, and the first with polyhedra.
 const VERSIONS: [[i64; 2]; 2] = [[2, 0], [2, 5]];
 
-pub(super) fn write(
-    mesh: &Mesh,
-    options: &WriteOptions,
-    sink: &mut dyn std::io::Write,
-) -> Result<Vec<String>> {
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let storage = storage(options)?;
     let mut lost = Vec::new();
     let mut root = Node::new("VTKHDF");
@@ -48,7 +45,7 @@ pub(super) fn write(
     }
     let mut file = Node::new("");
     file.group(root);
-    write_all(sink, &file.into_file()?)?;
+    write_all(output, &file.into_file()?)?;
     Ok(lost)
 }
 

@@ -6,9 +6,10 @@ use super::xz;
 use crate::base::{Error, Result};
 use crate::io::Compression;
 
-/// VTK uses level 5 of zlib; this level of zlib-rs gives files of the same size (within a percent on meshes)
-/// in less time.
-const ZLIB_LEVEL: u32 = 5;
+/// VTK uses level 5 of zlib in blocks of 32 KiB. This level of zlib-rs in blocks of 256 KiB gives files of the
+/// same size (within a percent on meshes) in a third of the time; level 3 would save 4 % and take half as long
+/// again.
+const ZLIB_LEVEL: u32 = 2;
 
 /// VTK's name of a compression in the attribute `compressor`; `None` for no compression.
 pub(super) fn vtk_name(compression: Compression) -> Option<&'static str> {
@@ -115,12 +116,16 @@ impl Compressor {
 
 fn compress_zlib(zlib: &mut Compress, block: &[u8], out: &mut Vec<u8>) -> Result<()> {
     zlib.reset();
+    let start = out.len();
     loop {
-        // zlib's own bound for stored blocks is n + n/1000 + 12.
-        out.reserve(block.len() + block.len() / 512 + 64);
-        let from = zlib.total_in() as usize;
-        let status = zlib.compress_vec(&block[from..], out, FlushCompress::Finish).map_err(|e| failed(&e))?;
-        if status == Status::StreamEnd {
+        let (read, written) = (zlib.total_in() as usize, zlib.total_out() as usize);
+        let left = &block[read..];
+        // Into a slice, since `compress_vec` clears all unused capacity at each call. Blocks without matches
+        // grow by up to 3 %.
+        out.resize(start + written + left.len() + left.len() / 16 + 64, 0);
+        let put = zlib.compress(left, &mut out[start + written..], FlushCompress::Finish);
+        if put.map_err(|e| failed(&e))? == Status::StreamEnd {
+            out.truncate(start + zlib.total_out() as usize);
             return Ok(());
         }
     }

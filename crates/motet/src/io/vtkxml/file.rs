@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 use std::rc::Rc;
 
-use crate::base::{Error, Point, Result};
+use crate::base::{Error, Point, Result, Threads};
 use crate::io::format::{Compression, Notes};
 use crate::io::latin::decode_utf8_or_latin1;
 use crate::io::memory_budget::MemoryBudget;
-use crate::io::scalar::{ByteOrder, Scalar, extend_ids, to_ids, to_points};
+use crate::io::scalar::{ByteOrder, Scalar, fill_ids, to_ids, to_points};
 use crate::io::vtkxml::codec::by_vtk_name;
 use crate::io::vtkxml::document::{Document, Element};
 use crate::io::vtkxml::payload::{Layout, Payload};
@@ -18,6 +18,7 @@ use crate::mesh::{Field, Values};
 #[derive(Debug)]
 pub(super) struct File<'a> {
     document: Document<'a>,
+    threads: &'a Threads,
     pub(super) notes: &'a Notes,
     /// The appended data, if they were left in the file.
     tail: Option<&'a Tail>,
@@ -28,12 +29,17 @@ pub(super) struct File<'a> {
 }
 
 impl<'a> File<'a> {
-    pub(super) fn open(bytes: &'a [u8], notes: &'a Notes) -> Result<Self> {
-        Self::open_within(bytes, notes, Rc::new(MemoryBudget::of(bytes.len() as u64)))
+    pub(super) fn open(bytes: &'a [u8], threads: &'a Threads, notes: &'a Notes) -> Result<Self> {
+        Self::open_within(bytes, threads, notes, Rc::new(MemoryBudget::of(bytes.len() as u64)))
     }
 
     /// Opens one of the files that make up a mesh, which share a memory budget.
-    pub(super) fn open_within(bytes: &'a [u8], notes: &'a Notes, budget: Rc<MemoryBudget>) -> Result<Self> {
+    pub(super) fn open_within(
+        bytes: &'a [u8],
+        threads: &'a Threads,
+        notes: &'a Notes,
+        budget: Rc<MemoryBudget>,
+    ) -> Result<Self> {
         let document = Document::parse(bytes)?;
         let root = &document.root;
         if root.name != "VTKFile" {
@@ -45,13 +51,13 @@ impl<'a> File<'a> {
         let mut starts = Vec::new();
         collect_starts(root, &mut starts);
         starts.sort_unstable();
-        Ok(Self { document, notes, tail: None, layout, starts, budget })
+        Ok(Self { document, threads, notes, tail: None, layout, starts, budget })
     }
 
     /// Opens a file whose appended data are read array by array.
-    pub(super) fn open_tail(tail: &'a Tail, notes: &'a Notes) -> Result<Self> {
+    pub(super) fn open_tail(tail: &'a Tail, threads: &'a Threads, notes: &'a Notes) -> Result<Self> {
         let budget = Rc::new(MemoryBudget::of((tail.head.len() + tail.len) as u64));
-        Ok(Self { tail: Some(tail), ..Self::open_within(&tail.head, notes, budget)? })
+        Ok(Self { tail: Some(tail), ..Self::open_within(&tail.head, threads, notes, budget)? })
     }
 
     /// The kind of data: `UnstructuredGrid`, `PolyData`, `Collection`, ...
@@ -228,10 +234,11 @@ impl<'s, 'a> Array<'s, 'a> {
         if !fits || n_rows.is_some_and(|rows| rows.checked_mul(self.components) != Some(n)) {
             return Ok(None);
         }
-        let mut ids = Vec::with_capacity(first.len() + n);
-        ids.extend_from_slice(first);
-        let mut fits = true;
-        payload.for_each_block(|block| fits &= extend_ids(&mut ids, kind, self.file.layout.order, block))?;
+        let mut ids = vec![0; first.len() + n];
+        ids[..first.len()].copy_from_slice(first);
+        let order = self.file.layout.order;
+        let convert = |ids: &mut [u32], bytes: &[u8]| fill_ids(ids, kind, order, bytes);
+        let fits = payload.read_ids(kind.size(), &mut ids[first.len()..], convert, self.file.threads)?;
         Ok(fits.then_some(ids))
     }
 
@@ -271,10 +278,12 @@ impl<'s, 'a> Array<'s, 'a> {
             (Content::Ascii(text), Type::Bit) => read_ascii(text, Scalar::U8, expected),
             (Content::Ascii(text), Type::Text) => self.texts(&ascii_characters(text)?, expected),
             (Content::Binary(payload), Type::Number(kind)) => {
-                read_binary(&payload, kind, self.file.layout, expected)
+                read_binary(&payload, kind, self.file.layout, expected, self.file.threads)
             }
-            (Content::Binary(payload), Type::Bit) => read_bits(&payload, expected),
-            (Content::Binary(payload), Type::Text) => self.texts(&payload.to_bytes()?, expected),
+            (Content::Binary(payload), Type::Bit) => read_bits(&payload, expected, self.file.threads),
+            (Content::Binary(payload), Type::Text) => {
+                self.texts(&payload.to_bytes(self.file.threads)?, expected)
+            }
         }
     }
 
@@ -365,12 +374,13 @@ fn read_binary(
     kind: Scalar,
     layout: Layout,
     expected: Option<usize>,
+    threads: &Threads,
 ) -> Result<Values> {
     let n = payload.len() / kind.size();
     if expected.is_some_and(|e| e != n) || !payload.len().is_multiple_of(kind.size()) {
         return Err(wrong_count(n, expected.unwrap_or(n)));
     }
-    kind.filled(n, layout.order, |out| payload.read_into(out))
+    kind.filled(n, layout.order, |out| payload.read_into(out, threads))
 }
 
 fn read_ascii(text: &str, kind: Scalar, expected: Option<usize>) -> Result<Values> {
@@ -387,8 +397,8 @@ fn read_ascii(text: &str, kind: Scalar, expected: Option<usize>) -> Result<Value
     }
 }
 
-fn read_bits(payload: &Payload<'_>, expected: Option<usize>) -> Result<Values> {
-    let bytes = payload.to_bytes()?;
+fn read_bits(payload: &Payload<'_>, expected: Option<usize>, threads: &Threads) -> Result<Values> {
+    let bytes = payload.to_bytes(threads)?;
     let n = expected.unwrap_or(bytes.len() * 8);
     if bytes.len() != n.div_ceil(8) {
         return Err(wrong_count(bytes.len() * 8, n));

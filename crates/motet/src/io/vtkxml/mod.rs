@@ -30,7 +30,7 @@ mod vtu;
 mod writer;
 mod xz;
 
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, Threads};
 use crate::io::format::{Format, Input, Notes, Write};
 use crate::mesh::Mesh;
 
@@ -70,13 +70,13 @@ pub(super) const OTHERS: Format = Format {
 
 /// Reads the kind of mesh that the file declares.
 fn read(input: &Input<'_>) -> Result<Mesh> {
-    let file = file::File::open(input.bytes, input.notes)?;
+    let file = file::File::open(input.bytes, input.threads, input.notes)?;
     if parts::refers_to_parts(file.kind()) { parts::read(&file, input) } else { read_file(&file) }
 }
 
 /// Reads a mesh, like [`read`], from a file whose appended data are read array by array.
-pub(super) fn read_tail(tail: &Tail, notes: &Notes) -> Result<Mesh> {
-    read_file(&file::File::open_tail(tail, notes)?)
+pub(super) fn read_tail(tail: &Tail, threads: &Threads, notes: &Notes) -> Result<Mesh> {
+    read_file(&file::File::open_tail(tail, threads, notes)?)
 }
 
 fn read_file(file: &file::File<'_>) -> Result<Mesh> {

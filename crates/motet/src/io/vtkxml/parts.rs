@@ -90,7 +90,7 @@ impl Reader<'_> {
         })?;
         self.budget.add_file(&path.to_string_lossy(), bytes.len() as u64);
         self.budget.take(bytes.len() as u64)?;
-        let file = File::open_within(&bytes, self.input.notes, self.budget.clone())?;
+        let file = File::open_within(&bytes, self.input.threads, self.input.notes, self.budget.clone())?;
         let mesh = match file.kind() {
             "UnstructuredGrid" => vtu::read(&file)?,
             "PolyData" => vtp::read(&file)?,

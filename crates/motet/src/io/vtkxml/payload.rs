@@ -12,7 +12,7 @@ use base64::Engine as _;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, Threads};
 use crate::io::Compression;
 use crate::io::scalar::ByteOrder;
 use crate::io::vtkxml::codec::{Decompressor, max_output};
@@ -25,8 +25,10 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
         .with_decode_allow_trailing_bits(true),
 );
 
-/// Bytes of a file that are converted at a time, few enough to stay in the cache.
+/// Size of the blocks into which uncompressed data are divided: small enough to stay in the cache.
 const CHUNK: usize = 256 << 10;
+/// Decompressed bytes that a thread reads at a time, if blocks are smaller.
+const RUN: usize = 1 << 20;
 
 /// The layout of the binary data in a file, from the attributes of `VTKFile`.
 #[derive(Clone, Copy, Debug)]
@@ -52,8 +54,9 @@ pub(super) struct Payload<'a> {
     compression: Compression,
     /// Where the data start after the header.
     start: usize,
-    /// Compressed size of each block; a single block in a plain array.
-    compressed: Vec<usize>,
+    /// Where each compressed block ends, counted from the first; empty in a plain array.
+    ends: Vec<usize>,
+    /// Decompressed size of every block but the last.
     block: usize,
     /// Decompressed size in bytes.
     len: usize,
@@ -99,8 +102,8 @@ impl<'a> Payload<'a> {
             bytes,
             compression: Compression::None,
             start: layout.word,
-            compressed: vec![len],
-            block: len,
+            ends: Vec::new(),
+            block: CHUNK,
             len,
         })
     }
@@ -113,7 +116,7 @@ impl<'a> Payload<'a> {
                 bytes: Source::Memory(bytes),
                 compression: layout.compression,
                 start: 0,
-                compressed: Vec::new(),
+                ends: Vec::new(),
                 block: 0,
                 len: 0,
             });
@@ -127,9 +130,11 @@ impl<'a> Payload<'a> {
         };
         let (block, last) = (words.get(1)?, words.get(2)?);
         let last = if last == 0 { block } else { last };
-        let compressed = (0..n_blocks).map(|i| words.get(3 + i)).collect::<Result<Vec<_>>>()?;
-        let mut left = bytes.len() - start;
-        for (i, &size) in compressed.iter().enumerate() {
+        let available = bytes.len() - start;
+        let mut ends = Vec::with_capacity(n_blocks);
+        let mut end = 0;
+        for i in 0..n_blocks {
+            let (size, left) = (words.get(3 + i)?, available - end);
             let decompressed = if i + 1 == n_blocks { last } else { block };
             if size > left {
                 return Err(truncated(format!(
@@ -141,21 +146,15 @@ impl<'a> Payload<'a> {
                     "block {i} of {n_blocks}: {size} bytes cannot decompress to {decompressed}"
                 )));
             }
-            left -= size;
+            end += size;
+            ends.push(end);
         }
         // No overflow: the size of every block has just been checked.
         let len = (n_blocks - 1) * block + last;
         if last > block {
             return Err(damaged(format!("the last block has {last} bytes, more than the others, {block}")));
         }
-        Ok(Self {
-            bytes: Source::Memory(bytes),
-            compression: layout.compression,
-            start,
-            compressed,
-            block,
-            len,
-        })
+        Ok(Self { bytes: Source::Memory(bytes), compression: layout.compression, start, ends, block, len })
     }
 
     /// Decompressed size of the array in bytes.
@@ -164,25 +163,15 @@ impl<'a> Payload<'a> {
     }
 
     /// Copies the first `out.len()` bytes of the array, which must have that many, to `out`.
-    pub(super) fn read_into(&self, out: &mut [u8]) -> Result<()> {
-        if out.is_empty() {
-            return Ok(());
-        }
-        let data = match &self.bytes {
-            Source::File(tail, at) => return tail.read_at(at + self.start, out),
-            Source::Memory(bytes) => &bytes[self.start..],
+    pub(super) fn read_into(&self, out: &mut [u8], threads: &Threads) -> Result<()> {
+        let runs = out.chunks_mut(self.run_blocks() * self.block.max(1)).enumerate().collect();
+        let read = |(run, out): (usize, &mut [u8])| {
+            let mut decompressor = Decompressor::new(self.compression);
+            let mut blocks = out.chunks_mut(self.block).enumerate();
+            blocks
+                .try_for_each(|(i, out)| self.read_block(&mut decompressor, run * self.run_blocks() + i, out))
         };
-        if self.compression == Compression::None {
-            out.copy_from_slice(&data[..out.len()]);
-            return Ok(());
-        }
-        let mut decompressor = Decompressor::new(self.compression);
-        let mut from = 0;
-        for ((i, &size), out) in self.compressed.iter().enumerate().zip(out.chunks_mut(self.block)) {
-            self.decompress(&mut decompressor, i, &data[from..from + size], out)?;
-            from += size;
-        }
-        Ok(())
+        threads.each(runs, read).into_iter().collect()
     }
 
     /// Number of bytes decompressed at a time.
@@ -190,59 +179,62 @@ impl<'a> Payload<'a> {
         self.block
     }
 
-    /// Calls `each` with all bytes of the array, one block at a time.
-    pub(super) fn for_each_block(&self, mut each: impl FnMut(&[u8])) -> Result<()> {
-        let bytes = match &self.bytes {
-            Source::File(tail, at) => return for_each_chunk(tail, at + self.start, self.len, each),
-            Source::Memory(bytes) => bytes,
+    /// Fills all ids from numbers of `size` bytes, of which blocks must have whole ones. `convert` fills some
+    /// from their bytes, and returns whether they are ids; so does this.
+    pub(super) fn read_ids(
+        &self,
+        size: usize,
+        ids: &mut [u32],
+        convert: impl Fn(&mut [u32], &[u8]) -> bool + Sync + Send,
+        threads: &Threads,
+    ) -> Result<bool> {
+        let per_block = (self.block / size).max(1);
+        let runs = ids.chunks_mut(self.run_blocks() * per_block).enumerate().collect();
+        let read = |(run, ids): (usize, &mut [u32])| {
+            let mut decompressor = Decompressor::new(self.compression);
+            let mut bytes = Vec::new();
+            let mut fits = true;
+            for (i, ids) in ids.chunks_mut(per_block).enumerate() {
+                bytes.resize(ids.len() * size, 0);
+                self.read_block(&mut decompressor, run * self.run_blocks() + i, &mut bytes)?;
+                fits &= convert(ids, &bytes);
+            }
+            Ok(fits)
         };
-        if self.compression == Compression::None {
-            each(&bytes[self.start..self.start + self.len]);
-            return Ok(());
-        }
-        let mut decompressor = Decompressor::new(self.compression);
-        let mut decompressed = vec![0; self.block.min(self.len)];
-        let (mut from, mut left) = (self.start, self.len);
-        for (i, &size) in self.compressed.iter().enumerate() {
-            let out = &mut decompressed[..self.block.min(left)];
-            self.decompress(&mut decompressor, i, &bytes[from..from + size], out)?;
-            each(out);
-            from += size;
-            left -= out.len();
-        }
-        Ok(())
+        threads.each(runs, read).into_iter().try_fold(true, |all, fits| Ok(all & fits?))
     }
 
-    fn decompress(
-        &self,
-        decompressor: &mut Decompressor,
-        i: usize,
-        compressed: &[u8],
-        out: &mut [u8],
-    ) -> Result<()> {
-        let n = self.compressed.len();
-        decompressor.decompress(compressed, out).map_err(|what| damaged(format!("block {i} of {n}: {what}")))
+    /// Number of blocks that a thread reads at a time.
+    fn run_blocks(&self) -> usize {
+        (RUN / self.block.max(1)).max(1)
+    }
+
+    /// Copies block `i`, or its first bytes if `out` is shorter.
+    fn read_block(&self, decompressor: &mut Decompressor, i: usize, out: &mut [u8]) -> Result<()> {
+        let bytes = match &self.bytes {
+            Source::File(tail, at) => return tail.read_at(at + self.start + i * self.block, out),
+            Source::Memory(bytes) => &bytes[self.start..],
+        };
+        if self.compression == Compression::None {
+            out.copy_from_slice(&bytes[i * self.block..][..out.len()]);
+            return Ok(());
+        }
+        let start = if i == 0 { 0 } else { self.ends[i - 1] };
+        let n = self.ends.len();
+        decompressor
+            .decompress(&bytes[start..self.ends[i]], out)
+            .map_err(|what| damaged(format!("block {i} of {n}: {what}")))
     }
 
     /// All bytes of the array.
-    pub(super) fn to_bytes(&self) -> Result<Cow<'_, [u8]>> {
+    pub(super) fn to_bytes(&self, threads: &Threads) -> Result<Cow<'_, [u8]>> {
         if let (Source::Memory(bytes), Compression::None) = (&self.bytes, self.compression) {
             return Ok(Cow::Borrowed(&bytes[self.start..self.start + self.len]));
         }
         let mut out = vec![0; self.len];
-        self.read_into(&mut out)?;
+        self.read_into(&mut out, threads)?;
         Ok(Cow::Owned(out))
     }
-}
-
-fn for_each_chunk(tail: &Tail, start: usize, len: usize, mut each: impl FnMut(&[u8])) -> Result<()> {
-    let mut chunk = vec![0; CHUNK.min(len)];
-    for from in (0..len).step_by(CHUNK) {
-        let chunk = &mut chunk[..CHUNK.min(len - from)];
-        tail.read_at(start + from, chunk)?;
-        each(chunk);
-    }
-    Ok(())
 }
 
 /// The numbers of a header.
@@ -303,8 +295,8 @@ mod tests {
     fn base64_may_be_padded_between_header_and_data() {
         let together = Payload::open_base64(b"AwAAAGFiYw==", PLAIN).unwrap();
         let apart = Payload::open_base64(b"AwAAAA==\nYWJj", PLAIN).unwrap();
-        assert_eq!(together.to_bytes().unwrap(), b"abc".as_slice());
-        assert_eq!(apart.to_bytes().unwrap(), b"abc".as_slice());
+        assert_eq!(together.to_bytes(&Threads::single()).unwrap(), b"abc".as_slice());
+        assert_eq!(apart.to_bytes(&Threads::single()).unwrap(), b"abc".as_slice());
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use crate::base::{CellId, Csr, Error, Result, VertexId};
 use crate::io::format::WriteOptions;
 use crate::io::labels::label_fields;
+use crate::io::output::Output;
 use crate::io::polygonal::{SECTIONS, kind_in_section, section_of};
 use crate::io::scalar::select_rows;
 use crate::io::vtkxml::document::Element;
@@ -134,17 +135,13 @@ fn lost_by_kind(mut kinds: Vec<CellKind>) -> Vec<String> {
         .collect()
 }
 
-/// Writes a mesh to `sink`; returns what the format could not hold.
-pub(super) fn write(
-    mesh: &Mesh,
-    options: &WriteOptions,
-    sink: &mut dyn std::io::Write,
-) -> Result<Vec<String>> {
+/// Writes a mesh; returns what the format could not hold.
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let sections = Sections::of(&mesh.cells)?;
     let (label_cells, label_names) = label_fields(mesh);
     let cell_data: Vec<Field> =
         mesh.cell_data.iter().chain(&label_cells).map(|f| sections.sorted(f)).collect();
-    let mut writer = Writer::new(KIND, options);
+    let mut writer = Writer::new(KIND, options, output);
     let field_data: Vec<&Field> = mesh.field_data.iter().chain(&label_names).collect();
     if !field_data.is_empty() {
         writer.fields("FieldData", &field_data, true)?;
@@ -167,7 +164,7 @@ pub(super) fn write(
         writer.close(name);
     }
     writer.close("Piece");
-    let mut lost = writer.finish(KIND, sink)?;
+    let mut lost = writer.finish(KIND)?;
     lost.extend(sections.lost.iter().cloned());
     Ok(lost)
 }

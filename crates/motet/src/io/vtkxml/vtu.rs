@@ -1,10 +1,9 @@
 //! Unstructured grids (`.vtu`): cells of any kind.
 
-use std::io::Write;
-
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::WriteOptions;
 use crate::io::labels::label_fields;
+use crate::io::output::Output;
 use crate::io::polyhedra::cells_with_polyhedra;
 use crate::io::surplus_points::trim;
 use crate::io::vtkxml::document::Element;
@@ -79,10 +78,10 @@ fn read_kinds(file: &File<'_>, element: &Element<'_>, n: usize) -> Result<Vec<Ce
     Ok(bytemuck::allocation::cast_vec(numbers))
 }
 
-/// Writes a mesh to `sink`; returns what the format could not hold.
-pub(super) fn write(mesh: &Mesh, options: &WriteOptions, sink: &mut dyn Write) -> Result<Vec<String>> {
+/// Writes a mesh; returns what the format could not hold.
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let (label_cells, label_names) = label_fields(mesh);
-    let mut writer = Writer::new(KIND, options);
+    let mut writer = Writer::new(KIND, options, output);
     let field_data: Vec<&Field> = mesh.field_data.iter().chain(&label_names).collect();
     if !field_data.is_empty() {
         writer.fields("FieldData", &field_data, true)?;
@@ -108,5 +107,5 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions, sink: &mut dyn Write) -
     }
     writer.close("Cells");
     writer.close("Piece");
-    writer.finish(KIND, sink)
+    writer.finish(KIND)
 }
