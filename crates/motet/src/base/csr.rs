@@ -1,5 +1,7 @@
 //! Lists of lists in two flat arrays (compressed sparse rows).
 
+use crate::base::Threads;
+
 /// `n` lists of `T`, end to end in one array.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(try_from = "Parts<T>"))]
@@ -86,6 +88,32 @@ impl<T> Csr<T> {
     pub fn push(&mut self, list: impl IntoIterator<Item = T>) {
         self.items.extend(list);
         self.offsets.push(u32::try_from(self.items.len()).expect("fewer than 2^32 items"));
+    }
+}
+
+impl<T: Copy> Csr<T> {
+    /// Adds the lists of another at the end.
+    ///
+    /// Panics past `u32::MAX` items in all.
+    pub(crate) fn append(&mut self, other: &Self) {
+        let n = u32::try_from(self.items.len()).expect("fewer than 2^32 items");
+        let most = other.offsets.last().copied().unwrap_or(0);
+        assert!(n.checked_add(most).is_some(), "fewer than 2^32 items");
+        self.items.extend_from_slice(&other.items);
+        self.offsets.extend(other.offsets[1..].iter().map(|offset| n + offset));
+    }
+}
+
+impl<T: Copy + Send + Sync> Csr<T> {
+    /// Adds lists of one length at the end.
+    ///
+    /// Panics past `u32::MAX` items in all.
+    pub(crate) fn push_all<const N: usize>(&mut self, lists: &[[T; N]], threads: &Threads) {
+        const MIN_PART: usize = 1 << 14;
+        let (n, items) = (self.items.len(), lists.as_flattened());
+        assert!(u32::try_from(n + items.len()).is_ok(), "fewer than 2^32 items");
+        threads.append(&mut self.items, items.len(), MIN_PART, |i| items[i]);
+        threads.append(&mut self.offsets, lists.len(), MIN_PART, |i| (n + (i + 1) * N) as u32);
     }
 }
 

@@ -23,7 +23,7 @@ pub(crate) fn same_orientation<T: PartialEq + Copy>(first: [T; 3], second: [T; 3
 }
 
 /// What all ids have in common, for code that is generic over them.
-pub trait Id: Copy + Ord + fmt::Display + fmt::Debug + Default {
+pub trait Id: Copy + Ord + fmt::Display + fmt::Debug + Default + Send + Sync {
     /// The value that stands for no id.
     const NONE: Self;
 

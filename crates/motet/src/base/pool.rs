@@ -42,6 +42,28 @@ mod parallel {
             self.0.install(|| (0..n).into_par_iter().with_min_len(min_part).map(of).collect())
         }
 
+        /// Appends `of(i)` for each `i` below `n`, in order; a thread takes at least `min_part` at a time.
+        pub(in crate::base) fn append<T: Send>(
+            &self,
+            list: &mut Vec<T>,
+            n: usize,
+            min_part: usize,
+            of: impl Fn(usize) -> T + Sync + Send,
+        ) {
+            self.0.install(|| list.par_extend((0..n).into_par_iter().with_min_len(min_part).map(of)));
+        }
+
+        /// Applies `of` to each item, with its place; a thread takes at least `min_part` at a time.
+        pub(in crate::base) fn update<T: Send>(
+            &self,
+            list: &mut [T],
+            min_part: usize,
+            of: impl Fn(usize, &mut T) + Sync + Send,
+        ) {
+            let items = list.par_iter_mut().with_min_len(min_part).enumerate();
+            self.0.install(|| items.for_each(|(i, item)| of(i, item)));
+        }
+
         /// The results for each of some ranges, in order, with a state that ranges of one thread share.
         pub(in crate::base) fn in_ranges<S: Default, T: Send>(
             &self,
@@ -105,6 +127,14 @@ mod serial {
         }
 
         pub(in crate::base) fn map<T>(&self, _: usize, _: usize, _: impl Fn(usize) -> T) -> Vec<T> {
+            match *self {}
+        }
+
+        pub(in crate::base) fn append<T>(&self, _: &mut Vec<T>, _: usize, _: usize, _: impl Fn(usize) -> T) {
+            match *self {}
+        }
+
+        pub(in crate::base) fn update<T>(&self, _: &mut [T], _: usize, _: impl Fn(usize, &mut T)) {
             match *self {}
         }
 

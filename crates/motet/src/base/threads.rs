@@ -80,6 +80,29 @@ impl Threads {
         }
     }
 
+    /// Appends `of(i)` for each `i` below `n` to a list, in order; a thread takes at least `min_part` of them
+    /// at a time. New memory is first written by the thread that computes what goes there.
+    pub fn append<T: Send>(
+        &self,
+        list: &mut Vec<T>,
+        n: usize,
+        min_part: usize,
+        of: impl Fn(usize) -> T + Sync + Send,
+    ) {
+        match &self.pool {
+            Some(pool) if n > min_part => pool.append(list, n, min_part, of),
+            _ => list.extend((0..n).map(of)),
+        }
+    }
+
+    /// Applies `of` to each item of a list, with its place; a thread takes at least `min_part` at a time.
+    pub fn update<T: Send>(&self, list: &mut [T], min_part: usize, of: impl Fn(usize, &mut T) + Sync + Send) {
+        match &self.pool {
+            None => list.iter_mut().enumerate().for_each(|(i, item)| of(i, item)),
+            Some(pool) => pool.update(list, min_part, of),
+        }
+    }
+
     /// Applies `of` to runs of up to `length` of the numbers below `n` and joins the results in order. One
     /// thread takes all numbers as a single run. `of` also gets a state, which is reused from run to run.
     pub fn in_runs<S: Default, T: Send>(
@@ -92,7 +115,10 @@ impl Threads {
             return of(&mut S::default(), 0..n);
         };
         let runs = (0..n).step_by(length).map(|start| start..n.min(start + length)).collect();
-        pool.in_ranges(runs, of).into_iter().flatten().collect()
+        let results = pool.in_ranges(runs, of);
+        let mut all = Vec::with_capacity(results.iter().map(Vec::len).sum());
+        results.into_iter().for_each(|some| all.extend(some));
+        all
     }
 
     /// Applies `of` to each of a few expensive things; the results are in order.

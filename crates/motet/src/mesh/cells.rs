@@ -1,6 +1,6 @@
 //! The cells of a mesh, in the order of the file, whatever their kinds.
 
-use crate::base::{CellId, Csr, Error, Result, VertexId};
+use crate::base::{CellId, Csr, Error, Result, Threads, VertexId};
 use crate::mesh::CellKind;
 
 /// Cells of any kind, mixed as in the file: the kind of each cell, and the vertices of all cells, end to end.
@@ -83,6 +83,18 @@ impl Cells {
         self.kinds.push(kind);
         self.vertices.push(vertices);
         debug_assert!(kind.n_vertices().is_none_or(|n| n == self.vertices.list(self.kinds.len() - 1).len()));
+    }
+
+    /// Adds cells of one kind, which has `N` vertices.
+    pub(crate) fn push_all<const N: usize>(
+        &mut self,
+        kind: CellKind,
+        cells: &[[VertexId; N]],
+        threads: &Threads,
+    ) {
+        debug_assert_eq!(kind.n_vertices(), Some(N));
+        self.kinds.resize(self.kinds.len() + cells.len(), kind);
+        self.vertices.push_all(cells, threads);
     }
 
     /// Adds a polyhedron by its vertices and its faces.

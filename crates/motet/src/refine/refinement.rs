@@ -95,8 +95,6 @@ pub struct Refinement {
     pub(super) first_mesh: TetMesh,
     pub(super) forest: Forest,
     pub(super) bounds: ShapeBounds,
-    /// The current position of each vertex of the forest that is in the mesh.
-    pub(super) points: Vec<Point>,
     pub(super) now: Extracted,
     pub(super) summary: Summary,
     /// Whether points have moved away from the reference.
@@ -115,13 +113,12 @@ impl Refinement {
             first_mesh: mesh.clone(),
             forest,
             bounds,
-            points: mesh.points.clone(),
-            now: Extracted::default(),
+            now: Extracted::of_first(mesh),
             summary: Summary::default(),
             is_moved: false,
         };
         let closed = close(&mut refinement.forest, bounds, threads)?;
-        refinement.update_mesh(closed)?;
+        refinement.update_mesh(closed, threads)?;
         Ok(refinement)
     }
 
@@ -132,7 +129,12 @@ impl Refinement {
 
     /// The first mesh, with its points at their current positions.
     pub fn first(&self) -> TetMesh {
-        let points = self.points[..self.forest.n_first_vertices].to_vec();
+        let n = self.forest.n_first_vertices;
+        let mut points = vec![[0.0; 3]; n];
+        for (v, &point) in self.now.vertices.iter().zip(&self.now.mesh.points).filter(|(v, _)| v.index() < n)
+        {
+            points[v.index()] = point;
+        }
         TetMesh { points, ..self.first_mesh.clone() }
     }
 
@@ -194,7 +196,7 @@ impl Refinement {
 
     /// The size in bytes of the memory kept beside the mesh.
     pub fn memory(&self) -> usize {
-        self.forest.memory() + size_of_val(&self.points[..]) + size_of_val(&self.now.nodes[..])
+        self.forest.memory() + size_of_val(&self.now.nodes[..])
     }
 
     /// Takes over points that moved. Shapes continue to be judged in the reference.
@@ -214,9 +216,6 @@ impl Refinement {
     fn set_positions(&mut self, points: &[Point]) {
         self.is_moved = true;
         self.now.mesh.points.copy_from_slice(points);
-        for (vertex, &point) in self.now.vertices.iter().zip(points) {
-            self.points[vertex.index()] = point;
-        }
     }
 
     /// Divides the marked tets into eight, once; a piece of a cut tet stands for the whole. Where that would
@@ -226,6 +225,12 @@ impl Refinement {
     /// When a marked tet does not exist, when one has already been divided twenty times over, or when ids
     /// would not suffice; then nothing has changed.
     pub fn refine(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
+        self.refine_from(marked, threads)?;
+        Ok(self.summary)
+    }
+
+    /// Divides as [`refine`](Self::refine) does, and returns the state before.
+    pub(super) fn refine_from(&mut self, marked: &[TetId], threads: &Threads) -> Result<Before> {
         self.check(marked)?;
         let is_deepest = |tet: &&TetId| {
             self.forest.states[self.now.nodes[tet.index()].index()].generation >= MAX_GENERATION
@@ -238,7 +243,7 @@ impl Refinement {
         self.or_restore(threads, |this, before| this.divide_all(marked, before, threads))
     }
 
-    fn divide_all(&mut self, marked: &[TetId], before: &[bool], threads: &Threads) -> Result<()> {
+    fn divide_all(&mut self, marked: &[TetId], before: &[bool], threads: &Threads) -> Result<Extracted> {
         let mut left = marked.to_vec();
         let mut neighborhood = Neighborhood::default();
         loop {
@@ -246,9 +251,9 @@ impl Refinement {
             let closed = close(&mut self.forest, self.bounds, threads)?;
             let split = ends_of_split_fixed_edges(&self.forest, &self.first_mesh);
             if split.is_empty() {
-                self.update_mesh(closed)?;
+                let was = self.update_mesh(closed, threads)?;
                 self.summary.n_held = marked.len() - left.len();
-                return Ok(());
+                return Ok(was);
             }
             if left.is_empty() {
                 return Err(Error::input("a fixed edge is already split before anything is divided"));
@@ -264,7 +269,7 @@ impl Refinement {
             let mut next = Some(self.now.nodes[tet.index()]);
             while let Some(node) = next.filter(|node| !self.forest.states[node.index()].is_requested) {
                 self.forest.states[node.index()].is_requested = true;
-                next = self.forest.nodes[node.index()].parent.get();
+                next = self.forest.parent(node);
             }
         }
     }
@@ -276,6 +281,12 @@ impl Refinement {
     /// # Errors
     /// When a marked tet does not exist; then nothing has changed.
     pub fn coarsen(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
+        self.coarsen_from(marked, threads)?;
+        Ok(self.summary)
+    }
+
+    /// Takes divisions back as [`coarsen`](Self::coarsen) does, and returns the state before.
+    pub(super) fn coarsen_from(&mut self, marked: &[TetId], threads: &Threads) -> Result<Before> {
         self.check(marked)?;
         self.or_restore(threads, |this, before| {
             this.withdraw_requests(marked, before);
@@ -307,21 +318,20 @@ impl Refinement {
 
     /// Builds the mesh of what is requested, restoring divisions where the whole tet would be inverted at the
     /// current positions.
-    fn keep_from_inverting(&mut self, before: &[bool], threads: &Threads) -> Result<()> {
+    fn keep_from_inverting(&mut self, before: &[bool], threads: &Threads) -> Result<Extracted> {
         let inverted =
             |this: &Self, out: &Extracted| vertices_of_inverted(&this.forest, &this.first_mesh, out, threads);
         let known = if self.is_moved { inverted(self, &self.now) } else { Vec::new() };
         let mut n_held = 0;
         loop {
             let closed = close(&mut self.forest, self.bounds, threads)?;
-            let now =
-                extract(&self.forest, &self.first_mesh, &closed.cuts, &self.points, &self.now.vertices)?;
+            let now = extract(&self.forest, &self.first_mesh, &closed.cuts, &self.now, threads)?;
             let mut new = if self.is_moved { inverted(self, &now) } else { Vec::new() };
             new.retain(|v| known.binary_search(v).is_err());
             if new.is_empty() {
-                self.accept(closed, now);
+                let was = self.accept(closed, now);
                 self.summary.n_held = n_held;
-                return Ok(());
+                return Ok(was);
             }
             let taken_back: Vec<NodeId> = (0..before.len())
                 .filter(|&n| before[n] && !self.forest.states[n].is_requested)
@@ -332,15 +342,14 @@ impl Refinement {
             let near: Vec<NodeId> = taken_back.iter().copied().filter(at).collect();
             let restored = if near.is_empty() { taken_back } else { near };
             if restored.is_empty() {
-                self.accept(closed, now);
-                return Ok(());
+                return Ok(self.accept(closed, now));
             }
             n_held += restored.len();
             for node in restored {
                 let mut next = Some(node);
                 while let Some(node) = next {
                     self.forest.states[node.index()].is_requested = true;
-                    next = self.forest.nodes[node.index()].parent.get();
+                    next = self.forest.parent(node);
                 }
             }
         }
@@ -364,31 +373,41 @@ impl Refinement {
             .for_each(|(state, &is_requested)| state.is_requested = is_requested);
     }
 
-    /// Runs a step, given the requests before it; if it fails, restores these.
+    /// Runs a step, given the requests before it, which returns the mesh before; if it fails, restores the
+    /// requests.
     fn or_restore(
         &mut self,
         threads: &Threads,
-        step: impl FnOnce(&mut Self, &[bool]) -> Result<()>,
-    ) -> Result<Summary> {
-        let before: Vec<bool> = self.forest.states.iter().map(|state| state.is_requested).collect();
-        let Err(error) = step(self, &before) else { return Ok(self.summary) };
-        self.restore_requests(&before);
-        let closed = close(&mut self.forest, self.bounds, threads)?;
-        self.update_mesh(closed)?;
-        Err(error)
+        step: impl FnOnce(&mut Self, &[bool]) -> Result<Extracted>,
+    ) -> Result<Before> {
+        let summary = self.summary;
+        let requested: Vec<bool> = self.forest.states.iter().map(|state| state.is_requested).collect();
+        match step(self, &requested) {
+            Ok(was) => Ok(Before { was, requested, summary }),
+            Err(error) => {
+                self.restore_requests(&requested);
+                let closed = close(&mut self.forest, self.bounds, threads)?;
+                self.update_mesh(closed, threads)?;
+                Err(error)
+            }
+        }
     }
 
-    fn update_mesh(&mut self, closed: Closed) -> Result<()> {
-        let now = extract(&self.forest, &self.first_mesh, &closed.cuts, &self.points, &self.now.vertices)?;
-        self.accept(closed, now);
+    /// Returns to the state before a step.
+    pub(super) fn undo(&mut self, before: Before, threads: &Threads) -> Result<()> {
+        self.restore_requests(&before.requested);
+        close(&mut self.forest, self.bounds, threads)?;
+        (self.now, self.summary) = (before.was, before.summary);
         Ok(())
     }
 
-    fn accept(&mut self, closed: Closed, now: Extracted) {
-        self.points.resize(self.forest.reference.len(), [f64::NAN; 3]);
-        for (vertex, &point) in now.vertices.iter().zip(&now.mesh.points) {
-            self.points[vertex.index()] = point;
-        }
+    /// Returns the mesh before.
+    fn update_mesh(&mut self, closed: Closed, threads: &Threads) -> Result<Extracted> {
+        let now = extract(&self.forest, &self.first_mesh, &closed.cuts, &self.now, threads)?;
+        Ok(self.accept(closed, now))
+    }
+
+    fn accept(&mut self, closed: Closed, now: Extracted) -> Extracted {
         self.summary = Summary {
             n_tets: now.mesh.tets.len(),
             n_promoted: closed.n_promoted,
@@ -396,8 +415,16 @@ impl Refinement {
             n_held: 0,
             n_sweeps: closed.n_sweeps,
         };
-        self.now = now;
+        std::mem::replace(&mut self.now, now)
     }
+}
+
+/// The state before a step.
+pub(super) struct Before {
+    pub(super) was: Extracted,
+    /// Whether the division of each tet of the forest was requested.
+    requested: Vec<bool>,
+    summary: Summary,
 }
 
 /// Rejects tets without volume, and more tets than a forest may have.

@@ -26,12 +26,22 @@ impl Shapes {
             let corners = mesh.tets[t].map(|v| mesh.points[v.index()]);
             [eas(corners).abs(), mean_ratio(corners).abs()]
         });
-        let worst = |k: usize| each.iter().map(|pair| pair[k]).reduce(f64::min).unwrap_or(0.0);
-        let sum = |k: usize| each.iter().map(|pair| pair[k]).sum::<f64>();
-        let mean = |k: usize| sum(k) / each.len().max(1) as f64;
-        let mut eas: Vec<f64> = each.iter().map(|pair| pair[0]).collect();
-        let all = Qualities::of_values(&mut eas, sum(1)).unwrap_or_default();
-        let [worst_eas, worst_mean_ratio] = [0, 1].map(worst);
-        Self { worst_eas, mean_eas: mean(0), worst_mean_ratio, mean_mean_ratio: mean(1), all }
+        let (sums, all) = threads.join(
+            || {
+                let start = ([f64::INFINITY; 2], [0.0; 2]);
+                each.iter().fold(start, |([x, y], [a, b]), &[eas, ratio]| {
+                    ([x.min(eas), y.min(ratio)], [a + eas, b + ratio])
+                })
+            },
+            || {
+                let mut eas: Vec<f64> = each.iter().map(|pair| pair[0]).collect();
+                Qualities::of_values(&mut eas, each.iter().map(|pair| pair[1]).sum())
+            },
+        );
+        let (worst, sums) = if each.is_empty() { ([0.0; 2], [0.0; 2]) } else { sums };
+        let [mean_eas, mean_mean_ratio] = sums.map(|sum| sum / each.len().max(1) as f64);
+        let [worst_eas, worst_mean_ratio] = worst;
+        let all = all.unwrap_or_default();
+        Self { worst_eas, mean_eas, worst_mean_ratio, mean_mean_ratio, all }
     }
 }

@@ -3,7 +3,7 @@
 use super::origins::{Origin, Origins};
 use super::rule::is_averageable;
 use super::{History, Row, Rows, Rule, Rules};
-use crate::base::{Error, Id, Result};
+use crate::base::{Error, Id, Result, Threads};
 use crate::mesh::data::check_rows;
 use crate::mesh::{Field, Mesh, Values};
 
@@ -14,7 +14,7 @@ impl History {
     /// If the array does not have one row for each old point.
     pub fn transfer_points(&self, field: &Field) -> Result<Field> {
         check(field, self.vertices.n_old(), "point")?;
-        Ok(carried(&self.vertices, field, Rule::of_points(field)))
+        Ok(carried(&self.vertices, field, Rule::of_points(field), &Threads::single()))
     }
 
     /// Transfers a cell array of the old mesh to the cells of the new one, by [`Rule::of_cells`].
@@ -23,7 +23,7 @@ impl History {
     /// If the array does not have one row for each old cell.
     pub fn transfer_cells(&self, field: &Field) -> Result<Field> {
         check(field, self.cells.n_old(), "cell")?;
-        Ok(carried(&self.cells, field, Rule::of_cells(field)))
+        Ok(carried(&self.cells, field, Rule::of_cells(field), &Threads::single()))
     }
 
     /// Transfers a point array like [`Self::transfer_points`], by a given rule; `None` for [`Rule::Drop`].
@@ -32,9 +32,13 @@ impl History {
     /// If the array does not have one row for each old point, or the rule does not apply: values on points
     /// are interpolated, not conserved, and whole numbers and texts have no mean.
     pub fn transfer_points_by(&self, field: &Field, rule: Rule) -> Result<Option<Field>> {
+        self.points_by(field, rule, &Threads::single())
+    }
+
+    fn points_by(&self, field: &Field, rule: Rule, threads: &Threads) -> Result<Option<Field>> {
         check(field, self.vertices.n_old(), "point")?;
         check_rule(field, rule, &[Rule::Interpolate, Rule::Linear], "point")?;
-        Ok((rule != Rule::Drop).then(|| carried(&self.vertices, field, rule)))
+        Ok((rule != Rule::Drop).then(|| carried(&self.vertices, field, rule, threads)))
     }
 
     /// Transfers a cell array like [`Self::transfer_cells`], by a given rule; `None` for [`Rule::Drop`].
@@ -43,9 +47,13 @@ impl History {
     /// If the array does not have one row for each old cell, or the rule does not apply: values on cells are
     /// conserved, not interpolated, and whole numbers and texts have no mean.
     pub fn transfer_cells_by(&self, field: &Field, rule: Rule) -> Result<Option<Field>> {
+        self.cells_by(field, rule, &Threads::single())
+    }
+
+    fn cells_by(&self, field: &Field, rule: Rule, threads: &Threads) -> Result<Option<Field>> {
         check(field, self.cells.n_old(), "cell")?;
         check_rule(field, rule, &[Rule::Conserve], "cell")?;
-        Ok((rule != Rule::Drop).then(|| carried(&self.cells, field, rule)))
+        Ok((rule != Rule::Drop).then(|| carried(&self.cells, field, rule, threads)))
     }
 
     /// Transfers to `new` all arrays of `old` that it lacks, on points, on cells and on the mesh as a whole,
@@ -55,6 +63,17 @@ impl History {
     /// If a mesh does not match the history, an array has the wrong length, or a rule names no array of `old`
     /// or does not apply to it. `new` is then unchanged.
     pub fn transfer(&self, old: &Mesh, new: &mut Mesh, rules: &Rules) -> Result<()> {
+        self.transfer_on(old, new, rules, &Threads::single())
+    }
+
+    /// Transfers as [`transfer`](Self::transfer) does, on several threads.
+    pub(crate) fn transfer_on(
+        &self,
+        old: &Mesh,
+        new: &mut Mesh,
+        rules: &Rules,
+        threads: &Threads,
+    ) -> Result<()> {
         check_count("old mesh", "points", self.vertices.n_old(), old.points.len())?;
         check_count("old mesh", "cells", self.cells.n_old(), old.cells.len())?;
         check_count("new mesh", "points", self.vertices.len(), new.points.len())?;
@@ -63,12 +82,12 @@ impl History {
         check_names(&old.cell_data, rules.cells.keys(), "cell")?;
         let on_points = missing(&old.point_data, &new.point_data).map(|field| {
             let rule = rules.points.get(&field.name).copied().unwrap_or_else(|| Rule::of_points(field));
-            self.transfer_points_by(field, rule)
+            self.points_by(field, rule, threads)
         });
         let on_points: Vec<Option<Field>> = on_points.collect::<Result<_>>()?;
         let on_cells = missing(&old.cell_data, &new.cell_data).map(|field| {
             let rule = rules.cells.get(&field.name).copied().unwrap_or_else(|| Rule::of_cells(field));
-            self.transfer_cells_by(field, rule)
+            self.cells_by(field, rule, threads)
         });
         let on_cells: Vec<Option<Field>> = on_cells.collect::<Result<_>>()?;
         let on_mesh: Vec<Field> = missing(&old.field_data, &new.field_data).cloned().collect();
@@ -131,17 +150,18 @@ fn check_names<'a>(fields: &[Field], mut names: impl Iterator<Item = &'a String>
 
 /// Transfers `field`, which has a row for each old entity. Floats follow the rule; all other values are
 /// inherited.
-fn carried<I: Id>(origins: &Origins<I>, field: &Field, rule: Rule) -> Field {
+fn carried<I: Id>(origins: &Origins<I>, field: &Field, rule: Rule, threads: &Threads) -> Field {
+    let n = field.components;
     let values = match &field.values {
-        Values::F64(old) if rule != Rule::Inherit => Values::F64(mixed(origins, field.components, rule, old)),
-        Values::F32(old) if rule != Rule::Inherit => Values::F32(mixed(origins, field.components, rule, old)),
+        Values::F64(old) if rule != Rule::Inherit => Values::F64(mixed(origins, n, rule, old, threads)),
+        Values::F32(old) if rule != Rule::Inherit => Values::F32(mixed(origins, n, rule, old, threads)),
         _ => return field.pick(origins.main().map(I::place)),
     };
     Field { name: field.name.clone(), components: field.components, values }
 }
 
 /// A floating-point type whose sums are taken in double precision.
-trait Float: Copy + Into<f64> {
+trait Float: Copy + Into<f64> + Send + Sync {
     fn rounded(x: f64) -> Self;
 }
 
@@ -157,22 +177,33 @@ impl Float for f32 {
     }
 }
 
-fn mixed<I: Id, T: Float>(origins: &Origins<I>, components: usize, rule: Rule, old: &[T]) -> Vec<T> {
-    let mut new = Vec::with_capacity(origins.len() * components);
+/// How many entities a thread takes at a time.
+const RUN: usize = 1 << 14;
+
+fn mixed<I: Id, T: Float>(
+    origins: &Origins<I>,
+    components: usize,
+    rule: Rule,
+    old: &[T],
+    threads: &Threads,
+) -> Vec<T> {
     let (none, quadratic) = (Rows::new(), origins.quadratic());
     let wide = if rule == Rule::Interpolate { quadratic } else { &none };
-    let mut wide = wide.ids().iter().zip(wide.iter()).peekable();
-    for (place, origin) in origins.iter().enumerate() {
-        let wide = wide.next_if(|(id, _)| id.place() == place).map(|(_, row)| row);
-        match origin {
-            Origin::Kept(id) => new.extend_from_slice(&old[id.place() * components..][..components]),
-            Origin::Changed(row) => new.extend((0..components).map(|k| {
-                let value = |id: I| old[id.place() * components + k].into();
-                T::rounded(interpolated(&row, wide.as_ref(), value))
-            })),
+    threads.in_runs(origins.len(), RUN, |(): &mut (), run| {
+        let mut new = Vec::with_capacity(run.len() * components);
+        let mut wide = wide.from(I::of(run.start)).peekable();
+        for (place, origin) in run.clone().zip(origins.from(run.start)) {
+            let wide = wide.next_if(|(id, _)| id.place() == place).map(|(_, row)| row);
+            match origin {
+                Origin::Kept(id) => new.extend_from_slice(&old[id.place() * components..][..components]),
+                Origin::Changed(row) => new.extend((0..components).map(|k| {
+                    let value = |id: I| old[id.place() * components + k].into();
+                    T::rounded(interpolated(&row, wide.as_ref(), value))
+                })),
+            }
         }
-    }
-    new
+        new
+    })
 }
 
 /// The value by a row for linear fields or, if there is one, by the row `wide` for quadratic fields. It

@@ -82,6 +82,12 @@ impl<I: Id> Origins<I> {
         Ok(Self { n_old, kept, changed, quadratic: Rows::new() })
     }
 
+    /// Origins as [`new`](Self::new) makes them, of which the caller knows that they are valid.
+    pub(crate) fn trusted(n_old: usize, kept: Vec<MaybeId<I>>, changed: Rows<I>) -> Self {
+        debug_assert!(Self::new(n_old, kept.clone(), changed.clone()).is_ok());
+        Self { n_old, kept, changed, quadratic: Rows::new() }
+    }
+
     /// Replaces the rows for quadratic fields, which only entities that changed may have.
     ///
     /// # Errors
@@ -150,8 +156,13 @@ impl<I: Id> Origins<I> {
 
     /// Where every entity came from, in the order of the new mesh.
     pub fn iter(&self) -> impl Iterator<Item = Origin<'_, I>> + '_ {
-        let mut rows = self.changed.iter();
-        self.kept.iter().map(move |old| match old.get() {
+        self.from(0)
+    }
+
+    /// Where every entity from a place on came from.
+    pub(super) fn from(&self, place: usize) -> impl Iterator<Item = Origin<'_, I>> + '_ {
+        let mut rows = self.changed.from(I::of(place)).map(|(_, row)| row);
+        self.kept[place..].iter().map(move |old| match old.get() {
             Some(old) => Origin::Kept(old),
             None => Origin::Changed(rows.next().expect("one row for each that changed")),
         })

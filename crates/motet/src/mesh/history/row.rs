@@ -83,7 +83,12 @@ impl<I: Id> Rows<I> {
     /// Panics if `id` is not the largest.
     pub fn push(&mut self, id: I, parts: &[(I, f64)], main: I) {
         let sum: f64 = parts.iter().map(|p| p.1).filter(|&share| share > 0.0).sum();
-        if sum > 0.0 && sum.is_finite() {
+        if let &[(old, share)] = parts
+            && share > 0.0
+            && share.is_finite()
+        {
+            self.push_signed(id, &[(old, 1.0)], main);
+        } else if sum > 0.0 && sum.is_finite() {
             let scaled = parts.iter().map(|&(old, share)| (old, share / sum)).filter(|p| p.1 > 0.0);
             self.push_signed(id, &scaled.collect::<Vec<_>>(), main);
         } else {
@@ -104,6 +109,47 @@ impl<I: Id> Rows<I> {
         adjust_sum(&mut self.shares[start..]);
         self.ids.push(id);
         self.main.push(main);
+    }
+
+    /// Adds rows whose ids are larger than all before.
+    ///
+    /// Panics if they are not.
+    pub(crate) fn append(&mut self, rows: Self) {
+        let is_after = self.ids.last().is_none_or(|last| rows.ids.first().is_none_or(|first| last < first));
+        assert!(is_after, "rows come in rising order of their ids");
+        if self.is_empty() {
+            *self = rows;
+            return;
+        }
+        self.ids.extend_from_slice(&rows.ids);
+        self.from.append(&rows.from);
+        self.shares.extend_from_slice(&rows.shares);
+        self.main.extend_from_slice(&rows.main);
+    }
+
+    /// These rows and others, by rising ids; no id is in both.
+    pub(crate) fn merged(self, others: Self) -> Self {
+        let mut merged = Self::new();
+        let is_apart = |x: &Self, y: &Self| {
+            x.ids.last().is_none_or(|last| y.ids.first().is_none_or(|first| last < first))
+        };
+        if is_apart(&self, &others) {
+            merged = self;
+            merged.append(others);
+            return merged;
+        }
+        let (mut i, mut k) = (0, 0);
+        while i < self.len() || k < others.len() {
+            let is_first = k == others.len() || i < self.len() && self.ids[i] < others.ids[k];
+            let (id, row) =
+                if is_first { (self.ids[i], self.row(i)) } else { (others.ids[k], others.row(k)) };
+            merged.ids.push(id);
+            merged.from.push(row.from.iter().copied());
+            merged.shares.extend_from_slice(row.shares);
+            merged.main.push(row.main);
+            (i, k) = if is_first { (i + 1, k) } else { (i, k + 1) };
+        }
+        merged
     }
 
     /// Number of rows.
@@ -129,6 +175,12 @@ impl<I: Id> Rows<I> {
     /// All rows in the order of their ids.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Row<'_, I>> + '_ {
         (0..self.len()).map(|i| self.row(i))
+    }
+
+    /// The rows from an id on, with their ids.
+    pub(super) fn from(&self, id: I) -> impl Iterator<Item = (I, Row<'_, I>)> + '_ {
+        let first = self.ids.partition_point(|other| *other < id);
+        (first..self.len()).map(|i| (self.ids[i], self.row(i)))
     }
 
     fn row(&self, i: usize) -> Row<'_, I> {

@@ -9,7 +9,7 @@ use super::Forest;
 use super::bounds::ShapeBounds;
 use super::eight::INNER;
 use super::fills::Finder;
-use super::patterns::{FACET_EDGES, FULL};
+use super::patterns::{FACET_EDGES, FULL, patterns};
 use crate::base::{EdgeId, Error, MaybeId, NodeId, Result, Threads};
 
 /// A tet cut to fit its neighbours.
@@ -28,6 +28,13 @@ pub(in crate::refine) struct Goal {
     /// The cuts of its facets and, where it fits, the index of the pattern that fills it.
     pub(in crate::refine) cuts: u8,
     pub(in crate::refine) way: u8,
+}
+
+impl Cut {
+    /// The pieces, by local vertices.
+    pub(in crate::refine) fn pieces(&self) -> &'static [[u8; 4]] {
+        &patterns(self.goal.mask, self.goal.cuts)[usize::from(self.goal.way)]
+    }
 }
 
 impl Goal {
@@ -67,12 +74,9 @@ pub(in crate::refine) fn close(
     threads: &Threads,
 ) -> Result<Closed> {
     forest.reset();
-    for node in (0..forest.nodes.len()).map(NodeId::new) {
-        if forest.states[node.index()].is_requested {
-            forest.check_limit()?;
-            divide(forest, node, bounds);
-        }
-    }
+    let requested: Vec<NodeId> =
+        (0..forest.nodes.len()).filter(|&node| forest.states[node].is_requested).map(NodeId::new).collect();
+    forest.divide_all(&requested, bounds, threads)?;
     let mut eights = forest.eights();
     let mut closed = Closed::default();
     let mut verdicts = Vec::new();
@@ -80,11 +84,10 @@ pub(in crate::refine) fn close(
         closed.n_sweeps += 1;
         verdicts = sweep(forest, &eights, &verdicts, bounds, threads);
         let mut is_done = true;
+        let mut promoted = Vec::new();
         for &Verdict { node, mask, goal, .. } in &verdicts {
             if goal.mask == FULL {
-                closed.n_promoted += 1;
-                forest.check_limit()?;
-                eights.push(divide(forest, node, bounds));
+                promoted.push(node);
             } else if goal.mask != mask {
                 let edges = forest.edges_of[node.index()];
                 for (_, edge) in edges.into_iter().enumerate().filter(|(e, _)| goal.mask >> e & 1 == 1) {
@@ -94,11 +97,17 @@ pub(in crate::refine) fn close(
             }
             is_done &= goal.mask == mask && mask != FULL;
         }
+        forest.finish_middles(threads);
+        forest.divide_all(&promoted, bounds, threads)?;
+        closed.n_promoted += promoted.len();
+        eights.extend(promoted.iter().filter_map(|node| forest.nodes[node.index()].first_child.get()));
         if is_done {
             closed.cuts =
                 verdicts.iter().map(|verdict| Cut { node: verdict.node, goal: verdict.goal }).collect();
             closed.cuts.sort_unstable_by_key(|cut| cut.node);
-            closed.cuts.iter().for_each(|cut| forest.states[cut.node.index()].is_cut = true);
+            for cut in &closed.cuts {
+                forest.states[cut.node.index()].n_pieces = cut.pieces().len() as u8;
+            }
             return Ok(closed);
         }
     }
@@ -154,15 +163,6 @@ fn sweep(
     verdicts
 }
 
-fn divide(forest: &mut Forest, node: NodeId, bounds: ShapeBounds) -> NodeId {
-    let way = forest.decide(forest.nodes[node.index()].shape.class(), bounds);
-    let first = forest.divide(node, way);
-    for edge in forest.edges_of[node.index()] {
-        forest.is_split[edge.index()] = true;
-    }
-    first
-}
-
 /// Finds what a tet needs to be cut well, from the reference alone. Pieces are compared with what dividing
 /// would leave: compared with the whole, a tet with bad inner parts could never be cut well enough, and in a
 /// mesh of such tets division would spread without end.
@@ -194,9 +194,29 @@ fn goal(finder: &mut Finder, leaf: NodeId, mask: u8) -> Goal {
 }
 
 impl Forest {
-    /// Rejects growth beyond the limit.
-    fn check_limit(&self) -> Result<()> {
-        if self.nodes.len() < self.max_nodes {
+    /// Divides tets, and splits their edges.
+    ///
+    /// # Errors
+    /// When the forest would have more tets than allowed.
+    fn divide_all(&mut self, tets: &[NodeId], bounds: ShapeBounds, threads: &Threads) -> Result<()> {
+        let is_new = |node: &NodeId| self.nodes[node.index()].first_child.is_none();
+        let new: Vec<NodeId> = tets.iter().copied().filter(is_new).collect();
+        let Some((last, _)) = tets.split_last() else { return Ok(()) };
+        self.check_limit(8 * (new.len() - usize::from(is_new(last))))?;
+        for node in tets.iter().map(|node| node.index()) {
+            self.states[node].is_divided = true;
+            for edge in self.edges_of[node] {
+                self.is_split[edge.index()] = true;
+            }
+        }
+        let ways = self.decide(&new, bounds, threads);
+        self.divide(&ways, threads);
+        Ok(())
+    }
+
+    /// Rejects growth beyond the limit once there are `n` more tets.
+    fn check_limit(&self, n: usize) -> Result<()> {
+        if self.nodes.len() + n < self.max_nodes {
             return Ok(());
         }
         Err(Error::options(format!("more than {} tets would be divided or created", self.max_nodes))
@@ -210,25 +230,24 @@ impl Forest {
             self.is_split[edge.index()] = true;
         }
         let mut n_new = 0;
-        for (state, node) in self.states.iter_mut().zip(&self.nodes) {
-            (state.is_divided, state.is_cut) = (false, false);
+        for (state, node) in self.states.iter_mut().zip(&*self.nodes) {
+            (state.is_divided, state.n_pieces) = (false, 0);
             n_new += usize::from(state.is_requested && node.first_child.is_none());
         }
-        self.nodes.reserve(8 * n_new);
-        self.states.reserve(8 * n_new);
-        self.edges_of.reserve(8 * n_new);
+        self.nodes.reserve(n_new);
+        self.states.reserve(n_new);
+        self.edges_of.reserve(n_new);
     }
 
     /// For each divided tet the first of its eight parts, unless all of these are divided.
     fn eights(&self) -> Vec<NodeId> {
         // The roots are followed by groups of eight with a common parent.
-        let eights = (self.n_roots..self.nodes.len()).step_by(8);
-        let is_there = |first: &usize| {
-            let parent = self.nodes[*first].parent.get();
-            parent.is_some_and(|parent| self.states[parent.index()].is_divided)
+        let eights = (self.first_part()..self.nodes.len()).step_by(8).zip(&self.parents);
+        let is_there = |(first, parent): &(usize, &NodeId)| {
+            self.states[parent.index()].is_divided
                 && !self.states[*first..*first + 8].iter().all(|state| state.is_divided)
         };
-        eights.filter(is_there).map(NodeId::new).collect()
+        eights.filter(is_there).map(|(first, _)| NodeId::new(first)).collect()
     }
 
     /// Whether an edge of a group of eight is split. The corner parts have all edges but the diagonal, which
@@ -255,8 +274,10 @@ impl Forest {
         let is_split = |edge: MaybeId<EdgeId>| edge.get().is_some_and(|edge| self.is_split[edge.index()]);
         for (e, edge) in edges.iter().enumerate() {
             if mask >> e & 1 == 1 {
-                let [first, second] = self.edges[edge.index()].halves;
-                if is_split(first) || is_split(second) {
+                if self
+                    .halves(*edge)
+                    .is_some_and(|halves| halves.map(MaybeId::from).into_iter().any(is_split))
+                {
                     return true;
                 }
             }

@@ -1,4 +1,4 @@
-//! Divides a tet into eight, and finds the edges of each part.
+//! Divides tets into eight, and finds the edges of each part.
 //!
 //! The edges of the parts are numbered, and a table gives for each of the three ways which edges belong to
 //! which part: the halves of edge `e` at its first and second end are `2e` and `2e + 1`; the edge within
@@ -6,12 +6,14 @@
 
 use std::sync::OnceLock;
 
-use super::classes::ClassId;
+use super::classes::{ClassId, Shape};
 use super::eight::{IMAGES, INNER, eight, ends};
+use super::facets::Middles;
 use super::patterns::FACET_EDGES;
-use super::{Forest, Node, State};
-use crate::base::{EdgeId, ForestVertexId, MaybeId, NodeId};
+use super::{Edge, Forest, Node, State};
+use crate::base::{EdgeId, ForestVertexId, MaybeId, NodeId, Threads};
 use crate::geometry::tet::EDGES;
+use crate::geometry::vector::{add, scale};
 
 const DIAGONAL: usize = 24;
 
@@ -58,65 +60,181 @@ fn parts_between() -> [[u8; 10]; 10] {
     part_of
 }
 
+/// How many tets are divided at a time: what is noted of them stays in the cache.
+const BLOCK: usize = 1 << 14;
+
+/// The least number of edges that a thread makes at a time.
+const MIN_EDGES: usize = 4096;
+
+/// A tet that is being divided.
+#[derive(Clone, Copy, Debug)]
+struct Division {
+    node: NodeId,
+    way: u8,
+    /// The generation of the parts.
+    generation: u8,
+    shape: Shape,
+    /// The first of the two classes of inner parts.
+    inner: ClassId,
+    /// Corners, then middles.
+    local: [ForestVertexId; 10],
+    edges: [EdgeId; 6],
+    /// For each facet, the first of the three consecutive edges within it.
+    within: [EdgeId; 4],
+}
+
+impl Division {
+    /// The middles of the edges of each facet.
+    fn facets(&self) -> [Middles; 4] {
+        FACET_EDGES.map(|facet| Middles::new(facet.map(|e| self.local[4 + e])))
+    }
+}
+
 impl Forest {
-    /// Divides a tet into eight in one of the three ways, unless it was divided before; returns the first
-    /// part.
-    pub(in crate::refine) fn divide(&mut self, node: NodeId, way: usize) -> NodeId {
-        self.states[node.index()].is_divided = true;
-        let Node { vertices, first_child, shape, .. } = self.nodes[node.index()];
-        if let Some(first_child) = first_child.get() {
-            return first_child;
+    /// Divides tets that were never divided into eight, each in one of the three ways.
+    pub(in crate::refine) fn divide(&mut self, tets: &[(NodeId, u8)], threads: &Threads) {
+        for block in tets.chunks(BLOCK) {
+            self.divide_block(block, threads);
         }
+    }
+
+    /// First everything new gets its number, tet by tet; what these numbers stand for is then computed on all
+    /// threads.
+    fn divide_block(&mut self, block: &[(NodeId, u8)], threads: &Threads) {
+        let n = block.len();
+        let mut divisions: Vec<Division> = Vec::with_capacity(n);
+        divisions.extend(block.iter().zip(0..).map(|(&(node, way), k)| self.begin(node, way, k)));
+        self.finish_middles(threads);
+        self.make_edges_within(&mut divisions, threads);
+        let first_diagonal = self.edges.len();
+        let diagonal = |division: &Division| ends(usize::from(division.way)).map(|v| division.local[v]);
+        threads.append(&mut self.edges, n, MIN_EDGES, |k| Edge {
+            ends: diagonal(&divisions[k]),
+            middle: MaybeId::NONE,
+        });
+        self.is_split.resize(self.edges.len(), false);
+
+        let mut edges_of = std::mem::take(&mut self.edges_of);
+        edges_of.append(n, threads, |k| {
+            let division = &divisions[k];
+            let known = self.known_edge(diagonal(division));
+            self.edges_of_parts(division, known.unwrap_or(EdgeId::new(first_diagonal + k)))
+        });
+        self.edges_of = edges_of;
+        self.nodes.append(n, threads, |k| parts(&divisions[k]));
+        self.states
+            .append(n, threads, |k| [State { generation: divisions[k].generation, ..State::default() }; 8]);
+        self.parents.extend(divisions.iter().map(|division| division.node));
+    }
+
+    /// Notes the `k`-th tet of a block that is being divided, and numbers its middles.
+    fn begin(&mut self, node: NodeId, way: u8, k: usize) -> Division {
+        let first_child = NodeId::new(self.nodes.len() + 8 * k);
+        let tet = &mut self.nodes[node.index()];
+        tet.first_child = first_child.into();
+        let Node { vertices, shape, .. } = *tet;
         let edges = self.edges_of[node.index()];
         let mut local = [vertices[0]; 10];
         local[..4].copy_from_slice(&vertices);
         for e in 0..6 {
             local[4 + e] = self.middle(edges[e]);
         }
-        let parts = self.parts(&edges, &local, way);
-        let first = NodeId::new(self.nodes.len());
-        self.nodes[node.index()].first_child = first.into();
-        let mut tets = [Node { vertices, parent: node.into(), first_child: MaybeId::NONE, shape }; 8];
-        let mut edges_of = [edges; 8];
-        for (k, eighth) in eighths(way).iter().enumerate() {
-            for i in 0..4 {
-                tets[k].vertices[i] = local[usize::from(eighth.vertices[i])];
-            }
-            for e in 0..6 {
-                edges_of[k][e] = parts[usize::from(eighth.edges[e])];
-            }
-        }
-        let classes = self.make_classes(shape.class(), way);
-        for ((class, inner), image) in (classes.0..).zip(INNER).zip(IMAGES) {
-            tets[inner].shape = shape.of_class(ClassId(class));
-            tets[image].shape = tets[inner].shape.mirrored();
-        }
+        let inner = self.make_classes(shape.class(), usize::from(way));
         let generation = self.states[node.index()].generation + 1;
-        self.nodes.extend_from_slice(&tets);
-        self.edges_of.extend_from_slice(&edges_of);
-        self.states.extend_from_slice(&[State { generation, ..State::default() }; 8]);
-        first
+        Division { node, way, generation, shape, inner, local, edges, within: [edges[0]; 4] }
     }
 
-    /// The edges of the parts, with the diagonal of a way.
-    fn parts(
-        &mut self,
-        edges: &[EdgeId; 6],
-        local: &[ForestVertexId; 10],
-        way: usize,
-    ) -> [EdgeId; DIAGONAL + 1] {
-        let mut parts = [edges[0]; DIAGONAL + 1];
+    /// The vertex in the middle of an edge. A new one gets a number, all else by
+    /// [`finish_middles`](Self::finish_middles).
+    #[inline]
+    pub(in crate::refine) fn middle(&mut self, edge: EdgeId) -> ForestVertexId {
+        let Some(middle) = self.edges[edge.index()].middle.get() else {
+            let new = ForestVertexId::new(self.n_first_vertices + self.origin.len());
+            self.origin.push(edge);
+            self.edges[edge.index()].middle = new.into();
+            return new;
+        };
+        if middle.index() < self.n_first_vertices {
+            self.pin_halves(edge);
+        }
+        middle
+    }
+
+    /// Places the new middles, and makes the halves of their edges.
+    pub(in crate::refine) fn finish_middles(&mut self, threads: &Threads) {
+        let n_before = self.first_half.len();
+        let (n, first_edge) = (self.origin.len() - n_before, self.edges.len());
+        let ends = threads.map(n, |k| self.edges[self.origin[n_before + k].index()].ends);
+        let places = threads.map(n, |k| {
+            let [p, q] = ends[k].map(|v| self.reference[v.index()]);
+            scale(add(p, q), 0.5)
+        });
+        self.reference.extend_from_slice(&places);
+        self.first_half.extend((0..n).map(|k| EdgeId::new(first_edge + 2 * k)));
+        let first_vertex = self.n_first_vertices + n_before;
+        threads.append(&mut self.edges, 2 * n, MIN_EDGES, |i| Edge {
+            ends: [ends[i / 2][i % 2], ForestVertexId::new(first_vertex + i / 2)],
+            middle: MaybeId::NONE,
+        });
+        self.is_split.resize(self.edges.len(), false);
+    }
+
+    /// Finds the edges within the facets, and makes those that are not there.
+    fn make_edges_within(&mut self, divisions: &mut [Division], threads: &Threads) {
+        let first = self.edges.len();
+        let mut new: Vec<[ForestVertexId; 3]> = Vec::with_capacity(3 * divisions.len());
+        for division in divisions {
+            for (facet, middles) in division.facets().iter().enumerate() {
+                division.within[facet] = self.facet_edges.get(middles).unwrap_or_else(|| {
+                    let edges = EdgeId::new(first + 3 * new.len());
+                    new.push(middles.rising);
+                    self.facet_edges.add(middles, edges);
+                    edges
+                });
+            }
+        }
+        threads.append(&mut self.edges, 3 * new.len(), MIN_EDGES, |i| {
+            let [x, y, z] = new[i / 3];
+            Edge { ends: [[y, z], [x, z], [x, y]][i % 3], middle: MaybeId::NONE }
+        });
+    }
+
+    /// The edges of each of the eight parts.
+    fn edges_of_parts(&self, division: &Division, diagonal: EdgeId) -> [[EdgeId; 6]; 8] {
+        let Division { edges, local, .. } = division;
+        let mut parts = [diagonal; DIAGONAL + 1];
         for (e, [i, _]) in EDGES.into_iter().enumerate() {
-            let [at_first, at_second] = self.halves(edges[e]);
+            let [at_first, at_second] = self.halves(edges[e]).expect("a divided tet has split edges");
             let is_turned = self.edges[edges[e].index()].ends[0] != local[i];
             parts[2 * e] = if is_turned { at_second } else { at_first };
             parts[2 * e + 1] = if is_turned { at_first } else { at_second };
         }
-        for (f, [a, b, c]) in FACET_EDGES.into_iter().enumerate() {
-            let within = self.make_inner_edges([local[4 + a], local[4 + b], local[4 + c]]);
+        for (f, middles) in division.facets().iter().enumerate() {
+            let within = self.or_root_edges(middles, middles.named(division.within[f]));
             parts[12 + 3 * f..15 + 3 * f].copy_from_slice(&within);
         }
-        parts[DIAGONAL] = self.make_edge(ends(way).map(|v| local[v]));
-        parts
+        let mut edges_of = [*edges; 8];
+        for (edges, eighth) in edges_of.iter_mut().zip(eighths(usize::from(division.way))) {
+            for e in 0..6 {
+                edges[e] = parts[usize::from(eighth.edges[e])];
+            }
+        }
+        edges_of
     }
+}
+
+/// The eight parts.
+fn parts(division: &Division) -> [Node; 8] {
+    let &Division { way, shape, inner, local, .. } = division;
+    let mut parts = [Node { vertices: [local[0]; 4], first_child: MaybeId::NONE, shape }; 8];
+    for (part, eighth) in parts.iter_mut().zip(eighths(usize::from(way))) {
+        for i in 0..4 {
+            part.vertices[i] = local[usize::from(eighth.vertices[i])];
+        }
+    }
+    for ((class, inner), image) in (inner.0..).zip(INNER).zip(IMAGES) {
+        parts[inner].shape = shape.of_class(ClassId(class));
+        parts[image].shape = parts[inner].shape.mirrored();
+    }
+    parts
 }

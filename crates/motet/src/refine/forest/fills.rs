@@ -10,10 +10,13 @@ use super::classes::{Class, ClassId, corners_at, inner_part};
 use super::eight::ends;
 use super::patterns::patterns;
 use super::{Forest, with_middles};
-use crate::base::{NodeId, Point};
+use crate::base::{NodeId, Point, Threads};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{dot, sub};
 use crate::refine::Rule;
+
+/// The least number of divisions that a thread decides at a time.
+const MIN_DIVISIONS: usize = 64;
 
 /// How tets of a class are cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,15 +91,29 @@ impl<'a> Finder<'a> {
 }
 
 impl Forest {
-    /// Decides which way tets of a class are divided.
-    pub(super) fn decide(&mut self, class: ClassId, bounds: ShapeBounds) -> usize {
-        if let Some(way) = self.classes[class.index()].best {
-            return usize::from(way);
+    /// Decides in which way each of these tets is divided.
+    pub(super) fn decide(
+        &mut self,
+        tets: &[NodeId],
+        bounds: ShapeBounds,
+        threads: &Threads,
+    ) -> Vec<(NodeId, u8)> {
+        let class_of = |forest: &Self, node: &NodeId| forest.nodes[node.index()].shape.class();
+        let mut is_open: Vec<bool> = self.classes.iter().map(|class| class.best.is_none()).collect();
+        let classes = tets.iter().map(|node| class_of(self, node));
+        let open: Vec<ClassId> =
+            classes.filter(|class| std::mem::take(&mut is_open[class.index()])).collect();
+        let ways = threads.map_parts(open.len(), MIN_DIVISIONS, |i| {
+            let known = self.fills.divisions.get(&open[i]).copied();
+            known.unwrap_or_else(|| best_division(self, open[i], bounds))
+        });
+        for (class, way) in open.into_iter().zip(ways) {
+            self.fills.divisions.remove(&class);
+            self.classes[class.index()].best = Some(way.place as u8);
+            self.add_classes(class, way.place, way.inner);
         }
-        let way = self.fills.divisions.remove(&class).unwrap_or_else(|| best_division(self, class, bounds));
-        self.classes[class.index()].best = Some(way.place as u8);
-        self.add_classes(class, way.place, way.inner);
-        way.place
+        let way = |node: &NodeId| (*node, self.classes[class_of(self, node).index()].best.unwrap_or(0));
+        tets.iter().map(way).collect()
     }
 }
 

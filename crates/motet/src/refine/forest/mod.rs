@@ -2,7 +2,7 @@
 //!
 //! | step | file | what it does |
 //! |---|---|---|
-//! | store | this, `facets` | parents, children, edges and facets |
+//! | store | this, `eights`, `facets` | parents, children, edges and facets |
 //! | divide | `divide`, `eight` | the eight parts, and which edges each of them has |
 //! | shapes | `classes` | few tets have shapes of their own; what follows from the shape is computed once |
 //! | fit | `patterns` | cuts of the tets between divided and undivided ones: all ways to do so, from a table |
@@ -21,6 +21,7 @@ mod classes;
 mod close;
 mod divide;
 mod eight;
+mod eights;
 mod extract;
 mod facets;
 mod fills;
@@ -33,6 +34,7 @@ pub(super) use extract::{Extracted, extract};
 pub(super) use patterns::{FACET_EDGES, patterns};
 
 use classes::{Class, ClassId, Shape};
+use eights::Eights;
 use facets::{Facets, Middles};
 use fills::Fills;
 use hashbrown::HashMap;
@@ -55,15 +57,12 @@ pub(super) struct Edge {
     pub(super) ends: [ForestVertexId; 2],
     /// The vertex in its middle; none if it was never split.
     pub(super) middle: MaybeId<ForestVertexId>,
-    /// The halves, one at each end; either both or none.
-    pub(super) halves: [MaybeId<EdgeId>; 2],
 }
 
 /// A tet of the first mesh, or one of eight that a tet was divided into.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     pub(super) vertices: [ForestVertexId; 4],
-    pub(super) parent: MaybeId<NodeId>,
     /// The first of its eight parts, which are consecutive; none if it was never divided.
     pub(super) first_child: MaybeId<NodeId>,
     pub(super) shape: Shape,
@@ -77,8 +76,8 @@ pub(super) struct State {
     pub(super) is_requested: bool,
     /// Whether it is currently divided into eight.
     pub(super) is_divided: bool,
-    /// Whether it is currently cut to fit its neighbours.
-    pub(super) is_cut: bool,
+    /// How many pieces it is currently cut into to fit its neighbours; 0 if it is not cut.
+    pub(super) n_pieces: u8,
 }
 
 /// All tets, edges and vertices.
@@ -88,19 +87,26 @@ pub(super) struct Forest {
     pub(super) reference: Vec<Point>,
     /// For each vertex that is not of the first mesh, the edge in whose middle it lies.
     pub(super) origin: Vec<EdgeId>,
+    /// For each of these, the first of the two consecutive halves of that edge, at the edge's first end.
+    first_half: Vec<EdgeId>,
     pub(super) edges: Vec<Edge>,
     /// For each edge, whether it is currently split; stored separately because it is read most.
     pub(super) is_split: Vec<bool>,
-    pub(super) nodes: Vec<Node>,
-    pub(super) states: Vec<State>,
+    /// The roots, up to seven that stand for nothing, then groups of eight parts.
+    pub(super) nodes: Eights<Node>,
+    pub(super) states: Eights<State>,
     /// For each tet, its edges.
-    pub(super) edges_of: Vec<[EdgeId; 6]>,
+    pub(super) edges_of: Eights<[EdgeId; 6]>,
+    /// For each group of eight parts, the tet that they are parts of.
+    parents: Vec<NodeId>,
     pub(super) n_roots: usize,
     pub(super) n_first_vertices: usize,
     /// No tet is divided once there are this many.
     pub(super) max_nodes: usize,
     /// Edges that stay split because a root has a vertex in their middle.
     pub(super) pinned: Vec<EdgeId>,
+    /// The halves of such edges, one at each end.
+    pinned_halves: HashMap<EdgeId, [EdgeId; 2]>,
     /// The edges of roots, by their ends.
     root_edges: HashMap<[ForestVertexId; 2], EdgeId>,
     /// The three edges between the middles of a facet's edges; see [`Self::inner_edges`].
@@ -123,21 +129,18 @@ impl Forest {
             n_roots,
             n_first_vertices: points.len(),
             max_nodes: MAX_NODES,
-            nodes: Vec::with_capacity(n_roots),
-            states: Vec::with_capacity(n_roots),
-            edges_of: Vec::with_capacity(n_roots),
             classes: Vec::with_capacity(n_roots),
             ..Self::default()
         };
+        let (mut nodes, mut edges_of) = (Vec::with_capacity(n_roots), Vec::with_capacity(n_roots));
         for ((vertices, is_turned), root) in tets.zip(0..) {
-            let edges = EDGES.map(|[i, j]| forest.make_root_edge([vertices[i], vertices[j]]));
+            edges_of.push(EDGES.map(|[i, j]| forest.make_root_edge([vertices[i], vertices[j]])));
             let shape = Shape::new(ClassId(root), is_turned);
-            let (parent, first_child) = (MaybeId::NONE, MaybeId::NONE);
-            forest.nodes.push(Node { vertices, parent, first_child, shape });
+            nodes.push(Node { vertices, first_child: MaybeId::NONE, shape });
             forest.classes.push(Class::of_root(vertices.map(|v| points[v.index()])));
-            forest.states.push(State::default());
-            forest.edges_of.push(edges);
         }
+        forest.states = Eights::of(&vec![State::default(); n_roots]);
+        (forest.nodes, forest.edges_of) = (Eights::of(&nodes), Eights::of(&edges_of));
         forest
     }
 
@@ -162,22 +165,6 @@ impl Forest {
         }
         let edges = first.map_or([MaybeId::NONE; 3], |first| middles.named(first).map(MaybeId::from));
         Some(self.or_root_edges(&middles, edges))
-    }
-
-    /// The edges within a facet between the middles of its edges, as for [`Self::inner_edges`]; new ones if
-    /// there are none.
-    #[inline]
-    pub(super) fn make_inner_edges(&mut self, middles: [ForestVertexId; 3]) -> [EdgeId; 3] {
-        let middles = Middles::new(middles);
-        let first = self.facet_edges.get(&middles).unwrap_or_else(|| {
-            let [x, y, z] = middles.rising;
-            let first = push_edge(&mut self.edges, &mut self.is_split, [y, z]);
-            push_edge(&mut self.edges, &mut self.is_split, [x, z]);
-            push_edge(&mut self.edges, &mut self.is_split, [x, y]);
-            self.facet_edges.add(&middles, first);
-            first
-        });
-        self.or_root_edges(&middles, middles.named(first))
     }
 
     /// Replaces edges between two of three middles by edges of roots, where there are such.
@@ -205,15 +192,6 @@ impl Forest {
         if are_of_roots { self.root_edge(ends) } else { None }
     }
 
-    /// The edge of a root between two vertices, or a new edge.
-    #[inline]
-    pub(super) fn make_edge(&mut self, ends: [ForestVertexId; 2]) -> EdgeId {
-        match self.known_edge(ends) {
-            Some(edge) => edge,
-            None => push_edge(&mut self.edges, &mut self.is_split, ends),
-        }
-    }
-
     /// Finds the edges that stay split.
     pub(super) fn pin(&mut self) {
         let n = self.n_first_vertices;
@@ -222,36 +200,44 @@ impl Forest {
         self.pinned = (0..self.edges.len()).map(EdgeId::new).filter(is_pinned).collect();
         // Their halves may be edges of roots, whether or not a tet here was divided.
         for i in 0..self.pinned.len() {
-            self.halves(self.pinned[i]);
+            self.pin_halves(self.pinned[i]);
         }
     }
 
-    /// The vertex in the middle of an edge; a new one if there is none.
-    #[inline]
-    pub(super) fn middle(&mut self, edge: EdgeId) -> ForestVertexId {
-        let Edge { ends: [u, v], middle, .. } = self.edges[edge.index()];
-        if let Some(middle) = middle.get() {
-            return middle;
-        }
-        let new = ForestVertexId::new(self.reference.len());
-        let sum = add(self.reference[u.index()], self.reference[v.index()]);
-        self.reference.push(scale(sum, 0.5));
-        self.origin.push(edge);
-        self.edges[edge.index()].middle = new.into();
-        new
+    /// Makes the halves of an edge with a vertex of a root in its middle, unless they are there: edges of
+    /// roots where there are such.
+    fn pin_halves(&mut self, edge: EdgeId) {
+        let Edge { ends, middle } = self.edges[edge.index()];
+        let Some(middle) = middle.get().filter(|_| !self.pinned_halves.contains_key(&edge)) else { return };
+        let halves = ends.map(|end| {
+            let known = self.known_edge([end, middle]);
+            known.unwrap_or_else(|| push_edge(&mut self.edges, &mut self.is_split, [end, middle]))
+        });
+        self.pinned_halves.insert(edge, halves);
     }
 
-    /// The halves of an edge, one at each end; new ones, and a new middle, if there are none.
+    /// The halves of an edge, one at each end; none if it was never split.
     #[inline]
-    pub(super) fn halves(&mut self, edge: EdgeId) -> [EdgeId; 2] {
-        let Edge { ends: [u, v], halves, .. } = self.edges[edge.index()];
-        if let [Some(first), Some(second)] = halves.map(MaybeId::get) {
-            return [first, second];
+    pub(super) fn halves(&self, edge: EdgeId) -> Option<[EdgeId; 2]> {
+        let middle = self.edges[edge.index()].middle.get()?;
+        match middle.index().checked_sub(self.n_first_vertices) {
+            Some(made) => {
+                let EdgeId(first) = self.first_half[made];
+                Some([EdgeId(first), EdgeId(first + 1)])
+            }
+            None => self.pinned_halves.get(&edge).copied(),
         }
-        let middle = self.middle(edge);
-        let halves = [self.make_edge([u, middle]), self.make_edge([v, middle])];
-        self.edges[edge.index()].halves = halves.map(MaybeId::from);
-        halves
+    }
+
+    /// The tet that a tet is one of eight parts of; none for a root.
+    #[inline]
+    pub(super) fn parent(&self, node: NodeId) -> Option<NodeId> {
+        (node.index() / 8).checked_sub(self.n_roots.div_ceil(8)).map(|eight| self.parents[eight])
+    }
+
+    /// The first part of the first divided tet.
+    pub(super) fn first_part(&self) -> usize {
+        self.n_roots.next_multiple_of(8)
     }
 
     /// The eight parts of a divided tet, given the first.
@@ -262,7 +248,7 @@ impl Forest {
 
     /// A tet of the forest, and those that it is a part of.
     pub(super) fn ancestors(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
-        std::iter::successors(Some(node), move |node| self.nodes[node.index()].parent.get())
+        std::iter::successors(Some(node), move |&node| self.parent(node))
     }
 
     /// The positions of a tet's corners.
@@ -323,6 +309,8 @@ impl Forest {
         let named = self.root_edges.capacity() * (size_of::<(u64, u32)>() + 1) + self.fills.memory();
         size_of_val(&self.reference[..])
             + size_of_val(&self.origin[..])
+            + size_of_val(&self.first_half[..])
+            + size_of_val(&self.parents[..])
             + size_of_val(&self.edges[..])
             + size_of_val(&self.is_split[..])
             + size_of_val(&self.nodes[..])
@@ -351,7 +339,7 @@ pub(super) fn with_middles(corners: [Point; 4]) -> [Point; 10] {
 
 #[inline]
 fn push_edge(edges: &mut Vec<Edge>, is_split: &mut Vec<bool>, ends: [ForestVertexId; 2]) -> EdgeId {
-    edges.push(Edge { ends, middle: MaybeId::NONE, halves: [MaybeId::NONE; 2] });
+    edges.push(Edge { ends, middle: MaybeId::NONE });
     is_split.push(false);
     EdgeId::new(edges.len() - 1)
 }

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::super::forest::FACET_EDGES;
 use super::trees::{TreeNode, TreeNodeId, Trees};
-use crate::base::{MaybeId, Point, VertexId, sorted_ids};
+use crate::base::{MaybeId, Point, TetId, VertexId, sorted_ids};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::{EDGES, FACETS};
@@ -72,15 +72,24 @@ pub(super) fn unmatched(trees: &mut Trees, mesh: &TetMesh) {
 /// Pairs each cut tet with each tet that shares a facet cut by one or two middles; none if the other side
 /// does not have that facet. Sorted.
 fn meetings(trees: &Trees, mesh: &TetMesh) -> Vec<(TreeNodeId, MaybeId<TreeNodeId>)> {
-    let neighbors = tet_neighbors(&mesh.tets);
+    // A part of such a facet has one of the middles, and so have all tets that share it.
+    let mut is_middle = vec![false; mesh.points.len()];
+    let cut = trees.nodes.iter().filter(|node| node.divided.is_none());
+    cut.flat_map(|node| node.middles).filter_map(MaybeId::get).for_each(|v| is_middle[v.index()] = true);
+    let near: Vec<TetId> = (0..mesh.tets.len())
+        .filter(|&t| mesh.tets[t].iter().any(|v| is_middle[v.index()]))
+        .map(TetId::new)
+        .collect();
+    let tets: Vec<[VertexId; 4]> = near.iter().map(|t| mesh.tets[t.index()]).collect();
+    let neighbors = tet_neighbors(&tets);
     let mut pairs = Vec::new();
-    for (t, behind) in neighbors.iter().enumerate() {
+    for (t, behind) in near.iter().map(|t| t.index()).zip(&neighbors) {
         let Some(node) = trees.node_of[t].get() else { continue };
         if trees.nodes[node.index()].middles.iter().all(|middle| middle.is_none()) {
             continue;
         }
         for (i, other) in behind.iter().enumerate() {
-            let Some(other) = other.get() else { continue };
+            let Some(other) = other.get().map(|other| near[other.index()]) else { continue };
             let triangle = FACETS[i].map(|k| mesh.tets[t][k]);
             let Some(corners) = cut_facet(&trees.nodes[node.index()], triangle) else { continue };
             let has_it =

@@ -22,7 +22,7 @@ impl Refinement {
     pub fn recall(mesh: &TetMesh, memory: &Memory, options: Options, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
         memory.check(mesh)?;
-        let mut trees = Trees::gather(mesh, memory);
+        let mut trees = Trees::gather(mesh, memory, threads);
         let is_changed = trees.node_of.contains(&MaybeId::NONE);
         let reference = if is_changed { &mesh.points } else { &memory.reference };
         if is_changed {
@@ -127,11 +127,9 @@ impl Roots {
 
         let forest_node_of = vec![MaybeId::NONE; trees.nodes.len()];
         let mut building = Building { trees, forest, to_forest, forest_node_of };
-        for (root, tree_node) in self.tree_nodes.iter().enumerate() {
-            if let Some(tree_node) = tree_node.get() {
-                building.build(NodeId::new(root), tree_node)?;
-            }
-        }
+        let divided = self.tree_nodes.iter().enumerate();
+        let divided = divided.filter_map(|(root, tree_node)| Some((NodeId::new(root), tree_node.get()?)));
+        building.build(divided.collect(), threads)?;
         let Building { mut forest, to_forest, forest_node_of, .. } = building;
         forest.pin();
         let node =
@@ -140,21 +138,17 @@ impl Roots {
         let known =
             |v: &MaybeId<ForestVertexId>| v.get().ok_or_else(|| unfit("a point is not accounted for"));
         let vertices = to_forest.iter().map(known).collect::<Result<Vec<_>>>()?;
-        let mut points = vec![[f64::NAN; 3]; forest.reference.len()];
-        vertices.iter().zip(&mesh.points).for_each(|(v, point)| points[v.index()] = *point);
         let (triangles, lines) = (self.triangle_of, self.line_of);
-        let now = Extracted { mesh: mesh.clone(), vertices, nodes, triangles, lines };
+        let now = Extracted { mesh: mesh.clone(), vertices, nodes, n_tets: Vec::new(), triangles, lines };
         // A memory of another mesh may request arbitrarily many divisions.
         let max_nodes = std::mem::replace(&mut forest.max_nodes, 100 * forest.nodes.len() + 100_000);
         let closed = close(&mut forest, bounds, threads).map_err(|_| unfit("its divisions do not end"))?;
         forest.max_nodes = max_nodes;
-        points.resize(forest.reference.len(), [f64::NAN; 3]);
-        let same = extract(&forest, &self.first, &closed.cuts, &points, &now.vertices)?;
+        let same = extract(&forest, &self.first, &closed.cuts, &now, threads)?;
         let is_as_given = is_same(&same, &now);
         let summary = Summary { n_tets: mesh.tets.len(), ..Summary::default() };
         let is_moved = mesh.points != reference;
-        let refinement =
-            Refinement { first_mesh: self.first, forest, bounds, points, now, summary, is_moved };
+        let refinement = Refinement { first_mesh: self.first, forest, bounds, now, summary, is_moved };
         Ok(Recalled { refinement, is_as_given })
     }
 
@@ -216,21 +210,29 @@ struct Building<'a> {
 }
 
 impl Building<'_> {
-    /// Divides a root as its node in the trees is divided.
-    fn build(&mut self, root: NodeId, tree_node: TreeNodeId) -> Result<()> {
-        let mut open = vec![(root, tree_node)];
-        while let Some((node, tree_node)) = open.pop() {
-            let of = &self.trees.nodes[tree_node.index()];
-            self.forest_node_of[tree_node.index()] = node.into();
-            for (e, middle) in of.middles.iter().enumerate() {
-                if let Some(middle) = middle.get() {
-                    self.set_middle(self.forest.edges_of[node.index()][e], middle)?;
+    /// Divides roots as their nodes in the trees are divided, generation by generation.
+    fn build(&mut self, roots: Vec<(NodeId, TreeNodeId)>, threads: &Threads) -> Result<()> {
+        let mut level = roots;
+        while !level.is_empty() {
+            let (mut tets, mut parts) = (Vec::new(), Vec::new());
+            for (node, tree_node) in level {
+                let of = &self.trees.nodes[tree_node.index()];
+                self.forest_node_of[tree_node.index()] = node.into();
+                for (e, middle) in of.middles.iter().enumerate() {
+                    if let Some(middle) = middle.get() {
+                        self.set_middle(self.forest.edges_of[node.index()][e], middle)?;
+                    }
                 }
+                let Some((way, children)) = of.divided else { continue };
+                self.forest.states[node.index()].is_requested = u32::from(of.n_requested) > of.generation;
+                tets.push((node, way as u8));
+                parts.push(children);
             }
-            let Some((way, children)) = of.divided else { continue };
-            let first = self.forest.divide(node, way);
-            self.forest.states[node.index()].is_requested = u32::from(of.n_requested) > of.generation;
-            open.extend(Forest::parts_from(first).zip(children));
+            self.forest.finish_middles(threads);
+            self.forest.divide(&tets, threads);
+            let first = |(node, _): &(NodeId, u8)| self.forest.nodes[node.index()].first_child.get();
+            let firsts = tets.iter().filter_map(first).zip(parts);
+            level = firsts.flat_map(|(first, parts)| Forest::parts_from(first).zip(parts)).collect();
         }
         Ok(())
     }

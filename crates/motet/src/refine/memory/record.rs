@@ -40,7 +40,7 @@ fn entry(forest: &Forest, now: &Extracted, t: usize) -> Entry {
         piece |= (place as u16) << (4 * i);
     }
     let (mut node, mut path, mut shift, mut n_requested) = (leaf, 0, 0, 0);
-    while let Some(parent) = forest.nodes[node.index()].parent.get() {
+    while let Some(parent) = forest.parent(node) {
         let first = forest.nodes[parent.index()].first_child.get().unwrap_or(node);
         path |= u64::from(node.0 - first.0) << shift;
         shift += 3;

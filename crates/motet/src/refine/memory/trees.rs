@@ -4,7 +4,7 @@
 use super::super::forest::patterns;
 use super::super::forest::{IMAGES, eight};
 use super::{Memory, generation, locals, step};
-use crate::base::{MaybeId, TetId, VertexId, id};
+use crate::base::{MaybeId, TetId, Threads, VertexId, id};
 use crate::mesh::TetMesh;
 
 id!(
@@ -36,6 +36,16 @@ pub(super) struct TreeNode {
 }
 
 impl TreeNode {
+    /// This node after `n` others.
+    fn after(self, n: usize) -> Self {
+        let later = |node: TreeNodeId| TreeNodeId::new(n + node.index());
+        Self {
+            parent: self.parent.get().map(later).into(),
+            divided: self.divided.map(|(way, parts)| (way, parts.map(later))),
+            ..self
+        }
+    }
+
     /// The local number of a vertex: corners, then middles.
     pub(super) fn local(&self, v: VertexId) -> Option<usize> {
         let middle = || self.middles.iter().position(|middle| *middle == v.into()).map(|e| 4 + e);
@@ -52,7 +62,7 @@ pub(super) struct Trees {
 }
 
 impl Trees {
-    pub(super) fn gather(mesh: &TetMesh, memory: &Memory) -> Self {
+    pub(super) fn gather(mesh: &TetMesh, memory: &Memory, threads: &Threads) -> Self {
         let mut order: Vec<TetId> = (0..mesh.tets.len()).map(TetId::new).collect();
         order.retain(|t| memory.roots[t.index()].is_some() && memory.paths[t.index()] != 0);
         let key = |t: TetId| {
@@ -60,12 +70,28 @@ impl Trees {
             (memory.roots[t.index()], path << path.leading_zeros() << 1, t)
         };
         order.sort_unstable_by_key(|&t| key(t));
-        let trees = Self { nodes: Vec::new(), node_of: vec![MaybeId::NONE; mesh.tets.len()] };
-        let mut gathering = Gathering { mesh, memory, trees };
-        for tree in order.chunk_by(|s, t| memory.roots[s.index()] == memory.roots[t.index()]) {
-            gathering.gather(tree, 0);
+        let trees: Vec<&[TetId]> =
+            order.chunk_by(|s, t| memory.roots[s.index()] == memory.roots[t.index()]).collect();
+        let gathered = threads.in_runs(trees.len(), RUN, |(): &mut (), run| {
+            let mut gathering = Gathering { mesh, memory, nodes: Vec::new(), node_of: Vec::new() };
+            for tree in &trees[run] {
+                gathering.gather(tree, 0);
+            }
+            vec![(gathering.nodes, gathering.node_of)]
+        });
+        let mut all = Self { nodes: Vec::new(), node_of: vec![MaybeId::NONE; mesh.tets.len()] };
+        for (nodes, node_of) in gathered {
+            let n_before = all.nodes.len();
+            for (t, node) in node_of {
+                all.node_of[t.index()] = TreeNodeId::new(n_before + node.index()).into();
+            }
+            if n_before == 0 {
+                all.nodes = nodes;
+            } else {
+                all.nodes.extend(nodes.into_iter().map(|node| node.after(n_before)));
+            }
         }
-        gathering.trees
+        all
     }
 
     /// The largest whole node that a tet lies in.
@@ -88,10 +114,15 @@ impl Trees {
     }
 }
 
+/// How many trees are gathered at a time.
+const RUN: usize = 256;
+
+/// Some trees, and the nodes of their tets.
 struct Gathering<'a> {
     mesh: &'a TetMesh,
     memory: &'a Memory,
-    trees: Trees,
+    nodes: Vec<TreeNode>,
+    node_of: Vec<(TetId, TreeNodeId)>,
 }
 
 impl Gathering<'_> {
@@ -138,10 +169,10 @@ impl Gathering<'_> {
             return None;
         }
         let (corners, middles) = split(vertices)?;
-        let id = TreeNodeId::new(self.trees.nodes.len());
-        tets.iter().for_each(|t| self.trees.node_of[t.index()] = id.into());
+        let id = TreeNodeId::new(self.nodes.len());
+        self.node_of.extend(tets.iter().map(|&t| (t, id)));
         let tet = tets.iter().copied().min()?;
-        self.trees.nodes.push(TreeNode {
+        self.nodes.push(TreeNode {
             corners,
             middles,
             parent: MaybeId::NONE,
@@ -159,7 +190,7 @@ impl Gathering<'_> {
 
     /// Builds the node that was divided into these eight.
     fn whole(&mut self, children: [TreeNodeId; 8], generation: u32) -> Option<TreeNodeId> {
-        let nodes = &mut self.trees.nodes;
+        let nodes = &mut self.nodes;
         let of = |k: usize| &nodes[children[k].index()];
         let (region, is_turned) = (of(0).region, of(0).is_turned);
         let n_requested = (0..8).map(|k| of(k).n_requested).max()?;
@@ -223,12 +254,16 @@ fn split(vertices: [MaybeId<VertexId>; 10]) -> Option<([VertexId; 4], [MaybeId<V
 /// Whether the pieces, which must form one of the ways to fill a tet, have their first two vertices
 /// exchanged; `None` if they form no such way.
 fn is_turned(tets: &[TetId], memory: &Memory, mask: u8) -> Option<bool> {
+    if mask == 0 {
+        let &[tet] = tets else { return None };
+        return match locals(memory.pieces[tet.index()]) {
+            [0, 1, 2, 3] => Some(false),
+            [1, 0, 2, 3] => Some(true),
+            _ => None,
+        };
+    }
     let pieces: Vec<[u8; 4]> = tets.iter().map(|t| locals(memory.pieces[t.index()])).collect();
     let turned: Vec<[u8; 4]> = pieces.iter().map(|&[a, b, c, d]| [b, a, c, d]).collect();
-    if mask == 0 {
-        let is_whole = |pieces: &[[u8; 4]]| pieces == [[0, 1, 2, 3]];
-        return (is_whole(&pieces) || is_whole(&turned)).then(|| is_whole(&turned));
-    }
     let mut ways = (0..16).flat_map(|cuts| patterns(mask, cuts));
     let way = ways.find(|way| **way == pieces || **way == turned)?;
     Some(*way == turned)

@@ -20,8 +20,14 @@ pub(super) struct Gathered {
 /// Returns the triangles before division, in order.
 pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<Gathered> {
     let mut beside: Vec<[Option<TetId>; 2]> = vec![[None; 2]; mesh.triangles.len()];
-    for_each_tet_facet(&mesh.tets, &mesh.triangles, |sharing| {
-        let mut tets = [0, 1].map(|k| sharing.tets.get(k).map(|(tet, _)| *tet));
+    // Few tets have three vertices on triangles.
+    let mut has_triangle = vec![false; mesh.points.len()];
+    mesh.triangles.as_flattened().iter().for_each(|v| has_triangle[v.index()] = true);
+    let is_near = |tet: &[VertexId; 4]| tet.iter().filter(|v| has_triangle[v.index()]).count() > 2;
+    let near: Vec<TetId> = (0..mesh.tets.len()).filter(|&t| is_near(&mesh.tets[t])).map(TetId::new).collect();
+    let tets: Vec<[VertexId; 4]> = near.iter().map(|t| mesh.tets[t.index()]).collect();
+    for_each_tet_facet(&tets, &mesh.triangles, |sharing| {
+        let mut tets = [0, 1].map(|k| sharing.tets.get(k).map(|(tet, _)| near[tet.index()]));
         tets.sort_unstable();
         sharing.triangles.iter().for_each(|&t| beside[t as usize] = tets);
     });

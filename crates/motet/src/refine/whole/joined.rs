@@ -1,11 +1,16 @@
 //! The cells of a whole mesh after a step: the parts of each root in its place, with cells of other kinds
 //! unchanged between them.
 
-use super::super::forest::Extracted;
-use super::super::refinement::Refinement;
+use super::super::forest::{Extracted, Forest};
 use super::Slot;
-use crate::base::{CellId, Csr, ForestVertexId, Id, LineId, MaybeId, TetId, TriangleId, VertexId};
+use super::ancestry::Ancestry;
+use crate::base::{
+    CellId, Csr, ForestVertexId, Id, LineId, MaybeId, TetId, Threads, TriangleId, VertexId, absent,
+};
 use crate::mesh::{CellKind, Cells, Mesh};
+
+/// The least number of cells that a thread takes at a time.
+const MIN_PART: usize = 1 << 14;
 
 /// The cells of the new mesh, and for each the old cell it was.
 pub(super) struct Joined {
@@ -33,34 +38,41 @@ pub(super) struct Matched<I> {
 }
 
 impl Joined {
-    /// Joins the cells. `cells` gives the cells of the tets, triangles and lines of the old mesh; the two
-    /// refinements are those before and after.
+    /// Joins the cells. `cells` gives the cells of the tets, triangles and lines of the old mesh, `ancestry`
+    /// and the two extracts are of the meshes before and after.
     pub(super) fn of(
         old: &Mesh,
         slots: &[Slot],
         cells: [&[CellId]; 3],
-        [before, after]: [&Refinement; 2],
+        forest: &Forest,
+        [was, is]: [&Extracted; 2],
+        ancestry: &Ancestry<'_>,
+        threads: &Threads,
     ) -> Self {
-        let (was, is) = (&before.now, &after.now);
-        let root_of = |of: &Refinement| -> Vec<TetId> { of.roots().collect() };
-        let tet_roots = [before, after].map(root_of);
-        let tets = matched([was, is].map(|out| names(out, &out.mesh.tets)), [&tet_roots[0], &tet_roots[1]]);
+        let tets = if ancestry.is_grouped {
+            let to_old = threads.map(is.mesh.tets.len(), |t| ancestry.same(TetId::new(t)));
+            Matched::of(to_old, was.mesh.tets.len())
+        } else {
+            let roots = [was, is].map(|out| out.nodes.iter().map(|&node| forest.root(node)).collect());
+            let [before, after]: [Vec<TetId>; 2] = roots;
+            matched([was, is].map(|out| names(out, &out.mesh.tets)), [&before, &after])
+        };
         let triangles =
             matched([was, is].map(|out| names(out, &out.mesh.triangles)), [&was.triangles, &is.triangles]);
         let lines = matched([was, is].map(|out| names(out, &out.mesh.lines)), [&was.lines, &is.lines]);
-        let vertices = Vertices::of(was, is, after.forest.reference.len());
+        let numbers = was.numbers(forest.reference.len());
         let joined = Self {
             cells: Cells::new(),
             cell_to_old: Vec::new(),
-            vertex_to_old: vertices.new_to_old,
-            tet_to_cell: Vec::with_capacity(is.mesh.tets.len()),
-            triangle_to_cell: Vec::with_capacity(is.mesh.triangles.len()),
-            line_to_cell: Vec::with_capacity(is.mesh.lines.len()),
+            vertex_to_old: threads.map(is.vertices.len(), |v| numbers[is.vertices[v].index()]),
+            tet_to_cell: Vec::new(),
+            triangle_to_cell: Vec::new(),
+            line_to_cell: Vec::new(),
             tets,
             triangles,
             lines,
         };
-        joined.fill(old, slots, cells, is, &tet_roots[1], &vertices.old_to_new)
+        joined.fill(old, slots, cells, is, threads)
     }
 
     fn fill(
@@ -69,97 +81,85 @@ impl Joined {
         slots: &[Slot],
         [old_tets, old_triangles, old_lines]: [&[CellId]; 3],
         is: &Extracted,
-        tet_roots: &[TetId],
-        old_to_new: &[VertexId],
+        threads: &Threads,
     ) -> Self {
+        let has_others = slots.contains(&Slot::Other);
+        let old_to_new = if has_others { self.old_to_new(old.points.len()) } else { Vec::new() };
         let new = |v: VertexId| old_to_new[v.index()];
         let mut others =
             old.cells.iter().filter(|(_, kind, vertices)| Slot::of(*kind, vertices) == Slot::Other);
         let mut faces = old.cells.polyhedron_faces().iter();
-        let mut parts_of_tets = tet_roots.chunk_by(|x, y| x == y);
-        let mut parts_of_triangles = is.triangles.chunk_by(|x, y| x == y);
-        let mut parts_of_lines = is.lines.chunk_by(|x, y| x == y);
-        for slot in slots {
-            match slot {
+        let mut parts_of_tets = is.n_tets.iter().map(|&n| n as usize);
+        let mut parts_of_triangles = is.triangles.chunk_by(|x, y| x == y).map(<[_]>::len);
+        let mut parts_of_lines = is.lines.chunk_by(|x, y| x == y).map(<[_]>::len);
+        for alike in slots.chunk_by(|x, y| x == y) {
+            let (first, n) = (self.cells.len(), alike.len());
+            match alike[0] {
                 Slot::Tet => {
-                    for _ in 0..parts_of_tets.next().map_or(0, <[_]>::len) {
-                        let t = self.tet_to_cell.len();
-                        let known = self.tets.old(t, old_tets);
-                        let cell = self.push(CellKind::TETRA, known, is.mesh.tets[t]);
-                        self.tet_to_cell.push(cell);
-                    }
+                    let n: usize = parts_of_tets.by_ref().take(n).sum();
+                    let at = self.tet_to_cell.len();
+                    self.cells.push_all(CellKind::TETRA, &is.mesh.tets[at..at + n], threads);
+                    let known = |i: usize| self.tets.old(at + i, old_tets);
+                    threads.append(&mut self.cell_to_old, n, MIN_PART, known);
+                    threads.append(&mut self.tet_to_cell, n, MIN_PART, |i| CellId::new(first + i));
                 }
                 Slot::Triangle => {
-                    for _ in 0..parts_of_triangles.next().map_or(0, <[_]>::len) {
-                        let t = self.triangle_to_cell.len();
-                        let known = self.triangles.old(t, old_triangles);
-                        let cell = self.push(CellKind::TRIANGLE, known, is.mesh.triangles[t]);
-                        self.triangle_to_cell.push(cell);
-                    }
+                    let n: usize = parts_of_triangles.by_ref().take(n).sum();
+                    let at = self.triangle_to_cell.len();
+                    self.cells.push_all(CellKind::TRIANGLE, &is.mesh.triangles[at..at + n], threads);
+                    self.cell_to_old.extend((at..at + n).map(|t| self.triangles.old(t, old_triangles)));
+                    self.triangle_to_cell.extend((first..first + n).map(CellId::new));
                 }
                 Slot::Line => {
-                    for _ in 0..parts_of_lines.next().map_or(0, <[_]>::len) {
-                        let l = self.line_to_cell.len();
-                        let known = self.lines.old(l, old_lines);
-                        let cell = self.push(CellKind::LINE, known, is.mesh.lines[l]);
-                        self.line_to_cell.push(cell);
-                    }
+                    let n: usize = parts_of_lines.by_ref().take(n).sum();
+                    let at = self.line_to_cell.len();
+                    self.cells.push_all(CellKind::LINE, &is.mesh.lines[at..at + n], threads);
+                    self.cell_to_old.extend((at..at + n).map(|l| self.lines.old(l, old_lines)));
+                    self.line_to_cell.extend((first..first + n).map(CellId::new));
                 }
                 Slot::Other => {
-                    let Some((cell, kind, vertices)) = others.next() else { continue };
-                    let vertices = vertices.iter().map(|&v| new(v));
-                    if kind == CellKind::POLYHEDRON {
-                        let mut renamed = Csr::default();
-                        let named = faces.next().into_iter().flat_map(|faces| faces.iter());
-                        named.for_each(|face| renamed.push(face.iter().map(|&v| new(v))));
-                        self.cells.push_polyhedron(vertices, renamed);
-                    } else {
-                        self.cells.push(kind, vertices);
+                    for (cell, kind, vertices) in others.by_ref().take(n) {
+                        let vertices = vertices.iter().map(|&v| new(v));
+                        if kind == CellKind::POLYHEDRON {
+                            let mut renamed = Csr::default();
+                            let named = faces.next().into_iter().flat_map(|faces| faces.iter());
+                            named.for_each(|face| renamed.push(face.iter().map(|&v| new(v))));
+                            self.cells.push_polyhedron(vertices, renamed);
+                        } else {
+                            self.cells.push(kind, vertices);
+                        }
+                        self.cell_to_old.push(cell.into());
                     }
-                    self.cell_to_old.push(cell.into());
                 }
             }
         }
         self
     }
 
-    fn push<const N: usize>(
-        &mut self,
-        kind: CellKind,
-        old: MaybeId<CellId>,
-        vertices: [VertexId; N],
-    ) -> CellId {
-        let cell = CellId::new(self.cells.len());
-        self.cells.push(kind, vertices);
-        self.cell_to_old.push(old);
-        cell
-    }
-}
-
-impl<I: Id> Matched<I> {
-    /// The old cell of an item of the new mesh, given the cells of the old items.
-    fn old(&self, i: usize, cells: &[CellId]) -> MaybeId<CellId> {
-        self.to_old[i].get().map(|old| cells[old.place()]).into()
-    }
-}
-
-struct Vertices {
-    new_to_old: Vec<MaybeId<VertexId>>,
-    old_to_new: Vec<VertexId>,
-}
-
-impl Vertices {
-    /// `n_vertices` is the number of vertices of the forest.
-    fn of(was: &Extracted, is: &Extracted, n_vertices: usize) -> Self {
-        let numbers = was.numbers(n_vertices);
-        let new_to_old: Vec<_> = is.vertices.iter().map(|v| numbers[v.index()]).collect();
-        let mut old_to_new = vec![Id::NONE; was.vertices.len()];
-        for (new, old) in new_to_old.iter().enumerate() {
+    /// For each of the `n` old vertices, its number in the new mesh.
+    fn old_to_new(&self, n: usize) -> Vec<VertexId> {
+        let mut old_to_new = vec![Id::NONE; n];
+        for (new, old) in self.vertex_to_old.iter().enumerate() {
             if let Some(old) = old.get() {
                 old_to_new[old.index()] = VertexId::new(new);
             }
         }
-        Self { new_to_old, old_to_new }
+        old_to_new
+    }
+}
+
+impl<I: Id> Matched<I> {
+    /// Of the old item that each new one is, and the number of old items.
+    fn of(to_old: Vec<MaybeId<I>>, n_old: usize) -> Self {
+        let mut stays = vec![false; n_old];
+        to_old.iter().filter_map(|old| old.get()).for_each(|old| stays[old.place()] = true);
+        let removed = (0..n_old).filter(|&t| !stays[t]).map(I::of).collect();
+        Self { removed, inserted: absent(&to_old), to_old }
+    }
+
+    /// The old cell of an item of the new mesh, given the cells of the old items.
+    fn old(&self, i: usize, cells: &[CellId]) -> MaybeId<CellId> {
+        self.to_old[i].get().map(|old| cells[old.place()]).into()
     }
 }
 
@@ -173,7 +173,6 @@ fn matched<I: Id, const N: usize>(names: [Vec<[ForestVertexId; N]>; 2], roots: [
     let [was, is] = names;
     let order = [by_root(roots[0]), by_root(roots[1])];
     let mut to_old = vec![MaybeId::NONE; is.len()];
-    let mut stays = vec![false; was.len()];
     let mut olds = order[0].chunk_by(|x, y| roots[0][x.place()] == roots[0][y.place()]);
     for news in order[1].chunk_by(|x, y| roots[1][x.place()] == roots[1][y.place()]) {
         // Both meshes have the same roots, and each root has at least one part in each mesh.
@@ -183,13 +182,10 @@ fn matched<I: Id, const N: usize>(names: [Vec<[ForestVertexId; N]>; 2], roots: [
         for &t in news {
             if let Ok(i) = sorted.binary_search_by_key(&is[t.place()], |(name, _)| *name) {
                 to_old[t.place()] = sorted[i].1.into();
-                stays[sorted[i].1.place()] = true;
             }
         }
     }
-    let removed = (0..was.len()).filter(|&t| !stays[t]).map(I::of).collect();
-    let inserted = (0..is.len()).filter(|&t| to_old[t].is_none()).map(I::of).collect();
-    Matched { to_old, removed, inserted }
+    Matched::of(to_old, was.len())
 }
 
 /// Returns all items sorted by root; items of one root keep their order.

@@ -1,16 +1,19 @@
 //! Refinement of everything a file holds: cells of other kinds stay, arrays are transferred, and the memory
 //! is stored as arrays.
 
+mod ancestry;
 mod joined;
 mod memory_arrays;
 mod origins;
 
-use super::refinement::{Options, Refinement, Summary};
+use super::forest::Extracted;
+use super::refinement::{Before, Options, Refinement, Summary};
 use super::true_surface::OnSurface;
-use crate::base::{CellId, Result, TetId, Threads, VertexId, absent};
+use crate::base::{CellId, Result, TetId, Threads, VertexId};
 use crate::mesh::history::{Changed, History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Mesh, TetPart};
 use crate::spatial::NearestTriangle;
+use ancestry::Ancestry;
 use joined::Joined;
 use origins::origins;
 
@@ -124,7 +127,7 @@ impl MeshRefinement {
         rules: &Rules,
         threads: &Threads,
     ) -> Result<Changed<Summary, &Mesh>> {
-        self.change(rules, threads, |refinement| refinement.refine(marked, threads))
+        self.change(rules, threads, |refinement| refinement.refine_from(marked, threads))
     }
 
     /// Takes divisions back as [`Refinement::coarsen`] does, and transfers the arrays by `rules`.
@@ -137,34 +140,50 @@ impl MeshRefinement {
         rules: &Rules,
         threads: &Threads,
     ) -> Result<Changed<Summary, &Mesh>> {
-        self.change(rules, threads, |refinement| refinement.coarsen(marked, threads))
+        self.change(rules, threads, |refinement| refinement.coarsen_from(marked, threads))
     }
 
     fn change(
         &mut self,
         rules: &Rules,
         threads: &Threads,
-        change: impl FnOnce(&mut Refinement) -> Result<Summary>,
+        change: impl FnOnce(&mut Refinement) -> Result<Before>,
     ) -> Result<Changed<Summary, &Mesh>> {
-        let mut refinement = self.refinement.clone();
-        let summary = change(&mut refinement)?;
+        let before = change(&mut self.refinement)?;
+        let history = match self.follow(&before.was, rules, threads) {
+            Ok(history) => history,
+            Err(error) => {
+                self.refinement.undo(before, threads)?;
+                return Err(error);
+            }
+        };
+        Ok(Changed { mesh: &self.mesh, history, report: self.refinement.summary() })
+    }
+
+    /// Follows a change of the tets with everything else; `was` are the tets before.
+    ///
+    /// # Errors
+    /// When a rule fits no array; then nothing here has changed.
+    fn follow(&mut self, was: &Extracted, rules: &Rules, threads: &Threads) -> Result<History> {
+        let Refinement { forest, now: is, .. } = &self.refinement;
         let cells = [&self.tet_to_cell[..], &self.triangle_to_cell, &self.line_to_cell];
-        let joined = Joined::of(&self.mesh, &self.slots, cells, [&self.refinement, &refinement]);
-        let found = origins([&self.refinement, &refinement], &joined, cells, threads)?;
+        let ancestry = Ancestry::new(forest, [was, is], threads);
+        let joined = Joined::of(&self.mesh, &self.slots, cells, forest, [was, is], &ancestry, threads);
+        let found = origins(forest, [was, is], &ancestry, &joined, cells, threads)?;
         let history = History {
-            vertices: Origins::new(self.mesh.points.len(), joined.vertex_to_old.clone(), found.vertices)?,
-            cells: Origins::new(self.mesh.cells.len(), joined.cell_to_old.clone(), found.cells)?,
+            vertices: Origins::trusted(self.mesh.points.len(), joined.vertex_to_old, found.vertices),
+            cells: Origins::trusted(self.mesh.cells.len(), joined.cell_to_old, found.cells),
             ledger: found.ledger,
         };
-        let mut mesh = Mesh::new(refinement.mesh().points.clone(), joined.cells);
-        history.transfer(&self.mesh, &mut mesh, rules)?;
-        let new_points = absent(&joined.vertex_to_old);
-        number_anew(&mut mesh, &new_points, &absent(&joined.cell_to_old));
-        mesh.unmark(&new_points);
-        (self.mesh, self.refinement) = (mesh, refinement);
+        let mut mesh = Mesh::new(is.mesh.points.clone(), joined.cells);
+        history.transfer_on(&self.mesh, &mut mesh, rules, threads)?;
+        let new_points = history.vertices.changed().ids();
+        number_anew(&mut mesh, new_points, history.cells.changed().ids());
+        mesh.unmark(new_points);
+        self.mesh = mesh;
         (self.tet_to_cell, self.triangle_to_cell) = (joined.tet_to_cell, joined.triangle_to_cell);
         self.line_to_cell = joined.line_to_cell;
-        Ok(Changed { mesh: &self.mesh, history, report: summary })
+        Ok(history)
     }
 }
 

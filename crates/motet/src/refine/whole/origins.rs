@@ -6,22 +6,20 @@
 
 use std::collections::BTreeMap;
 
-use super::super::choose::estimate;
 use super::super::forest::{Extracted, Forest};
-use super::super::refinement::Refinement;
+use super::ancestry::{Ancestry, corners};
 use super::joined::Joined;
 use crate::base::{
-    CellId, ForestVertexId, LineId, MaybeId, NodeId, Point, Result, TetId, Threads, TriangleId, VertexId,
+    CellId, ForestVertexId, Id, LineId, MaybeId, Result, TetId, Threads, TriangleId, VertexId, absent,
 };
-use crate::geometry::overlap::Solid;
 use crate::geometry::segment;
-use crate::geometry::tet::{self, centroid};
+use crate::geometry::tet;
 use crate::geometry::vector::{add, distance, scale, sub};
 use crate::mesh::history::{Ledger, RegionLedger, Rows};
 use crate::spatial::trace::{Labelled, LocalChange, trace};
 
-/// A new cell, the old cells it comes from with their shares, and the main one.
-type CellRow = (CellId, Vec<(CellId, f64)>, CellId);
+/// How many rows a thread makes at a time.
+const RUN: usize = 4096;
 
 /// The origins of all new vertices and cells.
 pub(super) struct Found {
@@ -30,132 +28,128 @@ pub(super) struct Found {
     pub(super) ledger: Ledger,
 }
 
-/// Finds the origins of everything new. The two refinements are those before and after; `cells` gives the old
-/// cells of the tets, triangles and lines.
+/// Finds the origins of everything new, given the forest after the step, the meshes before and after, and the
+/// old cells of the tets, triangles and lines.
 pub(super) fn origins(
-    [before, after]: [&Refinement; 2],
+    forest: &Forest,
+    [was, is]: [&Extracted; 2],
+    ancestry: &Ancestry<'_>,
     joined: &Joined,
     cells: [&[CellId]; 3],
     threads: &Threads,
 ) -> Result<Found> {
-    let ancestry = Ancestry::new(&after.forest, &before.now, &after.now);
-    let parts = threads.map(joined.tets.inserted.len(), |i| ancestry.parts(joined.tets.inserted[i]));
-    let ledger = ledger(&ancestry, joined, &parts);
-    let mut rows: Vec<CellRow> = Vec::with_capacity(parts.len());
-    for (t, parts) in joined.tets.inserted.iter().zip(&parts) {
-        let of_old = parts.iter().map(|&(old, volume)| (cells[0][old.index()], volume));
-        let main = parts.iter().fold(parts[0], |best, &part| if part.1 > best.1 { part } else { best }).0;
-        rows.push((joined.tet_to_cell[t.index()], of_old.collect(), cells[0][main.index()]));
-    }
-    triangles(before, after, joined, cells[1], threads, &mut rows)?;
-    lines(&before.now, &after.now, joined, cells[2], &mut rows);
-    rows.sort_by_key(|row| row.0);
-    let mut of_cells = Rows::new();
-    rows.iter().for_each(|(cell, parts, main)| of_cells.push(*cell, parts, *main));
-    let mut of_vertices = Rows::new();
-    let means = Means::new(&after.forest, &before.now);
-    let inserted = joined.vertex_to_old.iter().enumerate().filter(|(_, old)| old.is_none());
-    for (v, _) in inserted {
-        let parts = means.of(after.now.vertices[v]);
-        of_vertices.push(VertexId::new(v), &parts, parts[0].0);
-    }
-    Ok(Found { vertices: of_vertices, cells: of_cells, ledger })
-}
-
-/// Which tets before and after the step lie in which.
-struct Ancestry<'a> {
-    forest: &'a Forest,
-    was: &'a Extracted,
-    is: &'a Extracted,
-    /// For each tet of the forest, the range of its pieces in the mesh before: the first, and one past the
-    /// last.
-    old: Vec<[u32; 2]>,
-    /// For each tet of the forest that is coarser than before, the old tets that lie in it.
-    within: BTreeMap<NodeId, Vec<TetId>>,
-}
-
-impl<'a> Ancestry<'a> {
-    fn new(forest: &'a Forest, was: &'a Extracted, is: &'a Extracted) -> Self {
-        let pieces = |out: &Extracted| {
-            let mut pieces = vec![[0, 0]; forest.nodes.len()];
-            for (node, t) in out.nodes.iter().zip(0..) {
-                let [first, end] = &mut pieces[node.index()];
-                *first = if *end == 0 { t } else { *first };
-                *end = t + 1;
-            }
-            pieces
-        };
-        let (old, new) = (pieces(was), pieces(is));
-        let mut within: BTreeMap<NodeId, Vec<TetId>> = BTreeMap::new();
-        for (&node, t) in was.nodes.iter().zip(0..) {
-            let coarser = forest.ancestors(node).skip(1).find(|node| new[node.index()][1] > 0);
-            if let Some(coarser) = coarser {
-                within.entry(coarser).or_default().push(TetId(t));
-            }
+    let (of_tets, ledger) = tets(ancestry, [was, is], joined, cells[0], threads);
+    let of_triangles = triangles([was, is], joined, cells[1], threads)?;
+    let of_lines = lines([was, is], joined, cells[2]);
+    let means = Means { forest, numbers: was.numbers(forest.reference.len()) };
+    let inserted = absent(&joined.vertex_to_old);
+    let of_vertices = threads.in_runs(inserted.len(), RUN, |parts: &mut Vec<(VertexId, f64)>, run| {
+        let mut rows = Rows::new();
+        for &v in &inserted[run] {
+            means.of(is.vertices[v.index()], parts);
+            rows.push(v, parts, parts[0].0);
         }
-        Self { forest, was, is, old, within }
-    }
-
-    /// Returns the old tets that make up a new tet, with their volumes, which need not sum to that of the
-    /// tet.
-    fn parts(&self, t: TetId) -> Vec<(TetId, f64)> {
-        let node = self.is.nodes[t.index()];
-        let holder = self.forest.ancestors(node).map(|node| self.old[node.index()]).find(|old| old[1] > 0);
-        let candidates: Vec<TetId> = match (holder, self.within.get(&node)) {
-            (Some([first, end]), _) if end == first + 1 => return vec![(TetId(first), 1.0)],
-            (Some([first, end]), _) => (first..end).map(TetId).collect(),
-            (None, Some(within)) => within.clone(),
-            (None, None) => Vec::new(),
-        };
-        let solid = Solid::new(corners(self.is, t));
-        let overlaps = candidates.iter().filter_map(|&old| {
-            let other = Solid::new(corners(self.was, old));
-            solid.real_overlap(&other).map(|volume| (old, volume))
-        });
-        let overlaps: Vec<_> = overlaps.collect();
-        if !overlaps.is_empty() {
-            return overlaps;
-        }
-        // Points that moved may leave no overlap: then take the nearest candidate.
-        let centre = centroid(corners(self.is, t));
-        let far = |old: &TetId| distance(centroid(corners(self.was, *old)), centre);
-        let nearest = candidates.iter().copied().min_by(|x, y| far(x).total_cmp(&far(y)));
-        vec![(nearest.unwrap_or_default(), 1.0)]
-    }
+        vec![rows]
+    });
+    Ok(Found { vertices: all(of_vertices), cells: of_tets.merged(of_triangles).merged(of_lines), ledger })
 }
 
-fn corners(out: &Extracted, t: TetId) -> [Point; 4] {
-    estimate::corners(&out.mesh, out.mesh.tets[t.index()])
+/// Joins rows whose ids rise from list to list.
+fn all<I: Id>(lists: Vec<Rows<I>>) -> Rows<I> {
+    let mut rows = Rows::new();
+    lists.into_iter().for_each(|list| rows.append(list));
+    rows
 }
 
-fn ledger(ancestry: &Ancestry, joined: &Joined, parts: &[Vec<(TetId, f64)>]) -> Ledger {
+/// Some new tets: their rows, their volumes, and what they take of the volumes of old tets.
+#[derive(Default)]
+struct Taken {
+    rows: Rows<CellId>,
+    volumes: Vec<f64>,
+    taken: Vec<(TetId, f64)>,
+}
+
+fn tets(
+    ancestry: &Ancestry<'_>,
+    [was, is]: [&Extracted; 2],
+    joined: &Joined,
+    old_cells: &[CellId],
+    threads: &Threads,
+) -> (Rows<CellId>, Ledger) {
     let volume = |out: &Extracted, t: TetId| tet::volume(corners(out, t)).abs();
-    let mut regions: BTreeMap<i32, RegionLedger> = BTreeMap::new();
-    let mut taken: BTreeMap<TetId, f64> = BTreeMap::new();
-    for (&t, parts) in joined.tets.inserted.iter().zip(parts) {
-        let (all, sum) = (volume(ancestry.is, t), parts.iter().map(|part| part.1).sum::<f64>());
-        regions.entry(ancestry.is.mesh.regions[t.index()]).or_default().volume_after += all;
-        parts.iter().for_each(|&(old, part)| *taken.entry(old).or_default() += all * (part / sum));
+    let inserted = &joined.tets.inserted;
+    type Parts = (Vec<(TetId, f64)>, Vec<(CellId, f64)>);
+    let mut found = threads.in_runs(inserted.len(), RUN, |(parts, of_cells): &mut Parts, run| {
+        let mut out = Taken::default();
+        for &t in &inserted[run] {
+            ancestry.parts(t, parts);
+            let (all, sum) = (volume(is, t), parts.iter().map(|part| part.1).sum::<f64>());
+            out.volumes.push(all);
+            out.taken.extend(parts.iter().map(|&(old, part)| (old, all * (part / sum))));
+            let main = parts.iter().fold(parts[0], |best, &part| if part.1 > best.1 { part } else { best }).0;
+            of_cells.clear();
+            of_cells.extend(parts.iter().map(|&(old, part)| (old_cells[old.index()], part)));
+            out.rows.push(joined.tet_to_cell[t.index()], of_cells, old_cells[main.index()]);
+        }
+        vec![out]
+    });
+    let rows = all(found.iter_mut().map(|found| std::mem::take(&mut found.rows)).collect());
+
+    // Sums are in the order of tets, so that they do not depend on the number of threads.
+    let mut regions = Regions::default();
+    let mut taken = vec![0.0; was.mesh.tets.len()];
+    let mut tets = inserted.iter();
+    for found in found {
+        for (all, t) in found.volumes.iter().zip(tets.by_ref()) {
+            regions.of(is.mesh.regions[t.index()]).volume_after += all;
+        }
+        found.taken.iter().for_each(|&(old, part)| taken[old.index()] += part);
     }
-    for &t in &joined.tets.removed {
-        let all = volume(ancestry.was, t);
-        let entry = regions.entry(ancestry.was.mesh.regions[t.index()]).or_default();
+    let removed = &joined.tets.removed;
+    let volumes = threads.map(removed.len(), |i| volume(was, removed[i]));
+    for (&t, all) in removed.iter().zip(volumes) {
+        let entry = regions.of(was.mesh.regions[t.index()]);
         entry.volume_before += all;
-        entry.deviation += (taken.get(&t).copied().unwrap_or(0.0) - all).abs();
+        entry.deviation += (taken[t.index()] - all).abs();
     }
-    let regions = regions.into_iter().map(|(region, entry)| RegionLedger { region, ..entry }).collect();
-    Ledger { regions, ..Ledger::default() }
+    (rows, Ledger { regions: regions.sorted(), ..Ledger::default() })
+}
+
+/// The entries of regions.
+#[derive(Default)]
+struct Regions {
+    all: Vec<RegionLedger>,
+    /// The place of the last one asked for.
+    last: usize,
+}
+
+impl Regions {
+    /// The entry of a region, mostly that of the last one.
+    #[inline]
+    fn of(&mut self, region: i32) -> &mut RegionLedger {
+        if self.all.get(self.last).is_none_or(|entry| entry.region != region) {
+            self.last = self.all.iter().position(|entry| entry.region == region).unwrap_or_else(|| {
+                self.all.push(RegionLedger { region, ..RegionLedger::default() });
+                self.all.len() - 1
+            });
+        }
+        &mut self.all[self.last]
+    }
+
+    /// All entries, by rising labels.
+    fn sorted(mut self) -> Vec<RegionLedger> {
+        self.all.sort_by_key(|entry| entry.region);
+        self.all
+    }
 }
 
 /// Triangles inherit from the nearest part of the same triangle of the first mesh.
 fn triangles(
-    before: &Refinement,
-    after: &Refinement,
+    [was, is]: [&Extracted; 2],
     joined: &Joined,
     old_cells: &[CellId],
     threads: &Threads,
-    rows: &mut Vec<CellRow>,
-) -> Result<()> {
+) -> Result<Rows<CellId>> {
     let labelled = |out: &Extracted, which: &[TriangleId], cells: &[CellId]| -> Vec<Labelled<3>> {
         let of = |t: &TriangleId| Labelled {
             cell: cells[t.index()],
@@ -166,21 +160,23 @@ fn triangles(
     };
     let traced = trace(
         &LocalChange {
-            old_points: &before.now.mesh.points,
-            new_points: &after.now.mesh.points,
-            removed_triangles: &labelled(&before.now, &joined.triangles.removed, old_cells),
-            new_triangles: &labelled(&after.now, &joined.triangles.inserted, &joined.triangle_to_cell),
+            old_points: &was.mesh.points,
+            new_points: &is.mesh.points,
+            removed_triangles: &labelled(was, &joined.triangles.removed, old_cells),
+            new_triangles: &labelled(is, &joined.triangles.inserted, &joined.triangle_to_cell),
             ..LocalChange::default()
         },
         threads,
     )?;
+    let mut rows = Rows::new();
     let inherited = traced.cells.ids().iter().zip(traced.cells.iter());
-    rows.extend(inherited.map(|(&cell, row)| (cell, vec![(row.main, 1.0)], row.main)));
-    Ok(())
+    inherited.for_each(|(&cell, row)| rows.push(cell, &[(row.main, 1.0)], row.main));
+    Ok(rows)
 }
 
 /// Lines inherit from the nearest part of the same line of the first mesh.
-fn lines(was: &Extracted, is: &Extracted, joined: &Joined, old_cells: &[CellId], rows: &mut Vec<CellRow>) {
+fn lines([was, is]: [&Extracted; 2], joined: &Joined, old_cells: &[CellId]) -> Rows<CellId> {
+    let mut rows = Rows::new();
     let mut removed: BTreeMap<LineId, Vec<LineId>> = BTreeMap::new();
     joined.lines.removed.iter().for_each(|&l| removed.entry(was.lines[l.index()]).or_default().push(l));
     let ends = |out: &Extracted, l: LineId| out.mesh.lines[l.index()].map(|v| out.mesh.points[v.index()]);
@@ -194,8 +190,9 @@ fn lines(was: &Extracted, is: &Extracted, joined: &Joined, old_cells: &[CellId],
         let parts = removed.get(&is.lines[l.index()]).into_iter().flatten().copied();
         let nearest = parts.min_by(|x, y| far(x).total_cmp(&far(y)));
         let old = old_cells[nearest.unwrap_or_default().index()];
-        rows.push((joined.line_to_cell[l.index()], vec![(old, 1.0)], old));
+        rows.push(joined.line_to_cell[l.index()], &[(old, 1.0)], old);
     }
+    rows
 }
 
 /// Expresses new vertices as means of old ones.
@@ -205,24 +202,26 @@ struct Means<'a> {
     numbers: Vec<MaybeId<VertexId>>,
 }
 
-impl<'a> Means<'a> {
-    fn new(forest: &'a Forest, was: &Extracted) -> Self {
-        Self { forest, numbers: was.numbers(forest.reference.len()) }
+impl Means<'_> {
+    /// Replaces `parts` by the old vertices that a vertex is a mean of, by rising ids, with their shares.
+    fn of(&self, vertex: ForestVertexId, parts: &mut Vec<(VertexId, f64)>) {
+        parts.clear();
+        self.add(vertex, 1.0, parts);
+        parts.sort_unstable_by_key(|part| part.0);
     }
 
-    /// Returns the old vertices that a vertex is a mean of, in ascending order, with their shares.
-    fn of(&self, vertex: ForestVertexId) -> Vec<(VertexId, f64)> {
-        let mut parts: BTreeMap<VertexId, f64> = BTreeMap::new();
-        let mut open = vec![(vertex, 1.0)];
-        while let Some((v, share)) = open.pop() {
-            match self.numbers[v.index()].get() {
-                Some(known) => *parts.entry(known).or_default() += share,
-                None => {
-                    let origin = self.forest.origin[v.index() - self.forest.n_first_vertices];
-                    open.extend(self.forest.edges[origin.index()].ends.map(|end| (end, 0.5 * share)));
-                }
+    /// Adds a share of a vertex. Shares are powers of two, so their sums are exact in any order.
+    fn add(&self, v: ForestVertexId, share: f64, parts: &mut Vec<(VertexId, f64)>) {
+        if let Some(known) = self.numbers[v.index()].get() {
+            match parts.iter_mut().find(|part| part.0 == known) {
+                Some(part) => part.1 += share,
+                None => parts.push((known, share)),
             }
+            return;
         }
-        parts.into_iter().collect()
+        let origin = self.forest.origin[v.index() - self.forest.n_first_vertices];
+        for end in self.forest.edges[origin.index()].ends {
+            self.add(end, 0.5 * share, parts);
+        }
     }
 }
