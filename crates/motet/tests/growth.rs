@@ -85,7 +85,8 @@ fn shaken(n: usize) -> Mesh {
 }
 
 fn triangulated(n: usize) -> usize {
-    let coordinate = |i: usize, k: usize| ((i + 1) as f64 * [0.618_033_9, 0.754_877_6, 0.569_840_2][k]).fract();
+    let coordinate =
+        |i: usize, k: usize| ((i + 1) as f64 * [0.618_033_9, 0.754_877_6, 0.569_840_2][k]).fract();
     let points: Vec<Point> = (0..n).map(|i| [0, 1, 2].map(|k| coordinate(i, k))).collect();
     Triangulation::new(&points, &Threads::single()).unwrap().tets().len()
 }
