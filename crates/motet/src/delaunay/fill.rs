@@ -4,7 +4,7 @@ use super::cavity::{Cavity, Facet, grow_to};
 use super::conflict::Newcomer;
 use super::edges::{EdgeMap, EdgeMatrix, EdgeTable, MAX_MATRIX_VERTICES};
 use super::gauge::{Arm, of_ghost, of_tet};
-use super::store::{INFINITY, Store};
+use super::store::{INFINITY, Slots, Tets};
 use crate::base::Point;
 use crate::geometry::vector::sub;
 use pulp::Simd;
@@ -42,22 +42,26 @@ impl Fill {
         }
     }
 
-    /// Replaces the tets of the cavity by new ones; returns one of these that is not a ghost.
+    /// Replaces the tets of the cavity by new ones; returns one of these that is not a ghost, or `None`, with
+    /// nothing changed, where there are too few slots.
     #[inline(always)]
     pub(super) fn fill<S: Simd>(
         &mut self,
         _: S,
-        store: &mut Store,
+        tets: Tets,
+        free: &mut Slots,
         points: &[Point],
         cavity: &mut Cavity,
         new: Newcomer,
-    ) -> u32 {
+    ) -> Option<u32> {
+        if !cavity.allocate_slots(tets, free) {
+            return None;
+        }
         let n = self.number(cavity.facets());
         self.reach::<S>(points, n, new.point);
-        cavity.allocate_slots(store);
         let (slots, facets) = (cavity.slots(), cavity.facets());
         let parts = Parts {
-            store,
+            tets,
             slots,
             facets,
             corners: &self.corners[..facets.len()],
@@ -65,12 +69,12 @@ impl Fill {
             new,
             least: self.least,
         };
-        if n <= MAX_MATRIX_VERTICES {
+        Some(if n <= MAX_MATRIX_VERTICES {
             parts.make::<S, _>(&mut self.matrix)
         } else {
             self.table.clear(3 * facets.len());
             parts.make::<S, _>(&mut self.table)
-        }
+        })
     }
 
     /// Numbers the vertices of the cavity in the order in which they are met; returns how many there are. The
@@ -113,7 +117,7 @@ impl Fill {
 
 /// Everything needed to make the new tets, in local numbers.
 struct Parts<'a> {
-    store: &'a mut Store,
+    tets: Tets<'a>,
     slots: &'a [u32],
     facets: &'a [Facet],
     corners: &'a [[u32; 3]],
@@ -132,22 +136,22 @@ impl Parts<'_> {
             edges.put(c, a, 4 * slot + 2);
             edges.put(a, b, 4 * slot + 3);
         }
-        let Store { vertices, links, gauges, .. } = self.store;
-        let (vertices, links, gauges) = (&mut vertices[..], &mut links[..], &mut gauges[..]);
+        let tets @ Tets { vertices, links, gauges } = self.tets;
         let (newcomer, mark) = (self.new.vertex, self.new.mark());
         let mut last = 0;
         for ((&slot, facet), &[a, b, c]) in self.slots.iter().zip(self.facets).zip(self.corners) {
             let [i, j, k] = facet.vertices;
-            vertices[slot as usize] = [newcomer, i, j, k];
-            links[slot as usize] = [facet.outer, edges.get(c, b), edges.get(a, c), edges.get(b, a)];
-            links[(facet.outer >> 2) as usize][(facet.outer & 3) as usize] = 4 * slot;
+            vertices.set(slot, [newcomer, i, j, k]);
+            links.set(slot, [facet.outer, edges.get(c, b), edges.get(a, c), edges.get(b, a)]);
+            tets.set_link(facet.outer, 4 * slot);
             let (a, b) = (&self.arms[a as usize], &self.arms[b as usize]);
-            gauges[slot as usize] = if k == INFINITY {
+            let gauge = if k == INFINITY {
                 of_ghost::<S>(newcomer, [a, b], mark, self.least)
             } else {
                 last = slot;
                 of_tet::<S>(newcomer, [a, b, &self.arms[c as usize]], mark, self.least)
             };
+            gauges.set(slot, gauge);
         }
         last
     }

@@ -18,9 +18,9 @@ pub(super) struct Finished {
 /// The builder's arrays are converted in place (a vector collected from its own elements keeps its memory):
 /// at a million points that saves 216 MB of fresh pages, which cost more than the work itself.
 pub(super) fn finish(store: Store, vertex_to_id: &[u32], threads: &Threads) -> Finished {
-    let slot_to_tet = number(&store);
-    let hull = hull(&store, &slot_to_tet, vertex_to_id);
-    let Store { vertices, links, .. } = store;
+    let [vertices, links] = store.into_arrays();
+    let slot_to_tet = number(&vertices);
+    let hull = hull(&vertices, &links, &slot_to_tet, vertex_to_id);
     let id = |v: u32| VertexId(vertex_to_id[v as usize]);
     let tet = |link: u32| slot_to_tet[(link >> 2) as usize];
     let tets = || compact(vertices, &slot_to_tet, |[a, b, c, d]| [id(a), id(b), id(c), id(d)]);
@@ -30,14 +30,14 @@ pub(super) fn finish(store: Store, vertex_to_id: &[u32], threads: &Threads) -> F
 }
 
 /// Numbers the tets that are neither ghosts nor free, in the order of slots; the others get [`OUTSIDE`].
-fn number(store: &Store) -> Vec<TetId> {
+fn number(vertices: &[[u32; 4]]) -> Vec<TetId> {
     let mut next = 0;
     let number = |&vertices: &[u32; 4]| {
         let tet = if is_ghost(vertices) { OUTSIDE } else { TetId(next) };
         next += u32::from(!is_ghost(vertices));
         tet
     };
-    store.vertices.iter().map(number).collect()
+    vertices.iter().map(number).collect()
 }
 
 /// Converts the entries of numbered slots and drops the others.
@@ -46,15 +46,19 @@ fn compact<T: Copy, U>(slots: Vec<T>, slot_to_tet: &[TetId], entry: impl Fn(T) -
     numbered.map(|(slot, _)| entry(slot)).collect()
 }
 
-fn hull(store: &Store, slot_to_tet: &[TetId], vertex_to_id: &[u32]) -> Vec<HullFacet> {
-    let ghosts = (0..store.n_slots()).filter(|&s| slot_to_tet[s] == OUTSIDE && store.vertices[s] != FREE);
-    ghosts.map(|ghost| hull_facet(store, store.links[ghost][3], slot_to_tet, vertex_to_id)).collect()
-}
-
-/// The hull facet at `link`, seen from outside.
-fn hull_facet(store: &Store, link: u32, slot_to_tet: &[TetId], vertex_to_id: &[u32]) -> HullFacet {
-    let (slot, facet) = ((link >> 2) as usize, (link & 3) as usize);
-    // Together with the opposite vertex in front the facet is positive, so its front faces outward.
-    let vertices = FACETS[facet].map(|i| VertexId(vertex_to_id[store.vertices[slot][i] as usize]));
-    HullFacet { vertices, tet: slot_to_tet[slot], facet: facet as u8 }
+fn hull(
+    vertices: &[[u32; 4]],
+    links: &[[u32; 4]],
+    slot_to_tet: &[TetId],
+    vertex_to_id: &[u32],
+) -> Vec<HullFacet> {
+    let ghosts = (0..vertices.len()).filter(|&s| slot_to_tet[s] == OUTSIDE && vertices[s] != FREE);
+    // The hull facet of each ghost, seen from outside.
+    let facet = |ghost: usize| {
+        let (slot, facet) = ((links[ghost][3] >> 2) as usize, (links[ghost][3] & 3) as usize);
+        // Together with the opposite vertex in front the facet is positive, so its front faces outward.
+        let corners = FACETS[facet].map(|i| VertexId(vertex_to_id[vertices[slot][i] as usize]));
+        HullFacet { vertices: corners, tet: slot_to_tet[slot], facet: facet as u8 }
+    };
+    ghosts.map(facet).collect()
 }

@@ -14,13 +14,12 @@ use pulp::Simd;
 
 /// All that the conflict test needs to know of a tet.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(16))]
 pub(super) struct Gauge {
     pub(super) normal: Point,
     pub(super) volume: f64,
     /// The tet's vertex 0, to which `x` is relative.
     pub(super) origin: u32,
-    /// `4 * newcomer + state` of the last newcomer that met the tet, so that nothing is cleared between
+    /// `4 * attempt + state` of the last insertion that met the tet, so that nothing is cleared between
     /// insertions.
     pub(super) mark: u32,
     /// Factor of the error bound of the conflict test, `error (reach |x|_1 + |x|^2)`.
@@ -30,8 +29,32 @@ pub(super) struct Gauge {
 }
 
 impl Gauge {
-    pub(super) const FREE: Self =
-        Self { normal: [0.0; 3], volume: 0.0, origin: 0, mark: 0, error: 0.0, reach: 0.0 };
+    /// The number of words in which a gauge is stored.
+    pub(super) const WORDS: usize = 6;
+    /// The word whose lower half is the mark.
+    pub(super) const MARK: usize = 5;
+
+    /// The gauge as it is stored: memory that is all zeros need not be touched before its first use.
+    #[inline(always)]
+    pub(super) fn words(&self) -> [u64; Self::WORDS] {
+        let pair = |low: u32, high: f32| u64::from(low) | u64::from(high.to_bits()) << 32;
+        let [x, y, z] = self.normal.map(f64::to_bits);
+        let volume = self.volume.to_bits();
+        [x, y, z, volume, pair(self.origin, self.error), pair(self.mark, self.reach)]
+    }
+
+    #[inline(always)]
+    pub(super) fn from_words([x, y, z, volume, fifth, sixth]: [u64; Self::WORDS]) -> Self {
+        let high = |word: u64| f32::from_bits((word >> 32) as u32);
+        Self {
+            normal: [x, y, z].map(f64::from_bits),
+            volume: f64::from_bits(volume),
+            origin: fifth as u32,
+            mark: sixth as u32,
+            error: high(fifth),
+            reach: high(sixth),
+        }
+    }
 
     /// Returns `normal . x - volume |x|^2` and its error bound, which excludes underflow.
     #[inline(always)]

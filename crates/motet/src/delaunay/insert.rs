@@ -1,38 +1,103 @@
 //! The insertion loop: find a tet in conflict, dig the cavity, fill it (Bowyer 1981; Watson 1981).
 //!
+//! Several threads insert points of different parts of space at the same time (as in Marot, Pellerin and
+//! Remacle 2019, *One machine, one minute, three billion tetrahedra*). A tet whose vertices all belong to one
+//! part may be changed by the thread of that part alone; tets between parts are frozen. A tet of one part never
+//! has a neighbour that belongs to another, so a thread that stops at frozen tets meets nothing that others
+//! change. Points whose cavity reaches a frozen tet are left for later, when space is divided elsewhere.
+//!
 //! The whole loop is compiled twice, for any machine and for one with AVX2 and FMA, and dispatched once per
 //! thousands of points: everything it calls is inlined or dispatched with it. The signs are exact either way,
 //! so the results agree.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::cavity::Cavity;
 use super::conflict::Newcomer;
 use super::fill::Fill;
 use super::gauge::LEAST;
 use super::input::sides;
+use super::parts::{Frozen, Part, Parts};
 use super::start::first_tet;
-use super::store::{MAX_TETS, Store};
+use super::store::{MAX_TETS, Slots, Store, Tets};
 use super::walk::walk;
-use crate::base::{Error, Point, Result, Watch};
+use crate::base::{Point, Result, Threads, Watch};
 use crate::geometry::predicates::pair::U;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Triangulates distinct points, of which the first four span a tet. Point 0 is not used: vertex 0 is the one
-/// at infinity. `filtered` states whether floating-point filters may be trusted.
-pub(super) fn triangulate(points: &[Point], filtered: bool, watch: &Watch) -> Result<Store> {
-    let least = if filtered { LEAST } else { f32::INFINITY };
-    // A million uniform points give 6.77 tets per point, and 1.01 ghosts per hull facet.
-    let mut store = Store::with_capacity(7 * points.len() + 64);
-    first_tet(&mut store, points, least);
-    let sure = if filtered { static_bound(points) } else { f64::INFINITY };
-    let mut fill = Fill::new(points.len(), least);
-    let (n, mut hint, arch) = (points.len() as u32, 0, Arch::new());
-    for from in (5..n).step_by(RUN as usize) {
-        watch.report_and_check("triangulating points", from as usize, points.len())?;
-        let vertices = from..n.min(from.saturating_add(RUN));
-        hint =
-            arch.dispatch(Insertion { store: &mut store, points, sure, fill: &mut fill, vertices, hint })?;
+/// The watch is consulted each time this many points have been inserted.
+const RUN: usize = 8192;
+
+/// Into how many parts space is divided. It decides which slots tets get, and so their order: for the same result
+/// on any number of threads it depends on the number of points alone.
+#[derive(Clone, Copy)]
+pub(super) struct Division {
+    /// The least number of points of one of two parts, and of one of more. Of the points of a part, some
+    /// `5.6 f / n^(1/3)` are left, where there are `n`, and `f` of its faces are next to other parts; each of
+    /// them takes half as long again.
+    pub(super) least_of_two: usize,
+    pub(super) least_of_many: usize,
+}
+
+impl Division {
+    pub(super) const USUAL: Self = Self { least_of_two: 50_000, least_of_many: 300_000 };
+
+    /// The number of parts for the insertion of `n` points.
+    fn n_parts(self, n: usize) -> usize {
+        let n_pairs = u32::from(n >= 2 * self.least_of_two);
+        1 << (n / self.least_of_many).checked_ilog2().unwrap_or(0).max(n_pairs)
     }
-    Ok(store)
+}
+
+/// The slots for each point that threads insert at the same time: a million uniform points give 6.77 tets per
+/// point, and 1.01 ghosts per hull facet.
+const SLOTS_PER_POINT: usize = 7;
+
+/// Triangulates distinct points, of which the first four span a tet. Point 0 is not used: vertex 0 is the one
+/// at infinity. `rounds` are the first vertices of the rounds after the first one; `filtered` states whether
+/// floating-point filters may be trusted.
+///
+/// # Errors
+/// When a stop was requested, and when there are more than [`MAX_TETS`] tets.
+pub(super) fn triangulate(
+    points: &[Point],
+    rounds: &[u32],
+    filtered: bool,
+    division: Division,
+    threads: &Threads,
+) -> Result<Store> {
+    let least = if filtered { LEAST } else { f32::INFINITY };
+    let mut store = Store::with_slots((SLOTS_PER_POINT * points.len() + 64).min(MAX_TETS));
+    store.slots.claim(&mut [0; 5]);
+    first_tet(alone(&mut store), points, least);
+    let mut builder = Builder {
+        points,
+        sure: if filtered { static_bound(points) } else { f64::INFINITY },
+        least,
+        store,
+        scratches: Vec::new(),
+        n_attempts: 0,
+        hint: 0,
+        n_done: AtomicUsize::new(0),
+        division: Some(division),
+        threads,
+    };
+    let n = points.len() as u32;
+    let mut from = n.min(5);
+    for until in rounds.iter().copied().chain([n]) {
+        if until > from {
+            builder.insert((from..until).collect())?;
+            from = until;
+        }
+    }
+    Ok(builder.store)
+}
+
+/// A view of the tets for one thread.
+#[allow(unsafe_code, reason = "see `Shared`")]
+fn alone(store: &mut Store) -> Tets<'_> {
+    // SAFETY: all callers use it on the calling thread only.
+    unsafe { store.tets() }
 }
 
 /// Bounds the error of any 3x3 determinant of differences within the box: 8 u times six products, doubled.
@@ -41,38 +106,202 @@ fn static_bound(points: &[Point]) -> f64 {
     16.0 * U * 6.0 * (x * y * z) + f64::MIN_POSITIVE
 }
 
-/// The watch is consulted each time this many points have been inserted.
-const RUN: u32 = 8192;
-
-/// The insertion loop with the data it works on.
-struct Insertion<'a> {
-    store: &'a mut Store,
+/// The triangulation of the points inserted so far.
+struct Builder<'a> {
     points: &'a [Point],
     sure: f64,
-    fill: &'a mut Fill,
-    vertices: std::ops::Range<u32>,
-    /// The tet where the first walk starts.
+    least: f32,
+    store: Store,
+    /// One for each thread that has inserted points.
+    scratches: Vec<Scratch>,
+    n_attempts: u32,
+    /// The tet where the next walk starts.
     hint: u32,
+    n_done: AtomicUsize,
+    /// `None` once most points of a round were left: tets may reach from each part to all others.
+    division: Option<Division>,
+    threads: &'a Threads,
 }
 
-impl WithSimd for Insertion<'_> {
-    type Output = Result<u32>;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Result<u32> {
-        let mut cavity = Cavity::default();
-        let mut hint = self.hint;
-        for vertex in self.vertices {
-            let new = Newcomer { vertex, point: self.points[vertex as usize] };
-            let Some(first) = walk(simd, self.store, self.points, hint, new, self.sure) else {
-                unreachable!("the points are distinct, so each is in conflict with the tet that holds it");
-            };
-            cavity.dig(simd, self.store, self.points, first, new);
-            if self.store.n_slots() + cavity.facets().len() > MAX_TETS {
-                return Err(Error::input(format!("more than {MAX_TETS} tets")).remedy("divide the set"));
+impl Builder<'_> {
+    /// Inserts the vertices of a round.
+    fn insert(&mut self, mut todo: Vec<u32>) -> Result<()> {
+        while let Some(division) = self.division {
+            let (n, n_parts) = (todo.len(), division.n_parts(todo.len()));
+            if n_parts == 1 {
+                break;
             }
-            hint = self.fill.fill(simd, self.store, self.points, &mut cavity, new);
+            todo = self.insert_in_parts(&todo, n_parts)?;
+            self.division = Some(division).filter(|_| todo.len() < n / 2);
         }
-        Ok(hint)
+        while !todo.is_empty() {
+            todo = self.insert_one_by_one(&todo)?;
+            if !todo.is_empty() {
+                self.store.reserve(self.store.slots.len() + 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Inserts vertices on the calling thread; returns those for which there are too few slots.
+    fn insert_one_by_one(&mut self, vertices: &[u32]) -> Result<Vec<u32>> {
+        self.provide_scratches(1);
+        let mut worker = Worker {
+            points: self.points,
+            sure: self.sure,
+            slots: std::mem::take(&mut self.store.slots),
+            tets: alone(&mut self.store),
+            scratch: &mut self.scratches[0],
+            n_attempts: self.n_attempts,
+            part: Part::ALL,
+            hint: Some(self.hint),
+        };
+        let left = worker.insert(vertices, &self.n_done, self.threads.watch())?;
+        let Worker { slots, n_attempts, hint, .. } = worker;
+        self.n_attempts = n_attempts;
+        self.hint = hint.unwrap_or(self.hint);
+        self.store.slots = slots;
+        Ok(left)
+    }
+
+    /// Inserts vertices in parts of space, at the same time; returns those left. Each part has slots of its own, so
+    /// that the result does not depend on threads.
+    #[allow(unsafe_code, reason = "see `Shared`")]
+    fn insert_in_parts(&mut self, vertices: &[u32], n_parts: usize) -> Result<Vec<u32>> {
+        let (points, threads) = (self.points, self.threads);
+        // Where there are not as many slots, more vertices are left.
+        _ = self.store.reserve((SLOTS_PER_POINT - 1) * vertices.len());
+        self.provide_scratches(n_parts);
+        let parts = Parts::new(points, vertices, n_parts, threads);
+        let n_used = self.store.n_used();
+        let mut slots = std::mem::take(&mut self.store.slots);
+        let part_slots = slots.split_off(SLOTS_PER_POINT * vertices.len(), n_parts);
+        // SAFETY: freezing changes each tet in the run of slots that has it, and reads no other; afterwards the
+        // tets of a part, all of whose neighbours belong to the same part or are frozen, are changed by its
+        // thread alone; and nothing changes or marks a frozen tet.
+        let tets = unsafe { self.store.tets() };
+        let frozen = Frozen::new(tets, n_used, &parts, threads);
+        let all = part_slots.into_iter().zip(&mut self.scratches).zip(&frozen.hints).enumerate();
+        let workers = all.map(|(part, ((slots, scratch), &hint))| Worker {
+            points,
+            sure: self.sure,
+            tets,
+            slots,
+            scratch,
+            n_attempts: self.n_attempts,
+            part: parts.get(part),
+            hint,
+        });
+        let insert = |(part, mut worker): (usize, Worker)| -> Result<_> {
+            let left = worker.insert(&parts.own(vertices, part), &self.n_done, threads.watch())?;
+            Ok((left, worker.slots, worker.n_attempts, worker.hint))
+        };
+        let done = threads.each(workers.enumerate().collect(), insert);
+        frozen.release(tets);
+        let mut left = Vec::new();
+        for part in done.into_iter().rev() {
+            let (own, own_slots, n_attempts, hint) = part?;
+            left.extend(own);
+            slots.put_back(own_slots);
+            self.n_attempts = self.n_attempts.max(n_attempts);
+            self.hint = hint.unwrap_or(self.hint);
+        }
+        self.store.slots = slots;
+        left.sort_unstable();
+        Ok(left)
+    }
+
+    fn provide_scratches(&mut self, n: usize) {
+        while self.scratches.len() < n {
+            self.scratches.push(Scratch::new(self.points.len(), self.least));
+        }
+    }
+}
+
+/// Buffers of a thread, reused from one insertion to the next.
+struct Scratch {
+    cavity: Cavity,
+    fill: Fill,
+}
+
+impl Scratch {
+    fn new(n_points: usize, least: f32) -> Self {
+        Self { cavity: Cavity::default(), fill: Fill::new(n_points, least) }
+    }
+}
+
+/// What one thread works with.
+struct Worker<'a> {
+    points: &'a [Point],
+    sure: f64,
+    tets: Tets<'a>,
+    slots: Slots,
+    scratch: &'a mut Scratch,
+    n_attempts: u32,
+    part: Part<'a>,
+    /// The tet where the next walk starts; `None` where no tet belongs to the part.
+    hint: Option<u32>,
+}
+
+impl Worker<'_> {
+    /// Inserts vertices in order; returns those left: whose cavity reaches a frozen tet, and those from the
+    /// one on for which there are too few slots.
+    fn insert(&mut self, vertices: &[u32], n_done: &AtomicUsize, watch: &Watch) -> Result<Vec<u32>> {
+        let Some(mut hint) = self.hint else { return Ok(vertices.to_vec()) };
+        let (mut left, arch) = (Vec::new(), Arch::new());
+        for (k, run) in vertices.chunks(RUN).enumerate() {
+            let done = n_done.fetch_add(run.len(), Ordering::Relaxed);
+            watch.report_and_check("triangulating points", done, self.points.len())?;
+            let n_left = left.len();
+            let n = arch.dispatch(Run { worker: self, vertices: run, left: &mut left, hint: &mut hint });
+            let n_tried = k * RUN + n;
+            // Where most are left, trying the others would be in vain.
+            let is_last = n < run.len() || left.len() > n_tried / 2;
+            if is_last {
+                left.extend(&vertices[n_tried..]);
+            }
+            n_done.fetch_sub(run.len().min(left.len() - n_left), Ordering::Relaxed);
+            if is_last {
+                break;
+            }
+        }
+        self.hint = Some(hint);
+        Ok(left)
+    }
+}
+
+/// A run of vertices to insert.
+struct Run<'a, 'b> {
+    worker: &'a mut Worker<'b>,
+    vertices: &'a [u32],
+    left: &'a mut Vec<u32>,
+    hint: &'a mut u32,
+}
+
+impl WithSimd for Run<'_, '_> {
+    type Output = usize;
+
+    /// Returns the number of vertices that were inserted or left, all unless there are too few slots.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> usize {
+        let Worker { points, sure, tets, part, ref mut slots, ref mut scratch, ref mut n_attempts, .. } =
+            *self.worker;
+        let Scratch { cavity, fill } = scratch;
+        let mut hint = *self.hint;
+        let mut n = 0;
+        for &vertex in self.vertices {
+            *n_attempts += 1;
+            let new = Newcomer { vertex, point: points[vertex as usize], attempt: *n_attempts };
+            let first = walk(simd, tets, points, hint, new, part, sure);
+            if first.is_some_and(|first| cavity.dig(simd, tets, points, first, new)) {
+                let Some(made) = fill.fill(simd, tets, slots, points, cavity, new) else { break };
+                hint = made;
+            } else {
+                self.left.push(vertex);
+            }
+            n += 1;
+        }
+        *self.hint = hint;
+        n
     }
 }

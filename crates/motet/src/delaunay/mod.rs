@@ -9,6 +9,7 @@
 //! | input | `input` | scaled by a power of two so that no filter can overflow; what cannot be scaled exactly gets exact arithmetic only |
 //! | order | `order` | biased randomised rounds (Amenta, Choi and Rote 2003), a Hilbert curve within each |
 //! | records | `store`, `gauge` | three arrays with a slot per tet: vertices, links, and the minors of the in-sphere determinant with their error bound |
+//! | parts | `parts`, `insert` | space is divided into boxes, in which threads insert points at the same time |
 //! | walk | `walk` | from the last tet, stopping at the first one in conflict |
 //! | test | `conflict` | 12 multiplications with the stored minors; then pairs of `f64`; then integers |
 //! | cavity | `cavity` | breadth first, without branches |
@@ -44,6 +45,7 @@ mod gauge;
 mod input;
 mod insert;
 mod order;
+mod parts;
 mod start;
 mod store;
 mod triangulation;

@@ -7,6 +7,8 @@
 //! coordinates, so the order, and with it every tie, depends only on the set of points, not on how the caller
 //! numbered them.
 
+use std::ops::Range;
+
 use crate::base::{Point, Threads, splitmix64};
 use crate::spatial::hilbert::{Curve, KEY_BITS, bounding_cube};
 
@@ -18,6 +20,8 @@ const SMALL_RUN: usize = 32;
 /// The ids of the distinct points in the order of insertion, and the duplicates with the ids kept instead.
 pub(super) struct Order {
     pub(super) ids: Vec<u32>,
+    /// The places in `ids` where rounds begin, the first one aside.
+    pub(super) rounds: Vec<u32>,
     /// `(duplicate, kept)`; the smallest id of equal points is kept.
     pub(super) duplicates: Vec<(u32, u32)>,
 }
@@ -28,10 +32,42 @@ type Keyed = (u64, u32);
 /// Orders finite points for insertion.
 pub(super) fn order(points: &[Point], threads: &Threads) -> Order {
     let last_round = last_round(points.len());
-    let mut keyed = keys(points, threads, last_round);
-    radix_sort(&mut keyed, KEY_BITS + u64::from(last_round).checked_ilog2().map_or(0, |b| b + 1));
-    sort_runs(&mut keyed, points);
-    without_duplicates(&keyed, points)
+    let keyed = keys(points, threads, last_round);
+    let bits = KEY_BITS + u64::from(last_round).checked_ilog2().map_or(0, |b| b + 1);
+    let sorted = |mut own: Vec<Keyed>| {
+        radix_sort(&mut own, bits);
+        sort_runs(&mut own, points);
+        without_duplicates(&own, points)
+    };
+    let parts = if threads.count() == 1 {
+        vec![sorted(keyed)]
+    } else {
+        let own = |range: Range<u64>| keyed.iter().filter(|k| range.contains(&k.0)).copied().collect();
+        threads.each(ranges(&keyed, threads.count()), |range| sorted(own(range)))
+    };
+    let mut parts = parts.into_iter();
+    let (mut ids, mut duplicates) = parts.next().unwrap_or_default();
+    for (own_ids, own_duplicates) in parts {
+        ids.extend(own_ids);
+        duplicates.extend(own_duplicates);
+    }
+    duplicates.sort_unstable();
+    let begin = |round: u32| ids.partition_point(|&id| self::round(points[id as usize], last_round) < round);
+    let rounds = (1..=last_round).map(|round| begin(round) as u32).collect();
+    Order { ids, rounds, duplicates }
+}
+
+/// Divides the range of keys into `n` parts with about as many keys in each.
+fn ranges(keyed: &[Keyed], n: usize) -> Vec<Range<u64>> {
+    let step = (keyed.len() / (1024 * n)).max(1);
+    let mut sample: Vec<u64> = keyed.iter().step_by(step).map(|k| k.0).collect();
+    sample.sort_unstable();
+    let bound = |part: usize| match part {
+        0 => 0,
+        _ if part == n => u64::MAX,
+        _ => sample.get(sample.len() * part / n).copied().unwrap_or(0),
+    };
+    (0..n).map(|part| bound(part)..bound(part + 1)).collect()
 }
 
 /// The number of the last round; rounds are numbered from 0.
@@ -47,9 +83,14 @@ fn keys(points: &[Point], threads: &Threads, last_round: u32) -> Vec<Keyed> {
     let (corner, extent) = bounding_cube(points.iter().copied());
     let curve = Curve::new(corner, extent);
     threads.map(points.len(), |id| {
-        let round = last_round - (hash(points[id]).trailing_zeros() / 3).min(last_round);
+        let round = round(points[id], last_round);
         (u64::from(round) << KEY_BITS | curve.key(points[id]), id as u32)
     })
+}
+
+/// The round of a point.
+fn round(point: Point, last_round: u32) -> u32 {
+    last_round - (hash(point).trailing_zeros() / 3).min(last_round)
 }
 
 /// A hash of the coordinates, equal for equal points (`-0.0 == 0.0`).
@@ -120,8 +161,9 @@ fn compare(points: &[Point], a: u32, b: u32) -> std::cmp::Ordering {
     by_coordinate(0).then_with(|| by_coordinate(1)).then_with(|| by_coordinate(2)).then(a.cmp(&b))
 }
 
-/// Separates duplicates: equal points are adjacent in `keyed`, the smallest id first.
-fn without_duplicates(keyed: &[Keyed], points: &[Point]) -> Order {
+/// Separates duplicates: equal points are adjacent in `keyed`, the smallest id first. Returns the ids of the
+/// distinct points, and `(duplicate, kept)`.
+fn without_duplicates(keyed: &[Keyed], points: &[Point]) -> (Vec<u32>, Vec<(u32, u32)>) {
     let mut ids: Vec<u32> = Vec::with_capacity(keyed.len());
     let mut duplicates = Vec::new();
     for &(_, id) in keyed {
@@ -130,8 +172,7 @@ fn without_duplicates(keyed: &[Keyed], points: &[Point]) -> Order {
             _ => ids.push(id),
         }
     }
-    duplicates.sort_unstable();
-    Order { ids, duplicates }
+    (ids, duplicates)
 }
 
 #[cfg(test)]

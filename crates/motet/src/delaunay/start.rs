@@ -1,7 +1,7 @@
 //! The first tet: four points in general position, and the four ghosts around them.
 
 use super::gauge::{Arm, of_ghost, of_tet};
-use super::store::{FACETS, INFINITY, Store, is_ghost};
+use super::store::{FACETS, INFINITY, Tets, is_ghost};
 use crate::base::{Error, Point, Result};
 use crate::geometry::predicates::{collinear, orient3d};
 use crate::geometry::vector::sub;
@@ -27,33 +27,33 @@ pub(super) fn bring_tet_to_front(ids: &mut [u32], points: &[Point]) -> Result<()
 }
 
 /// Makes the tet of vertices 1 to 4, in slot 0, and its ghosts, in slots 1 to 4.
-pub(super) fn first_tet(store: &mut Store, points: &[Point], least: f32) {
+pub(super) fn first_tet(tets: Tets, points: &[Point], least: f32) {
     let [a, b, c, d] = [1, 2, 3, 4].map(|v| points[v]);
     let tet = if orient3d(a, b, c, d) > 0 { [1, 2, 3, 4] } else { [1, 3, 2, 4] };
-    push(store, points, tet, least);
-    for facet in FACETS {
+    put(tets, 0, points, tet, least);
+    for (slot, facet) in (1..).zip(FACETS) {
         let [i, j, k] = facet.map(|v| tet[v]);
-        push(store, points, [i, j, k, INFINITY], least);
+        put(tets, slot, points, [i, j, k, INFINITY], least);
     }
-    link_all(store);
+    link_all(tets);
 }
 
-fn push(store: &mut Store, points: &[Point], vertices: [u32; 4], least: f32) {
+fn put(tets: Tets, slot: u32, points: &[Point], vertices: [u32; 4], least: f32) {
     let [a, i, j, k] = vertices;
     let [b, c, d] = [i, j, k].map(|v| Arm::new::<Scalar>(sub(points[v as usize], points[a as usize])));
-    store.vertices.push(vertices);
-    store.links.push([0; 4]);
-    store.gauges.push(match is_ghost(vertices) {
+    tets.vertices.set(slot, vertices);
+    let gauge = match is_ghost(vertices) {
         true => of_ghost::<Scalar>(a, [&b, &c], 0, least),
         false => of_tet::<Scalar>(a, [&b, &c, &d], 0, least),
-    });
+    };
+    tets.gauges.set(slot, gauge);
 }
 
 /// Links facets with equal vertices by comparing all pairs; there are only five tets.
-fn link_all(store: &mut Store) {
+fn link_all(tets: Tets) {
     let sides: Vec<(u32, [u32; 3])> = (0..20u32)
         .map(|side| {
-            let vertices = store.vertices[side as usize / 4];
+            let vertices = tets.vertices.get(side / 4);
             let mut facet = FACETS[side as usize % 4].map(|i| vertices[i]);
             facet.sort_unstable();
             (side, facet)
@@ -61,6 +61,6 @@ fn link_all(store: &mut Store) {
         .collect();
     for &(side, facet) in &sides {
         let twin = sides.iter().find(|&&(other, same)| other != side && same == facet);
-        store.links[side as usize / 4][side as usize % 4] = twin.map_or(0, |t| t.0);
+        tets.set_link(side, twin.map_or(0, |t| t.0));
     }
 }

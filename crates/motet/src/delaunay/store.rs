@@ -8,11 +8,11 @@
 //!
 //! There are three arrays instead of one of records: the conflict test reads gauges alone, and setting a
 //! neighbour's mark brings its gauge into the cache well before the test needs it; vertices and links are
-//! converted in place into the caller's arrays (`finish`). Compared with records of a cache line this saves
+//! only needed once a cavity is known. Compared with records of a cache line this saves
 //! 190 of 780 bytes of fresh memory per vertex, and a twentieth of the time at a million points.
 
 use super::gauge::Gauge;
-use crate::base::Point;
+use crate::base::{Error, Point, Result, Shared};
 
 /// The vertex at infinity.
 pub(super) const INFINITY: u32 = 0;
@@ -38,62 +38,186 @@ pub(super) fn is_ghost(vertices: [u32; 4]) -> bool {
     vertices[3] == INFINITY
 }
 
-/// All tets and the free slots among them.
+/// All tets, and the slots without one.
 #[derive(Clone, Debug)]
 pub(super) struct Store {
     /// Positively oriented; [`FREE`] where the slot is free.
-    pub(super) vertices: Vec<[u32; 4]>,
-    pub(super) links: Vec<[u32; 4]>,
-    pub(super) gauges: Vec<Gauge>,
-    pub(super) free: Vec<u32>,
+    vertices: Vec<[u32; 4]>,
+    links: Vec<[u32; 4]>,
+    gauges: Vec<[u64; Gauge::WORDS]>,
+    pub(super) slots: Slots,
 }
 
+/// Slots without a tet: those of removed tets, and those not used so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Slots {
+    free: Vec<u32>,
+    fresh: std::ops::Range<u32>,
+}
+
+/// A view of the tets, through which threads change those of different parts of space at the same time.
+#[derive(Clone, Copy)]
+pub(super) struct Tets<'a> {
+    pub(super) vertices: Shared<'a, [u32; 4]>,
+    pub(super) links: Shared<'a, [u32; 4]>,
+    pub(super) gauges: Gauges<'a>,
+}
+
+/// A view of the gauges.
+#[derive(Clone, Copy)]
+pub(super) struct Gauges<'a>(Shared<'a, [u64; Gauge::WORDS]>);
+
 impl Store {
-    pub(super) fn with_capacity(n: usize) -> Self {
+    /// A store without tets, and `n` slots. Memory is touched when slots are first used.
+    pub(super) fn with_slots(n: usize) -> Self {
         Self {
-            vertices: Vec::with_capacity(n),
-            links: Vec::with_capacity(n),
-            gauges: Vec::with_capacity(n),
-            free: Vec::new(),
+            vertices: vec![FREE; n],
+            links: vec![[0; 4]; n],
+            gauges: vec![[0; Gauge::WORDS]; n],
+            slots: Slots { free: Vec::new(), fresh: 0..n as u32 },
         }
     }
 
-    /// The number of slots, free ones included.
-    #[inline(always)]
-    pub(super) fn n_slots(&self) -> usize {
-        self.gauges.len()
+    /// Makes room for `n` more tets.
+    ///
+    /// # Errors
+    /// When there are more than [`MAX_TETS`] slots.
+    pub(super) fn reserve(&mut self, n: usize) -> Result<()> {
+        if self.slots.len() >= n {
+            return Ok(());
+        }
+        let used = self.n_used();
+        let all = used + n.max(used / 2);
+        if used + n > MAX_TETS {
+            return Err(Error::input(format!("more than {MAX_TETS} tets")).remedy("divide the set"));
+        }
+        let all = all.min(MAX_TETS);
+        let mut grown = Self::with_slots(all);
+        grown.vertices[..used].copy_from_slice(&self.vertices[..used]);
+        grown.links[..used].copy_from_slice(&self.links[..used]);
+        grown.gauges[..used].copy_from_slice(&self.gauges[..used]);
+        grown.slots = Slots { free: std::mem::take(&mut self.slots.free), fresh: used as u32..all as u32 };
+        *self = grown;
+        Ok(())
     }
 
-    /// Frees slots.
+    /// The number of slots that have been used so far, free ones included.
+    pub(super) fn n_used(&self) -> usize {
+        self.slots.fresh.start as usize
+    }
+
+    /// The vertices and the links of all slots that have been used so far.
+    pub(super) fn into_arrays(self) -> [Vec<[u32; 4]>; 2] {
+        let n = self.n_used();
+        [self.vertices, self.links].map(|mut array| {
+            array.truncate(n);
+            array
+        })
+    }
+
+    /// A view of the tets.
+    ///
+    /// # Safety
+    /// Of the threads that use copies of it at the same time, none may change a tet that another one reads.
+    #[allow(unsafe_code, reason = "see `Shared`")]
+    pub(super) unsafe fn tets(&mut self) -> Tets<'_> {
+        // SAFETY: promised by the caller.
+        unsafe {
+            Tets {
+                vertices: Shared::new(&mut self.vertices),
+                links: Shared::new(&mut self.links),
+                gauges: Gauges(Shared::new(&mut self.gauges)),
+            }
+        }
+    }
+}
+
+impl Slots {
+    pub(super) fn len(&self) -> usize {
+        self.free.len() + self.fresh.len()
+    }
+
+    /// Adds slots whose tets were removed.
     #[inline(always)]
-    pub(super) fn release(&mut self, slots: &[u32]) {
+    pub(super) fn release(&mut self, tets: Tets, slots: &[u32]) {
         for &slot in slots {
-            self.vertices[slot as usize] = FREE;
+            tets.vertices.set(slot, FREE);
             self.free.push(slot);
         }
     }
 
-    /// Takes free slots; appends new ones at the end when none are left.
+    /// Takes slots for new tets; false, and nothing is taken, where there are too few.
     #[inline(always)]
-    pub(super) fn claim(&mut self, slots: &mut [u32]) {
+    pub(super) fn claim(&mut self, slots: &mut [u32]) -> bool {
+        if self.len() < slots.len() {
+            return false;
+        }
         for slot in slots {
-            *slot = self.free.pop().unwrap_or_else(|| self.grow());
+            *slot = self.free.pop().unwrap_or_else(|| {
+                self.fresh.start += 1;
+                self.fresh.start - 1
+            });
+        }
+        true
+    }
+
+    /// Takes out `n` slots if there are as many, in equal parts, free ones first.
+    pub(super) fn split_off(&mut self, n: usize, n_parts: usize) -> Vec<Self> {
+        let n_free = self.free.len().min(n) / n_parts;
+        let n_fresh = (self.fresh.len() / n_parts).min(n / n_parts - n_free);
+        let part = |_| {
+            let fresh = self.fresh.start..self.fresh.start + n_fresh as u32;
+            self.fresh.start = fresh.end;
+            Self { free: self.free.split_off(self.free.len() - n_free), fresh }
+        };
+        (0..n_parts).map(part).collect()
+    }
+
+    /// Puts back what was split off.
+    pub(super) fn put_back(&mut self, other: Self) {
+        self.free.extend(other.free);
+        if other.fresh.end == self.fresh.start {
+            self.fresh.start = other.fresh.start;
+        } else {
+            self.free.extend(other.fresh.rev());
         }
     }
+}
 
-    #[inline(always)]
-    fn grow(&mut self) -> u32 {
-        let slot = self.n_slots() as u32;
-        self.vertices.push(FREE);
-        self.links.push([0; 4]);
-        self.gauges.push(Gauge::FREE);
-        slot
-    }
-
+impl Tets<'_> {
     /// The coordinates of the four vertices of a tet that is not a ghost.
     #[inline(always)]
     pub(super) fn corners(&self, points: &[Point], tet: u32) -> [Point; 4] {
-        let [a, b, c, d] = self.vertices[tet as usize];
+        let [a, b, c, d] = self.vertices.get(tet);
         [points[a as usize], points[b as usize], points[c as usize], points[d as usize]]
+    }
+
+    /// Links the tet and facet `link` to `other`.
+    #[inline(always)]
+    pub(super) fn set_link(&self, link: u32, other: u32) {
+        self.links.cell(link >> 2).as_array_of_cells()[(link & 3) as usize].set(other);
+    }
+}
+
+impl Gauges<'_> {
+    #[inline(always)]
+    pub(super) fn get(self, tet: u32) -> Gauge {
+        Gauge::from_words(self.0.get(tet))
+    }
+
+    #[inline(always)]
+    pub(super) fn set(self, tet: u32, gauge: Gauge) {
+        self.0.set(tet, gauge.words());
+    }
+
+    #[inline(always)]
+    pub(super) fn mark(self, tet: u32) -> u32 {
+        self.0.cell(tet).as_array_of_cells()[Gauge::MARK].get() as u32
+    }
+
+    #[inline(always)]
+    pub(super) fn set_mark(self, tet: u32, mark: u32) {
+        let word = &self.0.cell(tet).as_array_of_cells()[Gauge::MARK];
+        word.set(word.get() >> 32 << 32 | u64::from(mark));
     }
 }

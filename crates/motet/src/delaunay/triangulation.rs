@@ -2,7 +2,7 @@
 
 use super::finish::{Finished, finish};
 use super::input;
-use super::insert::triangulate;
+use super::insert::{Division, triangulate};
 use super::order::order;
 use super::start::bring_tet_to_front;
 use crate::base::{Point, Result, TetId, Threads, VertexId};
@@ -45,6 +45,11 @@ impl Triangulation {
     /// Returns the triangulation, and its points in the order by which ties are broken, from 1 on; entry 0 is
     /// unused.
     pub(super) fn ordered(points: &[Point], threads: &Threads) -> Result<(Self, Vec<u32>)> {
+        Self::divided(points, Division::USUAL, threads)
+    }
+
+    /// Triangulates as [`Self::ordered`] does, with space divided into parts as requested.
+    fn divided(points: &[Point], division: Division, threads: &Threads) -> Result<(Self, Vec<u32>)> {
         input::check(points)?;
         let scaled = input::scaled(points.to_vec());
         let mut order = order(&scaled.points, threads);
@@ -52,7 +57,9 @@ impl Triangulation {
         // Vertex 0 is the one at infinity; its point is never used but may be read.
         let vertex_to_id: Vec<u32> = std::iter::once(0).chain(order.ids.iter().copied()).collect();
         let sorted: Vec<Point> = vertex_to_id.iter().map(|&id| scaled.points[id as usize]).collect();
-        let store = triangulate(&sorted, scaled.filtered, threads.watch())?;
+        // Vertices are numbered from 1.
+        let rounds: Vec<u32> = order.rounds.iter().map(|&place| place + 1).collect();
+        let store = triangulate(&sorted, &rounds, scaled.filtered, division, threads)?;
         let Finished { tets, neighbors, hull } = finish(store, &vertex_to_id, threads);
         let duplicates = order.duplicates.iter().map(|&(d, kept)| (VertexId(d), VertexId(kept))).collect();
         Ok((Self { points: points.to_vec(), tets, neighbors, hull, duplicates }, vertex_to_id))
@@ -93,5 +100,82 @@ impl Triangulation {
     /// Finds where `q` lies; the walk starts at `hint`, any tet.
     pub fn locate(&self, q: Point, hint: TetId) -> Located {
         self.locator().locate(q, hint)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::{Division, Triangulation};
+    use crate::base::{Point, TetId, Threads, VertexId, splitmix64};
+    use crate::spatial::OUTSIDE;
+
+    /// Parts of so few points that small sets are divided many times.
+    const SMALL: Division = Division { least_of_two: 40, least_of_many: 150 };
+
+    fn random(n: u64, seed: u64) -> Vec<Point> {
+        let coordinate = |i: u64| (splitmix64(seed ^ i << 20) >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+        (0..n).map(|i| [3 * i, 3 * i + 1, 3 * i + 2].map(coordinate)).collect()
+    }
+
+    fn on_sphere(n: u64) -> Vec<Point> {
+        let unit = |p: Point| p.map(|x| x / p.iter().map(|x| x * x).sum::<f64>().sqrt());
+        random(n, 5).into_iter().map(unit).collect()
+    }
+
+    fn grid(n: usize) -> Vec<Point> {
+        (0..n * n * n).map(|i| [i % n, i / n % n, i / n / n].map(|x| x as f64)).collect()
+    }
+
+    /// Two clusters far apart, two skew lines, and a point far away from all.
+    fn uneven() -> Vec<Point> {
+        let mut points = random(1500, 7);
+        points.extend(random(1500, 8).into_iter().map(|p| p.map(|x| 1e3 + 1e-6 * x)));
+        points.extend((0..300).map(|i| [f64::from(i), 0.0, 50.0]));
+        points.extend((0..300).map(|i| [0.0, f64::from(i), 60.0]));
+        points.push([1e9; 3]);
+        points
+    }
+
+    fn set_of(triangulation: &Triangulation) -> BTreeSet<[VertexId; 4]> {
+        let ascending = |mut tet: [VertexId; 4]| {
+            tet.sort_unstable();
+            tet
+        };
+        triangulation.tets.iter().copied().map(ascending).collect()
+    }
+
+    fn check_neighbors(triangulation: &Triangulation) {
+        for (tet, beyond) in triangulation.neighbors.iter().enumerate() {
+            for (facet, &other) in beyond.iter().enumerate().filter(|(_, other)| **other != OUTSIDE) {
+                let back = triangulation.neighbors[other.index()];
+                assert!(back.contains(&TetId::new(tet)));
+                let shared = (0..4).filter(|&i| i != facet).map(|i| triangulation.tets[tet][i]);
+                assert!(shared.into_iter().all(|v| triangulation.tets[other.index()].contains(&v)));
+            }
+        }
+    }
+
+    #[test]
+    fn parts_and_threads_change_nothing() {
+        let sets = [random(6000, 1), on_sphere(5000), grid(17), uneven()];
+        for points in sets {
+            let whole = Triangulation::ordered(&points, &Threads::single()).unwrap().0;
+            let divided = |n: usize| {
+                let threads = Threads::exactly(n).unwrap();
+                Triangulation::divided(&points, SMALL, &threads).unwrap().0
+            };
+            let first = divided(1);
+            assert_eq!(set_of(&first), set_of(&whole));
+            assert_eq!(first.hull.len(), whole.hull.len());
+            check_neighbors(&first);
+            for n in [2, 3, 7] {
+                let other = divided(n);
+                assert_eq!(first.tets, other.tets);
+                assert_eq!(first.neighbors, other.neighbors);
+                assert_eq!(first.hull, other.hull);
+            }
+        }
     }
 }

@@ -5,52 +5,51 @@
 //! (Edelsbrunner 1989). It stops at the first tet in conflict, usually one before the tet that contains the
 //! point.
 
-use super::conflict::{Newcomer, in_conflict};
-use super::store::{FACETS, Store, is_ghost};
+use super::conflict::{FROZEN, Newcomer, in_conflict};
+use super::parts::Part;
+use super::store::{FACETS, Tets, is_ghost};
 use crate::base::Point;
 use crate::geometry::fused::{cross, dot};
 use crate::geometry::predicates::orient;
 use crate::geometry::vector::sub;
 use pulp::Simd;
 
-/// Finds a tet in conflict; `None` when there is none because the newcomer is a vertex already.
+/// Finds a tet in conflict; `None` where that tet, or one on the way to it, may not be touched, or where there is
+/// none because the newcomer is a vertex already.
 #[inline(always)]
 pub(super) fn walk<S: Simd>(
     simd: S,
-    store: &Store,
+    tets: Tets,
     points: &[Point],
     start: u32,
     new: Newcomer,
+    part: Part,
     sure: f64,
 ) -> Option<u32> {
     let mut tet = start;
     let mut from = u32::MAX;
     loop {
-        if in_conflict(simd, store, points, tet, new) {
-            return Some(tet);
+        let is_frozen = tets.gauges.mark(tet) == FROZEN;
+        if in_conflict(simd, tets, points, tet, new) {
+            return (!is_frozen).then_some(tet);
         }
-        let link = exit::<S>(store, points, tet, from, new.point, sure)?;
-        from = link;
-        tet = link >> 2;
+        let facet = exit::<S>(tets, points, tet, from, new.point, sure)?;
+        if is_frozen && part.is_beyond(tets.vertices.get(tet), facet) {
+            return None;
+        }
+        from = tets.links.get(tet)[facet % 4];
+        tet = from >> 2;
     }
 }
 
-/// The link across a facet that has `q` strictly on its other side; `entered` is the link by which the walk
-/// entered the tet. `sure` bounds the error of any determinant within the box of all points (static filter);
+/// A facet that has `q` strictly on its other side; `entered` is the link by which the walk entered the tet. `sure` bounds the error of any determinant within the box of all points (static filter);
 /// closer cases are decided by the exact sign.
 #[inline(always)]
-fn exit<S: Simd>(
-    store: &Store,
-    points: &[Point],
-    tet: u32,
-    entered: u32,
-    q: Point,
-    sure: f64,
-) -> Option<u32> {
-    let (vertices, links) = (store.vertices[tet as usize], store.links[tet as usize]);
+fn exit<S: Simd>(tets: Tets, points: &[Point], tet: u32, entered: u32, q: Point, sure: f64) -> Option<usize> {
+    let vertices = tets.vertices.get(tet);
     if is_ghost(vertices) {
         // Only a walk that starts at a ghost meets one without a conflict.
-        return Some(links[3]);
+        return Some(3);
     }
     let entered_facet = if entered >> 2 == tet { entered & 3 } else { 4 };
     let arm = |i: usize| sub(points[vertices[i] as usize], q);
@@ -65,12 +64,12 @@ fn exit<S: Simd>(
     }
     let others = 0b1111 & !(1 << entered_facet);
     if beyond & others != 0 {
-        return Some(links[(beyond & others).trailing_zeros() as usize % 4]);
+        return Some((beyond & others).trailing_zeros() as usize);
     }
     let doubtful = others & !decided;
     let exact = |i: u32| {
         let [a, b, c] = FACETS[i as usize].map(|j| points[vertices[j] as usize]);
         orient::orient3d(q, a, b, c) < 0
     };
-    (0..4).find(|&i| doubtful & 1 << i != 0 && exact(i)).map(|i| links[i as usize])
+    (0..4).find(|&i| doubtful & 1 << i != 0 && exact(i)).map(|i| i as usize)
 }
