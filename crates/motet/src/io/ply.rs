@@ -433,7 +433,7 @@ mod tests {
         assert_eq!(bytes.0.cell_field("odd_name").unwrap().values, vec![f64::INFINITY; n].into());
         mesh.points[0][1] = f64::NAN;
         let text = WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() };
-        assert!(FORMAT.to_files(&mesh, &text).is_err(), &Threads::single());
+        assert!(FORMAT.to_files(&mesh, &text, &Threads::single()).is_err());
     }
 
     #[test]

@@ -87,7 +87,7 @@ impl Writer<'_, '_> {
     }
 
     fn cells(&mut self, mesh: &Mesh) -> Result<()> {
-        let (offsets, ids) = lists(&mesh.cells)?;
+        let [offsets, ids] = lists(&mesh.cells)?;
         let long = |id| i64::from(id).to_be_bytes();
         if self.offsets {
             self.line(&format!("CELLS {} {}\nOFFSETS vtktypeint64", offsets.len(), ids.len()))?;
@@ -143,11 +143,11 @@ impl Writer<'_, '_> {
 
 /// Where the list of each cell starts and the last ends, and all lists: vertices, or the face stream of a
 /// polyhedron.
-fn lists(cells: &Cells) -> Result<(Cow<'_, [u32]>, Cow<'_, [u32]>)> {
+fn lists(cells: &Cells) -> Result<[Cow<'_, [u32]>; 2]> {
     let vertices = cells.connectivity();
     if cells.polyhedron_faces().is_empty() {
         let ids: &[u32] = bytemuck::cast_slice(vertices.items());
-        return Ok((Cow::Borrowed(vertices.offsets()), Cow::Borrowed(ids)));
+        return Ok([Cow::Borrowed(vertices.offsets()), Cow::Borrowed(ids)]);
     }
     let mut polyhedra = cells.polyhedron_faces().iter();
     let (mut offsets, mut ids) = (vec![0], Vec::new());
@@ -159,7 +159,7 @@ fn lists(cells: &Cells) -> Result<(Cow<'_, [u32]>, Cow<'_, [u32]>)> {
         let end = u32::try_from(ids.len());
         offsets.push(end.map_err(|_| Error::input("the polyhedra have more faces than can be written"))?);
     }
-    Ok((Cow::Owned(offsets), Cow::Owned(ids)))
+    Ok([Cow::Owned(offsets), Cow::Owned(ids)])
 }
 
 /// VTK's name of a type. meshio accepts `long` only in files before 5.0, and `vtktypeint64` only in later

@@ -272,15 +272,11 @@ impl Forest {
         }
         let edges = &self.edges_of[leaf.index()];
         let is_split = |edge: MaybeId<EdgeId>| edge.get().is_some_and(|edge| self.is_split[edge.index()]);
-        for (e, edge) in edges.iter().enumerate() {
-            if mask >> e & 1 == 1 {
-                if self
-                    .halves(*edge)
-                    .is_some_and(|halves| halves.map(MaybeId::from).into_iter().any(is_split))
-                {
-                    return true;
-                }
-            }
+        let half_is_split = |edge: EdgeId| {
+            self.halves(edge).is_some_and(|halves| halves.map(MaybeId::from).into_iter().any(is_split))
+        };
+        if (0..6).any(|e| mask >> e & 1 == 1 && half_is_split(edges[e])) {
+            return true;
         }
         // Only a divided tet has edges within a facet, which requires all three edges around to be split,
         // unless the inner edges are edges of roots.

@@ -286,8 +286,9 @@ fn of_roots(forest: &Forest, rows: &[Row], n_tets: &[u32]) -> Vec<u32> {
             of_roots[row.root as usize] += n;
             continue;
         }
-        for root in row.first.index()..row.first.index() + row.n as usize {
-            of_roots[root] = u32::from(forest.states[root].n_pieces.max(1));
+        let roots = row.first.index()..row.first.index() + row.n as usize;
+        for (n, state) in of_roots[roots.clone()].iter_mut().zip(&forest.states[roots]) {
+            *n = u32::from(state.n_pieces.max(1));
         }
     }
     of_roots
