@@ -129,15 +129,15 @@ impl<I: Id> Rows<I> {
 
     /// These rows and others, by rising ids; no id is in both.
     pub(crate) fn merged(self, others: Self) -> Self {
-        let mut merged = Self::new();
         let is_apart = |x: &Self, y: &Self| {
             x.ids.last().is_none_or(|last| y.ids.first().is_none_or(|first| last < first))
         };
-        if is_apart(&self, &others) {
-            merged = self;
-            merged.append(others);
-            return merged;
+        if is_apart(&self, &others) || is_apart(&others, &self) {
+            let (mut first, second) = if is_apart(&self, &others) { (self, others) } else { (others, self) };
+            first.append(second);
+            return first;
         }
+        let mut merged = Self::new();
         let (mut i, mut k) = (0, 0);
         while i < self.len() || k < others.len() {
             let is_first = k == others.len() || i < self.len() && self.ids[i] < others.ids[k];
