@@ -1,8 +1,8 @@
-//! Work grows with the mesh and no faster: the bytes allocated for each tet, counted over a whole call, are no
-//! more for a mesh of many tets than for one of few.
+//! Work grows with the mesh and no faster: the bytes allocated for each tet, counted over a whole call, are
+//! no more for a mesh of many tets than for one of few.
 //!
-//! A table as long as all vertices, made anew for each part of the work, is not seen on small meshes, and never
-//! ends on large ones.
+//! A table as long as all vertices, made anew for each part of the work, is not seen on small meshes, and
+//! never ends on large ones.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -77,9 +77,9 @@ fn filled(size: f64, improves: bool) -> usize {
 fn shaken(n: usize) -> Mesh {
     let mut mesh = box_grid([n; 3], [[0.0; 3], [1.0; 3]]);
     let is_inside = |p: &Point| p.iter().all(|&x| x > 1e-9 && x < 1.0 - 1e-9);
+    let noise = |i: usize| (((i + 1) as f64 * 12.9898).sin() * 43_758.545_3).fract();
     for (i, p) in mesh.points.iter_mut().enumerate().filter(|(_, p)| is_inside(p)) {
-        let wave = |k: usize| (0.7 * (i * (k + 3)) as f64).sin() * 0.32 / n as f64;
-        (0..3).for_each(|k| p[k] += wave(k));
+        (0..3).for_each(|k| p[k] += 0.3 / n as f64 * noise(3 * i + k));
     }
     mesh
 }
@@ -123,7 +123,7 @@ fn bytes_allocated_per_tet_do_not_grow() {
         ("delaunay", triangulated, [4000, 32_000]),
         ("mesh", |n| filled(1.0 / n as f64, false), [24, 48]),
         ("mesh, improved", |n| filled(1.0 / n as f64, true), [20, 40]),
-        ("remesh", remeshed, [8, 16]),
+        ("remesh", remeshed, [12, 24]),
         ("refine", refined, [10, 20]),
         ("move", moved, [12, 24]),
     ];

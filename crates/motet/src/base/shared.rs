@@ -33,8 +33,8 @@ mod across_threads {
         /// A view of `array`.
         ///
         /// # Safety
-        /// While threads use copies of the view at the same time, an element that one of them sets must not be
-        /// read or set by any other.
+        /// While threads use copies of the view at the same time, an element that one of them sets must not
+        /// be read or set by any other.
         pub(crate) unsafe fn new(array: &'a mut [T]) -> Self {
             Self(Cell::from_mut(array).as_slice_of_cells())
         }

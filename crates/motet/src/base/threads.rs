@@ -33,8 +33,8 @@ impl Threads {
         Self::exactly(if n == 0 { cores } else { n.min(cores) })
     }
 
-    /// A pool of exactly `n` threads, even if the machine has fewer cores: for tests that results do not depend
-    /// on the number.
+    /// A pool of exactly `n` threads, even if the machine has fewer cores: for tests that results do not
+    /// depend on the number.
     ///
     /// # Errors
     /// When the operating system cannot start them.

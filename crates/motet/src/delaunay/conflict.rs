@@ -19,8 +19,8 @@ pub(super) const IN: u32 = 2;
 pub(super) struct Newcomer {
     pub(super) vertex: u32,
     pub(super) point: Point,
-    /// The number of this attempt to insert a point; each has a larger one than those before that met the same
-    /// tets. Points are inserted at most once, and fail at most as often: so marks fit into 32 bits.
+    /// The number of this attempt to insert a point; each has a larger one than those before that met the
+    /// same tets. Points are inserted at most once, and fail at most as often: so marks fit into 32 bits.
     pub(super) attempt: u32,
 }
 

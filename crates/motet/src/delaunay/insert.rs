@@ -2,9 +2,10 @@
 //!
 //! Several threads insert points of different parts of space at the same time (as in Marot, Pellerin and
 //! Remacle 2019, *One machine, one minute, three billion tetrahedra*). A tet whose vertices all belong to one
-//! part may be changed by the thread of that part alone; tets between parts are frozen. A tet of one part never
-//! has a neighbour that belongs to another, so a thread that stops at frozen tets meets nothing that others
-//! change. Points whose cavity reaches a frozen tet are left for later, when space is divided elsewhere.
+//! part may be changed by the thread of that part alone; tets between parts are frozen. A tet of one part
+//! never has a neighbour that belongs to another, so a thread that stops at frozen tets meets nothing that
+//! others change. Points whose cavity reaches a frozen tet are left for later, when space is divided
+//! elsewhere.
 //!
 //! The whole loop is compiled twice, for any machine and for one with AVX2 and FMA, and dispatched once per
 //! thousands of points: everything it calls is inlined or dispatched with it. The signs are exact either way,
@@ -28,8 +29,8 @@ use pulp::{Arch, Simd, WithSimd};
 /// The watch is consulted each time this many points have been inserted.
 const RUN: usize = 8192;
 
-/// Into how many parts space is divided. It decides which slots tets get, and so their order: for the same result
-/// on any number of threads it depends on the number of points alone.
+/// Into how many parts space is divided. It decides which slots tets get, and so their order: for the same
+/// result on any number of threads it depends on the number of points alone.
 #[derive(Clone, Copy)]
 pub(super) struct Division {
     /// The least number of points of one of two parts, and of one of more. Of the points of a part, some
@@ -164,8 +165,8 @@ impl Builder<'_> {
         Ok(left)
     }
 
-    /// Inserts vertices in parts of space, at the same time; returns those left. Each part has slots of its own, so
-    /// that the result does not depend on threads.
+    /// Inserts vertices in parts of space, at the same time; returns those left. Each part has slots of its
+    /// own, so that the result does not depend on threads.
     #[allow(unsafe_code, reason = "see `Shared`")]
     fn insert_in_parts(&mut self, vertices: &[u32], n_parts: usize) -> Result<Vec<u32>> {
         let (points, threads) = (self.points, self.threads);
@@ -176,9 +177,9 @@ impl Builder<'_> {
         let n_used = self.store.n_used();
         let mut slots = std::mem::take(&mut self.store.slots);
         let part_slots = slots.split_off(SLOTS_PER_POINT * vertices.len(), n_parts);
-        // SAFETY: freezing changes each tet in the run of slots that has it, and reads no other; afterwards the
-        // tets of a part, all of whose neighbours belong to the same part or are frozen, are changed by its
-        // thread alone; and nothing changes or marks a frozen tet.
+        // SAFETY: freezing changes each tet in the run of slots that has it, and reads no other; afterwards
+        // the tets of a part, all of whose neighbours belong to the same part or are frozen, are changed by
+        // its thread alone; and nothing changes or marks a frozen tet.
         let tets = unsafe { self.store.tets() };
         let frozen = Frozen::new(tets, n_used, &parts, threads);
         let all = part_slots.into_iter().zip(&mut self.scratches).zip(&frozen.hints).enumerate();

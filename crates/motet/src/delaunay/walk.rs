@@ -14,8 +14,8 @@ use crate::geometry::predicates::orient;
 use crate::geometry::vector::sub;
 use pulp::Simd;
 
-/// Finds a tet in conflict; `None` where that tet, or one on the way to it, may not be touched, or where there is
-/// none because the newcomer is a vertex already.
+/// Finds a tet in conflict; `None` where that tet, or one on the way to it, may not be touched, or where
+/// there is none because the newcomer is a vertex already.
 #[inline(always)]
 pub(super) fn walk<S: Simd>(
     simd: S,
@@ -42,8 +42,9 @@ pub(super) fn walk<S: Simd>(
     }
 }
 
-/// A facet that has `q` strictly on its other side; `entered` is the link by which the walk entered the tet. `sure` bounds the error of any determinant within the box of all points (static filter);
-/// closer cases are decided by the exact sign.
+/// A facet that has `q` strictly on its other side; `entered` is the link by which the walk entered the tet.
+/// `sure` bounds the error of any determinant within the box of all points (static filter); closer cases are
+/// decided by the exact sign.
 #[inline(always)]
 fn exit<S: Simd>(tets: Tets, points: &[Point], tet: u32, entered: u32, q: Point, sure: f64) -> Option<usize> {
     let vertices = tets.vertices.get(tet);

@@ -147,7 +147,8 @@ pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     read_on(path, &Threads::single())
 }
 
-/// Reads like [`read_noted`], on several threads where the format allows it. The mesh does not depend on them.
+/// Reads like [`read_noted`], on several threads where the format allows it. The mesh does not depend on
+/// them.
 ///
 /// # Errors
 /// The errors of [`read`].
