@@ -14,11 +14,12 @@ import bench_motion
 import bench_quality
 import bench_refine
 import bench_remesh
+import bench_threads
 from common import DISTURBED, ROOT, TARGET, Record, machine
 
 BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files, "remesh": bench_remesh,
            "contact": bench_contact, "refine": bench_refine, "mesh": bench_mesh, "implant": bench_implant, "quality": bench_quality,
-           "drift": bench_drift}
+           "drift": bench_drift, "threads": bench_threads}
 
 
 def parsed_options():
