@@ -41,12 +41,16 @@ pub(super) struct Division {
 }
 
 impl Division {
+    /// The logarithm of the largest number of parts: each has a table as long as all vertices, of which it
+    /// touches the places of its own.
+    const MOST: u32 = 6;
+
     pub(super) const USUAL: Self = Self { least_of_two: 50_000, least_of_many: 300_000 };
 
     /// The number of parts for the insertion of `n` points.
     fn n_parts(self, n: usize) -> usize {
         let n_pairs = u32::from(n >= 2 * self.least_of_two);
-        1 << (n / self.least_of_many).checked_ilog2().unwrap_or(0).max(n_pairs)
+        1 << (n / self.least_of_many).checked_ilog2().unwrap_or(0).clamp(n_pairs, Self::MOST)
     }
 }
 

@@ -175,10 +175,10 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
     write_on(path, mesh, options, &Threads::single())
 }
 
-/// Writes like [`write`], on several threads where the format allows it. The bytes do not depend on them.
+/// Writes like [`write()`], on several threads where the format allows it. The bytes do not depend on them.
 ///
 /// # Errors
-/// The errors of [`write`].
+/// The errors of [`write()`].
 pub fn write_on(
     path: impl AsRef<Path>,
     mesh: &Mesh,

@@ -121,7 +121,8 @@ fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
 /// Returns what the format could not hold.
 ///
 /// # Errors
-/// The errors of reading the frames and of [`write()`]; if the extension is not that of a series.
+/// The errors of reading the frames and of [`write_on`](super::write_on); if the extension is not that of a
+/// series.
 pub fn write_series(
     path: impl AsRef<Path>,
     frames: impl IntoIterator<Item = Result<(f64, Mesh)>>,
@@ -213,7 +214,7 @@ impl SeriesWriter {
     /// Returns the file of the frame, and what the format could not hold.
     ///
     /// # Errors
-    /// The errors of [`write()`]; if another writer is writing this series.
+    /// The errors of [`write_on`](super::write_on); if another writer is writing this series.
     pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<(PathBuf, Vec<String>)> {
         self.add_on(time, mesh, &Threads::single())
     }
