@@ -2,6 +2,8 @@
 import inspect
 import math
 import re
+import tempfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +18,12 @@ LENGTH = (NAN, INF, -1.0, HUGE)
 REACH = (NAN, -1.0)
 PART = (NAN, INF, -1.0, HUGE)
 COUNT = (NAN, INF, -1, -1.0)
+
+
+def saved():
+    path = Path(tempfile.mkdtemp()) / "box.vtu"
+    shapes.box((1, 1, 1)).save(path)
+    return path
 
 
 def near():
@@ -139,6 +147,9 @@ OPTIONS = {
     "Contact.look_ahead.velocity": (lambda x: motet.Contact(balls()).look_ahead(np.full_like(motet.Contact(balls()).points, x)), (NAN, INF)),
     "Contact.look_ahead.horizon": (lambda x: motet.Contact(balls()).look_ahead(np.ones_like(motet.Contact(balls()).points), horizon=x), REACH),
     "Contact.look_ahead_to.dt": (lambda x: motet.Contact(balls()).look_ahead_to(motet.Contact(balls()).points, x), (NAN, INF, -1.0)),
+    "read.threads": (lambda x: motet.read(saved(), threads=x), COUNT),
+    "Mesh.save.threads": (lambda x: shapes.box((1, 1, 1)).save(saved(), threads=x), COUNT),
+    "SeriesWriter.add.threads": (lambda x: motet.SeriesWriter(saved().with_suffix(".pvd")).add(0.0, shapes.box((1, 1, 1)), threads=x), COUNT),
     "Refinement.threads": (lambda x: motet.Refinement(shapes.box(), threads=x), COUNT),
     "Refinement.refine.cells": (lambda x: motet.Refinement(shapes.box()).refine([x]), (NAN, -1)),
     "mesh_velocity.dt": (lambda x: motet.mesh_velocity(shapes.box().points, shapes.box().points, x), (NAN, INF, -1.0, 0.0)),
