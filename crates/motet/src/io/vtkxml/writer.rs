@@ -13,9 +13,8 @@ use crate::io::scalar::{native_bytes, write_lines, write_text};
 use crate::io::vtkxml::codec::{Compressor, vtk_name};
 use crate::mesh::{Field, Values};
 
-/// Size of blocks before compression, each by one thread. Each begins without the memory of the one before:
-/// with blocks of 32 KiB, as VTK writes them, files are 3 % larger.
-const BLOCK: usize = 256 << 10;
+/// Bytes that are compressed together, as many as in the files that VTK writes.
+const BLOCK: usize = 32 << 10;
 /// Bytes that a thread encodes at a time, whole groups of three.
 const BASE64_PART: usize = 3 << 16;
 /// Placeholder for an offset, which is only known when the array is written.
