@@ -16,10 +16,7 @@ impl<T> Clone for Shared<'_, T> {
 
 impl<T> Copy for Shared<'_, T> {}
 
-#[allow(
-    unsafe_code,
-    reason = "twice as fast on two threads: the bulk construction of Delaunay triangulations"
-)]
+#[allow(unsafe_code, reason = "no slices express which tets a thread may change: see DESIGN, delaunay")]
 mod across_threads {
     use super::{Cell, Shared};
 

@@ -33,24 +33,24 @@ const RUN: usize = 8192;
 /// result on any number of threads it depends on the number of points alone.
 #[derive(Clone, Copy)]
 pub(super) struct Division {
-    /// The least number of points of one of two parts, and of one of more. Of the points of a part, some
-    /// `5.6 f / n^(1/3)` are left, where there are `n`, and `f` of its faces are next to other parts; each of
-    /// them takes half as long again.
+    /// The least number of points of one of two parts. The smaller parts are, the more of their points lie near
+    /// others, and are left.
     pub(super) least_of_two: usize,
+    /// The least number of points of one of more than two parts.
     pub(super) least_of_many: usize,
 }
 
 impl Division {
-    /// The logarithm of the largest number of parts: each has a table as long as all vertices, of which it
-    /// touches the places of its own.
+    /// The binary logarithm of the largest number of parts: each has a table as long as all vertices, of which
+    /// it touches the places of its own.
     const MOST: u32 = 6;
 
     pub(super) const USUAL: Self = Self { least_of_two: 50_000, least_of_many: 300_000 };
 
     /// The number of parts for the insertion of `n` points.
     fn n_parts(self, n: usize) -> usize {
-        let n_pairs = u32::from(n >= 2 * self.least_of_two);
-        1 << (n / self.least_of_many).checked_ilog2().unwrap_or(0).clamp(n_pairs, Self::MOST)
+        let least = u32::from(n >= 2 * self.least_of_two);
+        1 << (n / self.least_of_many).checked_ilog2().unwrap_or(0).clamp(least, Self::MOST)
     }
 }
 
@@ -117,7 +117,7 @@ struct Builder<'a> {
     sure: f64,
     least: f32,
     store: Store,
-    /// One for each thread that has inserted points.
+    /// One for each part.
     scratches: Vec<Scratch>,
     n_attempts: u32,
     /// The tet where the next walk starts.
@@ -139,13 +139,13 @@ impl Builder<'_> {
             todo = self.insert_in_parts(&todo, n_parts)?;
             self.division = Some(division).filter(|_| todo.len() < n / 2);
         }
-        while !todo.is_empty() {
+        loop {
             todo = self.insert_one_by_one(&todo)?;
-            if !todo.is_empty() {
-                self.store.reserve(self.store.slots.len() + 1)?;
+            if todo.is_empty() {
+                return Ok(());
             }
+            self.store.reserve(self.store.slots.len() + 1)?;
         }
-        Ok(())
     }
 
     /// Inserts vertices on the calling thread; returns those for which there are too few slots.
@@ -223,7 +223,7 @@ impl Builder<'_> {
     }
 }
 
-/// Buffers of a thread, reused from one insertion to the next.
+/// Buffers of a part, reused from one insertion to the next.
 struct Scratch {
     cavity: Cavity,
     fill: Fill,
@@ -302,6 +302,7 @@ impl WithSimd for Run<'_, '_> {
                 let Some(made) = fill.fill(simd, tets, slots, points, cavity, new) else { break };
                 hint = made;
             } else {
+                assert!(!part.is_all(), "the points are distinct, so each is in conflict with a tet");
                 self.left.push(vertex);
             }
             n += 1;

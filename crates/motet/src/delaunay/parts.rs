@@ -30,6 +30,11 @@ impl Part<'static> {
 }
 
 impl Part<'_> {
+    /// Whether this is all of space, where no tet is frozen.
+    pub(super) fn is_all(self) -> bool {
+        self.of_vertex.is_empty()
+    }
+
     /// Whether what lies behind a facet of a frozen tet belongs to another part, or may do so.
     #[cold]
     pub(super) fn is_beyond(self, vertices: [u32; 4], facet: usize) -> bool {
@@ -53,11 +58,10 @@ struct Split {
 }
 
 impl Parts {
-    /// Divides space into `n_parts` parts, for the insertion of `vertices`.
+    /// Divides space into `n_parts` parts, fewer than 2^16, for the insertion of `vertices`.
     pub(super) fn new(points: &[Point], vertices: &[u32], n_parts: usize, threads: &Threads) -> Self {
         let step = (vertices.len() / (SAMPLE * n_parts)).max(1);
         let mut sample: Vec<Point> = vertices.iter().step_by(step).map(|&v| points[v as usize]).collect();
-        let n_parts = n_parts.min(usize::from(u16::MAX));
         let mut splits = Vec::new();
         let root = divide(&mut sample, 0, n_parts, &mut splits);
         let of_vertex = threads.map(points.len(), |v| part(&splits, root, points[v]));
