@@ -33,16 +33,16 @@ const RUN: usize = 8192;
 /// result on any number of threads it depends on the number of points alone.
 #[derive(Clone, Copy)]
 pub(super) struct Division {
-    /// The least number of points of one of two parts. The smaller parts are, the more of their points lie near
-    /// others, and are left.
+    /// The least number of points of one of two parts. The smaller parts are, the more of their points lie
+    /// near others, and are left.
     pub(super) least_of_two: usize,
     /// The least number of points of one of more than two parts.
     pub(super) least_of_many: usize,
 }
 
 impl Division {
-    /// The binary logarithm of the largest number of parts: each has a table as long as all vertices, of which
-    /// it touches the places of its own.
+    /// The binary logarithm of the largest number of parts: each has a table as long as all vertices, of
+    /// which it touches the places of its own.
     const MOST: u32 = 6;
 
     pub(super) const USUAL: Self = Self { least_of_two: 50_000, least_of_many: 300_000 };
