@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Numbers, random_mesh};
-use motet::base::{Point, TetId, VertexId};
+use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::quality::{dihedral, eas};
 use motet::geometry::triangle::angle_at;
 use motet::kernel::{Change, Complex, FLATTEST, Hold, Reject, Side, Star, VertexChange, best_at, is_reached};
@@ -47,7 +47,7 @@ fn the_worst_tet_and_those_below_a_bar_are_those_that_all_tets_say() {
             assert_eq!(complex.worst(), first);
             for bar in [lowest, lowest.next_up(), 0.1, 0.3, 0.9] {
                 let below: Vec<TetId> = measured.iter().filter(|(_, q)| *q < bar).map(|(t, _)| *t).collect();
-                assert_eq!(complex.below(bar), below);
+                assert_eq!(complex.below(bar, &Threads::single()), below);
             }
         }
     }
@@ -202,7 +202,7 @@ fn tets_that_walls_force_count_as_good_until_all_are_judged_again() {
 
     complex.exempt(&[only], 0.2);
     assert_eq!(
-        (complex.quality(only), complex.n_exempt(), complex.below(0.2)),
+        (complex.quality(only), complex.n_exempt(), complex.below(0.2, &Threads::single())),
         (f64::INFINITY, 1, Vec::new())
     );
     complex.verify().unwrap();

@@ -4,6 +4,7 @@ mod csr;
 mod error;
 pub(crate) mod four;
 mod ids;
+mod kept;
 mod lanewise;
 #[cfg(feature = "suite")]
 mod names;
@@ -22,6 +23,7 @@ pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result, printable};
 pub use ids::{BodyId, CellId, Id, MaybeId, TetId, TriangleId, VertexId, rising_list};
 pub(crate) use ids::{EdgeId, ForestVertexId, LineId, NodeId, absent, id, same_orientation, sorted_ids};
+pub(crate) use kept::Kept;
 pub(crate) use lanewise::lanewise;
 #[cfg(feature = "suite")]
 #[doc(hidden)]

@@ -52,7 +52,7 @@ pub enum VertexChange {
 }
 
 /// A proposed change. Its lists can be reused for the next one: [`Self::clear`].
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Change {
     /// The tets to remove.
     pub cavity: Vec<TetId>,
@@ -75,6 +75,14 @@ impl Change {
         self.walls.clear();
         self.lines.clear();
         self.vertex = VertexChange::None;
+    }
+
+    /// Gives a vertex another id in all that the change inserts.
+    pub fn renumber(&mut self, before: VertexId, after: VertexId) {
+        let tets = self.fill.iter_mut().flat_map(|tet| &mut tet.vertices);
+        let walls = self.walls.iter_mut().flat_map(|wall| &mut wall.vertices);
+        let lines = self.lines.iter_mut().flat_map(|line| &mut line.vertices);
+        tets.chain(walls).chain(lines).filter(|v| **v == before).for_each(|v| *v = after);
     }
 
     /// The lowest quality of the fill.

@@ -1,7 +1,7 @@
 //! A tet mesh that can be changed: what lies behind each facet, where vertices are and what they may do, and
 //! what has changed since the first mesh.
 
-use crate::base::{Point, TetId, VertexId};
+use crate::base::{Point, TetId, Threads, VertexId};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas};
 use crate::kernel::hold::Hold;
 use crate::kernel::journal::Journal;
@@ -14,6 +14,9 @@ use crate::kernel::qualities::Qualities;
 use crate::kernel::tets::{NO_TET, Tets};
 use crate::kernel::vertices::Vertices;
 use crate::kernel::walls::Walls;
+
+/// The number of tets that a thread sweeps at a time.
+const SWEEP: usize = 1 << 14;
 
 /// Tets with neighbours, walls and labels, and a record of which of them are unchanged.
 ///
@@ -129,11 +132,13 @@ impl Complex {
 
     /// The tets with quality below `bar`, in rising order of id. For tets of the first mesh, the exact
     /// quality is computed only if the approximate one leaves a doubt.
-    pub fn below(&self, bar: f64) -> Vec<TetId> {
+    pub fn below(&self, bar: f64, threads: &Threads) -> Vec<TetId> {
         let limit = bar + ROUGH_EAS_ERROR;
         let is_doubtful = |&t: &TetId| !self.is_original(t) || self.qualities.rough(t) <= limit;
-        let all = (0..self.tets.n_slots()).map(TetId::new).filter(is_doubtful);
-        all.filter(|&t| self.is_alive(t) && self.quality(t) < bar).collect()
+        threads.in_runs(self.tets.n_slots(), SWEEP, |(): &mut (), range| {
+            let all = range.map(TetId::new).filter(is_doubtful);
+            all.filter(|&t| self.is_alive(t) && self.quality(t) < bar).collect()
+        })
     }
 
     /// The tet with the lowest quality, the first among equals; `None` if there are no tets.

@@ -3,9 +3,8 @@
 //! Threads that share a complex may measure the same tet at the same time; both then store the same bits.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-use crate::base::TetId;
+use crate::base::{Kept, TetId};
 
 /// The quality of a tet that has not been measured.
 const UNMEASURED: f64 = f64::NAN;
@@ -35,32 +34,6 @@ pub(super) struct QualityRecord {
     /// The quality, [`UNMEASURED`] if it has not been requested.
     known: f64,
     is_exempt: bool,
-}
-
-/// A number that threads may set while others read it.
-#[derive(Debug)]
-struct Kept(AtomicU64);
-
-impl Kept {
-    fn new(value: f64) -> Self {
-        Self(AtomicU64::new(value.to_bits()))
-    }
-
-    #[inline]
-    fn get(&self) -> f64 {
-        f64::from_bits(self.0.load(Relaxed))
-    }
-
-    #[inline]
-    fn set(&self, value: f64) {
-        self.0.store(value.to_bits(), Relaxed);
-    }
-}
-
-impl Clone for Kept {
-    fn clone(&self) -> Self {
-        Self::new(self.get())
-    }
 }
 
 impl Qualities {

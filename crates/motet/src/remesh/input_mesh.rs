@@ -1,9 +1,8 @@
 //! The mesh as it was given: finds the tet that contains a point, and interpolates values at its vertices.
 
-use std::cell::Cell;
 use std::sync::Arc;
 
-use crate::base::{Point, TetId, VertexId};
+use crate::base::{Kept, Point, TetId, Threads, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{add, dot, scale, sub};
 use crate::geometry::weights;
@@ -61,7 +60,7 @@ pub(super) struct Pose {
     /// Position in this pose of each vertex of the mesh as it is now.
     points: Vec<Point>,
     /// EAS of each tet; NaN until it is first requested.
-    qualities: Vec<Cell<f64>>,
+    qualities: Vec<Kept>,
 }
 
 impl Pose {
@@ -71,11 +70,10 @@ impl Pose {
     }
 
     /// Updates the pose after any number of changes.
-    pub(super) fn update(&mut self, complex: &Complex) {
-        let places = (0..complex.n_vertex_slots()).map(|v| self.place(complex, VertexId::new(v)));
-        self.points = places.collect();
+    pub(super) fn update(&mut self, complex: &Complex, threads: &Threads) {
+        self.points = threads.map(complex.n_vertex_slots(), |v| self.place(complex, VertexId::new(v)));
         self.qualities.clear();
-        self.qualities.resize(complex.n_slots(), Cell::new(f64::NAN));
+        self.qualities.resize(complex.n_slots(), Kept::new(f64::NAN));
     }
 
     /// Updates the pose after one change that inserted these tets.
@@ -83,7 +81,7 @@ impl Pose {
         if let VertexChange::Move(vertex, _) = vertex {
             self.points[vertex.index()] = self.place(complex, vertex);
         }
-        self.qualities.resize(complex.n_slots(), Cell::new(f64::NAN));
+        self.qualities.resize(complex.n_slots(), Kept::new(f64::NAN));
         inserted.iter().for_each(|tet| self.qualities[tet.index()].set(f64::NAN));
     }
 

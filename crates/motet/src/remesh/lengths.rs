@@ -34,6 +34,7 @@ pub struct Lengths {
 
 impl Lengths {
     pub(super) fn of(complex: &Complex, field: &mut SizeField) -> Self {
+        field.learn_all(complex, complex.tets());
         let mut edges = edges_of(complex, complex.tets());
         let locked = locked_edges(complex);
         let mut lengths = Self { edges: edges.len(), min: f64::INFINITY, ..Self::default() };

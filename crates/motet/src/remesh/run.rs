@@ -12,7 +12,7 @@ use crate::remesh::input_mesh::{InputMesh, Pose};
 use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
 use crate::remesh::options::{Goal, Improve, Options, SurfaceRule};
-use crate::remesh::repair::{Aim, Density, Repair, Sizing, is_among, passes};
+use crate::remesh::repair::{Aim, Density, Repair, Sizing, is_among, treatments};
 use crate::remesh::report::{Operation, Report, SizesReport, State};
 use crate::remesh::sizes::{LONG, SizeField};
 use crate::remesh::surface::{Crease, Surface};
@@ -57,7 +57,7 @@ pub(super) fn remesh_keeping(
     hold(&mut complex, mesh, &options.held, required, options.surface != SurfaceRule::Keep);
     report.seconds.join = clock.lap();
 
-    let Judged { bad, layers, others } = judge(&mut complex, mesh, options, &mut report);
+    let Judged { bad, layers, others } = judge(&mut complex, mesh, options, &mut report, threads);
     let n_peeled = complex.peel();
     let bad: Vec<TetId> = bad.into_iter().filter(|&t| complex.is_alive(t)).collect();
     let surface = adaptable(&mut complex, mesh, options);
@@ -70,7 +70,7 @@ pub(super) fn remesh_keeping(
         max_tets,
     });
     let lengths_before = sizing.as_mut().map(|sizing| Lengths::of(&complex, &mut sizing.field));
-    let mut repair = Repair::new(complex, surface, others, min_eas, threads.watch());
+    let mut repair = Repair::new(complex, surface, others, min_eas, threads);
     repair.operations.add_many(Operation::Peeling, n_peeled);
     let pose = options.improve.as_ref().and_then(|improve| improve.pose.clone());
     repair.pose = pose.map(|pose| Pose::new(input.clone(), pose));
@@ -118,9 +118,15 @@ struct Judged {
 }
 
 /// Finds the bad tets, locks those of boundary layers, and records the state before any change.
-fn judge(complex: &mut Complex, mesh: &TetMesh, options: &Options, report: &mut Report<TetId>) -> Judged {
+fn judge(
+    complex: &mut Complex,
+    mesh: &TetMesh,
+    options: &Options,
+    report: &mut Report<TetId>,
+    threads: &Threads,
+) -> Judged {
     let others = options.only.as_ref().map_or_else(Vec::new, |only| others(mesh.tets.len(), only));
-    let mut bad = complex.below(report.min_eas);
+    let mut bad = complex.below(report.min_eas, threads);
     bad.retain(|&t| !is_among(&others, t));
     let n_bad = bad.len();
     bad.retain(|&t| !complex.is_locked(t));
@@ -138,9 +144,10 @@ fn judge(complex: &mut Complex, mesh: &TetMesh, options: &Options, report: &mut 
 /// tets that are left.
 fn finish_repair(repair: &mut Repair, mut left: Vec<TetId>, options: &Options) -> Result<Vec<TetId>> {
     let min_eas = options.limit();
-    for pass in passes(options.surface) {
+    for &treatment in treatments(options.surface) {
         if !left.is_empty() && !repair.is_hopeless() {
-            left = repair.beside_forced(&left, |repair, left| repair.pass(*pass, left, options.rounds))?;
+            let treat = |repair: &mut Repair, left| repair.treat(treatment, left, options.rounds);
+            left = repair.beside_forced(&left, treat)?;
         }
     }
     // With sizes, they decide which vertices are too close.

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::base::{Error, Point, Result, TetId, VertexId};
 use crate::geometry::tet::{EDGES, volume};
 use crate::geometry::vector::{LARGEST, distance};
-use crate::kernel::{Change, Complex};
+use crate::kernel::{Change, Complex, VertexChange};
 use crate::mesh::TetMesh;
 use crate::remesh::input_mesh::InputMesh;
 
@@ -101,9 +101,8 @@ impl Sizes {
 #[derive(Debug)]
 pub(super) struct SizeField {
     source: Source,
-    /// Each known vertex's position when its size was evaluated, and the size: new and moved vertices are
-    /// evaluated anew.
-    cached: Vec<(Point, f64)>,
+    /// The position of each vertex when its size was last evaluated, and that size.
+    known: Vec<(Point, f64)>,
     /// A collapse may not make an edge longer than this multiple of its size.
     collapse_limit: f64,
     /// Edges longer than this multiple of their size are too long now: [`LONG`] in the end, more while a
@@ -124,46 +123,56 @@ impl SizeField {
     /// A field of sizes that have been checked. Where nothing is split, `collapse_limit` keeps collapses from
     /// making edges that a later remeshing would split at once.
     pub(super) fn new(sizes: &Sizes, input: impl FnOnce() -> Arc<InputMesh>, collapse_limit: f64) -> Self {
-        let (source, cached) = match sizes {
+        let (source, known) = match sizes {
             Sizes::Uniform(h) => (Source::Uniform(*h), Vec::new()),
             Sizes::Vertices(sizes) => {
                 let input = input();
-                let cached = input.points().iter().copied().zip(sizes.iter().copied()).collect();
-                (Source::Vertices(input, sizes.clone()), cached)
+                let known = input.points().iter().copied().zip(sizes.iter().copied()).collect();
+                (Source::Vertices(input, sizes.clone()), known)
             }
         };
-        Self { source, cached, collapse_limit, long_limit: LONG, may_shorten: false }
+        Self { source, known, collapse_limit, long_limit: LONG, may_shorten: false }
     }
 
     /// The size at a vertex that is, or will be, at `point`: linear in the tet that contains it.
-    pub(super) fn at(&mut self, vertex: VertexId, point: Point) -> f64 {
+    pub(super) fn at(&self, vertex: VertexId, point: Point) -> f64 {
         let (input, sizes) = match &self.source {
             Source::Uniform(h) => return *h,
             Source::Vertices(input, sizes) => (input, sizes),
         };
-        if self.cached.len() <= vertex.index() {
-            self.cached.resize(vertex.index() + 1, ([f64::NAN; 3], f64::NAN));
-        }
-        let cached = &mut self.cached[vertex.index()];
-        if cached.0 != point {
-            let of = |(tet, weights): ([VertexId; 4], [f64; 4])| -> f64 {
+        match self.known.get(vertex.index()) {
+            Some(&(place, size)) if place == point => size,
+            _ => input.at(point).map_or(f64::NAN, |(tet, weights)| {
                 tet.iter().zip(weights).map(|(v, weight)| sizes[v.index()] * weight).sum()
-            };
-            *cached = (point, input.at(point).map_or(f64::NAN, of));
+            }),
         }
-        cached.1
     }
 
-    /// The length of an edge divided by its size.
-    pub(super) fn ratio(&mut self, ends: [(VertexId, Point); 2]) -> f64 {
-        let [p, q] = ends.map(|(v, p)| self.at(v, p));
-        distance(ends[0].1, ends[1].1) / (0.5 * (p + q))
+    /// Evaluates the size at a vertex that was inserted or moved, so that later calls find it.
+    pub(super) fn learn(&mut self, vertex: VertexId, point: Point) {
+        if matches!(self.source, Source::Uniform(_)) {
+            return;
+        }
+        if self.known.len() <= vertex.index() {
+            self.known.resize(vertex.index() + 1, ([f64::NAN; 3], f64::NAN));
+        }
+        if self.known[vertex.index()].0 != point {
+            self.known[vertex.index()] = (point, self.at(vertex, point));
+        }
+    }
+
+    /// Evaluates the sizes at all vertices of some tets that were inserted or moved.
+    pub(super) fn learn_all(&mut self, complex: &Complex, tets: impl IntoIterator<Item = TetId>) {
+        if matches!(self.source, Source::Vertices(..)) {
+            let vertices = tets.into_iter().flat_map(|t| complex.vertices(t));
+            vertices.for_each(|v| self.learn(v, complex.point(v)));
+        }
     }
 
     /// The lengths of the six edges of a tet divided by their sizes. Used to sweep whole meshes, so the size
     /// at each corner is looked up once.
     #[inline]
-    pub(super) fn of_tet(&mut self, vertices: [VertexId; 4], corners: [Point; 4]) -> [f64; 6] {
+    pub(super) fn of_tet(&self, vertices: [VertexId; 4], corners: [Point; 4]) -> [f64; 6] {
         let (mut sizes, mut ratios) = ([0.0; 4], [0.0; 6]);
         for i in 0..4 {
             sizes[i] = self.at(vertices[i], corners[i]);
@@ -174,26 +183,38 @@ impl SizeField {
         ratios
     }
 
-    /// The length of an edge of a complex divided by its size.
-    pub(super) fn of_edge(&mut self, complex: &Complex, ends: [VertexId; 2]) -> f64 {
-        self.ratio(ends.map(|v| (v, complex.point(v))))
+    /// The length of an edge of a complex divided by its size, the mean of those at its ends.
+    pub(super) fn of_edge(&self, complex: &Complex, ends: [VertexId; 2]) -> f64 {
+        let [p, q] = ends.map(|v| complex.point(v));
+        distance(p, q) / (0.5 * (self.at(ends[0], p) + self.at(ends[1], q)))
     }
 
     /// Whether a change makes no new edge that is too long or too short, and none that already is more so.
-    pub(super) fn accepts(&mut self, complex: &Complex, change: &Change) -> bool {
+    pub(super) fn accepts(&self, complex: &Complex, change: &Change) -> bool {
         let low = if self.may_shorten { 0.0 } else { SHORT };
         self.keeps_within([low, self.long_limit], complex, change)
     }
 
     /// Whether a collapse makes no edge too long.
-    pub(super) fn lengthens_none(&mut self, complex: &Complex, change: &Change) -> bool {
+    pub(super) fn lengthens_none(&self, complex: &Complex, change: &Change) -> bool {
         self.keeps_within([0.0, self.collapse_limit], complex, change)
     }
 
-    fn keeps_within(&mut self, [low, high]: [f64; 2], complex: &Complex, change: &Change) -> bool {
+    fn keeps_within(&self, [low, high]: [f64; 2], complex: &Complex, change: &Change) -> bool {
+        let placed = match change.vertex {
+            VertexChange::Insert(point, _) => Some((complex.next_vertex(), point)),
+            VertexChange::Move(vertex, point) => Some((vertex, point)),
+            VertexChange::None | VertexChange::Remove(_) => None,
+        };
+        let placed = placed.map(|(vertex, point)| (vertex, point, self.at(vertex, point)));
+        let of = |v: VertexId| match placed {
+            Some((vertex, point, size)) if vertex == v => (point, size),
+            _ => (complex.point(v), self.at(v, complex.point(v))),
+        };
         for tet in &change.fill {
             for ends in EDGES.map(|e| e.map(|i| tet.vertices[i])) {
-                let after = self.ratio(ends.map(|v| (v, change.point(complex, v))));
+                let [(p, at_p), (q, at_q)] = ends.map(of);
+                let after = distance(p, q) / (0.5 * (at_p + at_q));
                 if (low..=high).contains(&after) {
                     continue;
                 }

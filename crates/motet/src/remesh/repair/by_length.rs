@@ -17,21 +17,21 @@ use crate::base::{TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::distance;
 use crate::kernel::Hold;
-use crate::remesh::repair::Repair;
+use crate::remesh::repair::search::Search;
 use crate::remesh::sizes::{LONG, SHORT};
 
-impl Repair {
+impl Search<'_> {
     /// If the surface is kept: collapses edges of a tet that are shorter than [`SHORT`] times the local
     /// average length, and splits those longer than [`LONG`] times it.
     pub(super) fn by_length(&mut self, tet: TetId) {
-        if self.surface.is_some() {
+        if self.repair.surface.is_some() {
             return;
         }
-        let vertices = self.complex.vertices(tet);
+        let vertices = self.complex().vertices(tet);
         let edges_at = vertices.map(|v| self.edges_at(v));
         for [i, j] in EDGES {
             let [a, b] = [vertices[i], vertices[j]];
-            let length = distance(self.complex.point(a), self.complex.point(b));
+            let length = distance(self.complex().point(a), self.complex().point(b));
             let [(n, sum), (m, other_sum)] = [edges_at[i], edges_at[j]];
             // The edge itself is counted at both ends.
             let average = (sum + other_sum - length) / (n + m - 1) as f64;
@@ -39,9 +39,9 @@ impl Repair {
                 self.collapse(tet, a, b);
                 self.collapse(tet, b, a);
             } else if length > LONG * average {
-                self.around(tet, [a, b], |repair, shell| {
+                self.around(tet, [a, b], |search, shell| {
                     if shell.is_free() {
-                        repair.split_at_middle(tet, shell, [a, b], Hold::Free);
+                        search.split_at_middle(tet, shell, [a, b], Hold::Free);
                     }
                 });
             }
@@ -50,12 +50,12 @@ impl Repair {
 
     /// The number of edges of a vertex, and their total length.
     fn edges_at(&mut self, vertex: VertexId) -> (usize, f64) {
-        self.star.gather(&self.complex, vertex);
+        self.gather(vertex);
         let mut others: Vec<VertexId> =
-            self.star.tets.iter().flat_map(|&t| self.complex.vertices(t)).filter(|&v| v != vertex).collect();
+            self.tools.star.tets.iter().flat_map(|&t| self.complex().vertices(t)).filter(|&v| v != vertex).collect();
         others.sort_unstable();
         others.dedup();
-        let length = |v: &VertexId| distance(self.complex.point(vertex), self.complex.point(*v));
+        let length = |v: &VertexId| distance(self.complex().point(vertex), self.complex().point(*v));
         (others.len(), others.iter().map(length).sum())
     }
 }

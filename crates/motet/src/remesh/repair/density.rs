@@ -14,7 +14,8 @@ use crate::kernel::Hold;
 use crate::ops::{collapse, defect};
 use crate::remesh::input_mesh::InputMesh;
 use crate::remesh::repair::Repair;
-use crate::remesh::repair::trial::{Merit, Rules, Trial};
+use crate::remesh::repair::search::{Search, Tools};
+use crate::remesh::repair::trial::{Merit, Rules};
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{SHORT, SizeField, Sizes};
 
@@ -60,7 +61,7 @@ struct Edge {
     tet: TetId,
 }
 
-impl Repair {
+impl Repair<'_> {
     /// Collapses and divides edges, near the tets of a zone if that is enough, until the number of vertices
     /// is as requested; adds the inserted tets to the zone. No tet falls below the EAS `floor`.
     pub(in crate::remesh) fn keep_density(
@@ -69,26 +70,28 @@ impl Repair {
         floor: f64,
         zone: &mut Vec<TetId>,
     ) -> Result<()> {
+        let mut tools = self.toolbox.take();
+        let field = &mut density.field;
         let mut lack = density.n_free as isize - self.complex.n_free_vertices() as isize;
         let is_far_off = lack.unsigned_abs() as f64 > FAR_OFF * density.n_free as f64;
         let edges = if is_far_off {
-            self.sorted_edges(self.complex.tets(), &mut density.field)
+            self.sorted_edges(self.complex.tets(), field)
         } else {
-            self.sorted_edges(zone.iter().copied().filter(|&t| self.complex.is_alive(t)), &mut density.field)
+            self.sorted_edges(zone.iter().copied().filter(|&t| self.complex.is_alive(t)), field)
         };
-        let mut trial = Trial::new();
         for (i, edge) in edges.iter().enumerate() {
             let shortest = if lack < -TOLERANCE { SHORT_IF_CROWDED } else { SHORT };
             if edge.ratio >= shortest {
                 break;
             }
-            self.watch.report_and_check("collapsing short edges", i, edges.len())?;
-            if self.collapse_crowded(edge, floor, &mut density.field, &mut trial) {
+            self.threads.watch().report_and_check("collapsing short edges", i, edges.len())?;
+            Search::new(self, &mut tools).collapse_crowded(edge, floor, field);
+            let trial = &mut tools.best;
+            if trial.commit(&mut self.complex, &mut self.operations, &mut self.changes) {
                 lack += 1;
                 zone.extend_from_slice(trial.inserted());
             }
         }
-        let mut trial = Trial::new();
         for (i, edge) in edges.iter().rev().enumerate() {
             let longest = match lack {
                 _ if lack > TOLERANCE => LONG_IF_LACKING,
@@ -98,12 +101,15 @@ impl Repair {
             if edge.ratio <= longest {
                 break;
             }
-            self.watch.report_and_check("splitting long edges", i, edges.len())?;
-            if self.insert_on(edge, floor, &mut trial) {
+            self.threads.watch().report_and_check("splitting long edges", i, edges.len())?;
+            Search::new(self, &mut tools).insert_on(edge, floor);
+            let trial = &mut tools.first;
+            if trial.commit(&mut self.complex, &mut self.operations, &mut self.changes) {
                 lack -= 1;
                 zone.extend_from_slice(trial.inserted());
             }
         }
+        self.toolbox.put_back(tools);
         Ok(())
     }
 
@@ -112,6 +118,7 @@ impl Repair {
         let mut edges = Vec::new();
         for tet in tets.filter(|&t| !self.complex.is_locked(t)) {
             let vertices = self.complex.vertices(tet);
+            field.learn_all(&self.complex, [tet]);
             for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
                 let ends = [a.min(b), a.max(b)];
                 edges.push(Edge { ratio: field.of_edge(&self.complex, ends), ends, tet });
@@ -127,27 +134,26 @@ impl Repair {
         self.complex.is_alive(tet) && ends.iter().all(|v| self.complex.vertices(tet).contains(v))
     }
 
-    /// Collapses an edge towards either end, whichever is better, if the removed vertex is free and no edge
-    /// becomes too long.
-    fn collapse_crowded(
-        &mut self,
-        edge: &Edge,
-        floor: f64,
-        field: &mut SizeField,
-        trial: &mut Trial,
-    ) -> bool {
-        if !self.has(edge) {
-            return false;
+}
+
+impl Search<'_> {
+    /// Searches for the better of the collapses of an edge towards its ends for which the removed vertex is
+    /// free and no edge becomes too long.
+    fn collapse_crowded(&mut self, edge: &Edge, floor: f64, field: &SizeField) {
+        let complex = self.complex();
+        if !self.repair.has(edge) {
+            return;
         }
         let [a, b] = edge.ends;
         for [removed, kept] in [[a, b], [b, a]] {
-            if self.complex.hold(removed) != Hold::Free {
+            if complex.hold(removed) != Hold::Free {
                 continue;
             }
-            self.star.gather(&self.complex, removed);
-            let bar = self.complex.worst_of(&self.star.tets).min(floor).next_down();
-            if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut trial.proposal) {
-                trial.offer(Rules::of(&self.complex).not_longer(field), |proposal, least| {
+            self.gather(removed);
+            let Tools { star, best, .. } = &mut *self.tools;
+            let bar = complex.worst_of(&star.tets).min(floor).next_down();
+            if collapse(complex, &star.tets, removed, kept, bar, &mut best.proposal) {
+                best.offer(Rules::of(complex).not_longer(field), |proposal, least| {
                     let sum: f64 = proposal.fill.iter().map(|tet| defect(tet.quality)).sum();
                     let score = sum / proposal.fill.len() as f64;
                     let is_better = least.is_none_or(|least| score < least);
@@ -155,30 +161,27 @@ impl Repair {
                 });
             }
         }
-        trial.commit(&mut self.complex, &mut self.operations, None)
     }
 
-    /// Inserts a vertex near the midpoint of an edge inside the volume.
-    fn insert_on(&mut self, edge: &Edge, floor: f64, trial: &mut Trial<()>) -> bool {
-        let [a, b] = edge.ends;
-        if !self.has(edge) || !self.complex.may_divide(a, b) {
-            return false;
+    /// Searches for an insertion near the midpoint of an edge inside the volume.
+    fn insert_on(&mut self, edge: &Edge, floor: f64) {
+        let ([a, b], complex) = (edge.ends, self.complex());
+        if !self.repair.has(edge) || !complex.may_divide(a, b) {
+            return;
         }
-        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        self.around(edge.tet, [a, b], |repair, shell| {
-            if !shell.is_free() {
-                return false;
-            }
-            let complex = &repair.complex;
+        let middle = scale(add(complex.point(a), complex.point(b)), 0.5);
+        self.around(edge.tet, [a, b], |search, shell| {
+            let Tools { insertion, first, .. } = &mut *search.tools;
             let bar_of = |tets: &[TetId]| complex.worst_of(tets).min(floor).next_down();
             let bars = [bar_of(&shell.tets), GOOD.max(floor)];
-            if repair.insertion.propose(complex, &shell.tets, middle, bars, &mut trial.proposal) {
-                trial.offer(Rules::at_commit(complex), |proposal, _| {
+            if shell.is_free()
+                && insertion.propose(complex, &shell.tets, middle, bars, &mut first.proposal)
+            {
+                first.offer(Rules::at_commit(complex), |proposal, _| {
                     let bar = bar_of(&proposal.cavity);
                     Some(Merit { operation: Operation::Insertion, score: (), bar })
                 });
             }
-            trial.commit(&mut repair.complex, &mut repair.operations, None)
-        })
+        });
     }
 }

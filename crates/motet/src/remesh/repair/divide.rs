@@ -6,7 +6,8 @@ use crate::geometry::vector::{add, distance, scale};
 use crate::kernel::Shell;
 use crate::ops::split_edge;
 use crate::remesh::repair::Repair;
-use crate::remesh::repair::trial::{Merit, Rules, Trial};
+use crate::remesh::repair::search::{Search, Tools};
+use crate::remesh::repair::trial::{Merit, Rules};
 use crate::remesh::report::Operation;
 
 /// How many rounds of splits in a row may end without progress.
@@ -17,7 +18,7 @@ const PROGRESS: f64 = 0.95;
 /// No more edges are split once the number of tets has grown by this factor.
 const MAX_GROWTH: usize = 3;
 
-impl Repair {
+impl Repair<'_> {
     /// Divides tets that nothing else repairs: splits the longest edge in the neighbourhood of each tet in
     /// `left`, again and again, with repairs in between, as long as that leaves fewer bad tets. Splits that
     /// do not lead to fewer are undone. Meant for flat tets between two sheets of the surface, and for tets
@@ -26,13 +27,13 @@ impl Repair {
         let n_bad = |repair: &Self, left: &[TetId]| left.len() + repair.complex.n_exempt();
         let mut n_least = n_bad(self, &left);
         let mut best = (left.clone(), self.complex.mark(), self.operations);
-        let (mut n_failed, mut trial) = (0, Trial::new());
+        let (mut n_failed, mut tools) = (0, self.toolbox.take());
         let max_tets = MAX_GROWTH * self.complex.n_tets();
         while !left.is_empty() && n_failed < MAX_FAILED_ROUNDS && self.complex.n_tets() < max_tets {
             let mut bad = Vec::new();
             for &tet in &left {
                 if self.is_bad(tet) {
-                    self.split_longest(tet, &mut trial);
+                    self.split_longest(tet, &mut tools);
                 }
                 bad.append(&mut self.inserted_bad);
             }
@@ -50,19 +51,34 @@ impl Repair {
         }
         self.complex.undo(best.1);
         self.operations = best.2;
+        self.toolbox.put_back(tools);
         Ok(best.0)
     }
 
-    /// Splits the edge at the end of the longest-edge path from a tet: one that is the longest edge of every
-    /// tet around it (Rivara 1984 and 1997, *New longest-edge algorithms for the refinement and/or
-    /// improvement of unstructured triangulations*).
-    fn split_longest(&mut self, mut tet: TetId, trial: &mut Trial<()>) {
+    /// Splits the edge at the end of the longest-edge path from a tet, if every tet stays positive and the
+    /// surface allows it, whatever the quality.
+    fn split_longest(&mut self, tet: TetId, tools: &mut Tools) {
+        Search::new(self, tools).split_longest(tet);
+        let trial = &mut tools.first;
+        if trial.commit(&mut self.complex, &mut self.operations, &mut self.changes) {
+            let (complex, target) = (&self.complex, self.target);
+            let inserted = trial.inserted().iter().copied();
+            self.inserted_bad.extend(inserted.filter(|&t| complex.quality(t) < target));
+        }
+    }
+}
+
+impl Search<'_> {
+    /// Searches for a split of the edge at the end of the longest-edge path from a tet: one that is the
+    /// longest edge of every tet around it (Rivara 1984 and 1997, *New longest-edge algorithms for the
+    /// refinement and/or improvement of unstructured triangulations*).
+    fn split_longest(&mut self, mut tet: TetId) {
         loop {
             let (edge, length) = self.longest_edge(tet);
-            let next = self.around(tet, edge, |repair, shell| {
-                let next = shell.tets.iter().copied().find(|&t| repair.longest_edge(t).1 > length);
+            let next = self.around(tet, edge, |search, shell| {
+                let next = shell.tets.iter().copied().find(|&t| search.longest_edge(t).1 > length);
                 if next.is_none() {
-                    repair.split_unjudged(shell, edge, trial);
+                    search.split_unjudged(shell, edge);
                 }
                 next
             });
@@ -74,10 +90,11 @@ impl Repair {
     }
 
     fn longest_edge(&self, tet: TetId) -> ([VertexId; 2], f64) {
-        let vertices = self.complex.vertices(tet);
+        let complex = self.complex();
+        let vertices = complex.vertices(tet);
         let mut longest = ([vertices[0], vertices[1]], f64::NEG_INFINITY);
         for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
-            let length = distance(self.complex.point(a), self.complex.point(b));
+            let length = distance(complex.point(a), complex.point(b));
             if length > longest.1 {
                 longest = ([a, b], length);
             }
@@ -85,23 +102,19 @@ impl Repair {
         longest
     }
 
-    /// Splits an edge with the tets `shell` around it, whatever the quality, if every tet stays positive and
-    /// the surface allows it.
-    fn split_unjudged(&mut self, shell: &Shell, edge: [VertexId; 2], trial: &mut Trial<()>) {
+    /// Searches for a split of an edge with the tets `shell` around it that leaves every tet positive.
+    fn split_unjudged(&mut self, shell: &Shell, edge: [VertexId; 2]) {
+        let Repair { complex, surface, .. } = self.repair;
         let [a, b] = edge;
-        if !self.complex.may_divide(a, b) {
+        if !complex.may_divide(a, b) {
             return;
         }
         let hold = self.hold_on(shell, edge);
-        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let bar = 0.0;
-        if split_edge(&self.complex, shell, edge, (middle, hold), bar, &mut trial.proposal) {
-            let rules = Rules::at_commit(&self.complex).in_place(self.surface.as_ref());
+        let middle = scale(add(complex.point(a), complex.point(b)), 0.5);
+        let (bar, trial) = (0.0, &mut self.tools.first);
+        if split_edge(complex, shell, edge, (middle, hold), bar, &mut trial.proposal) {
+            let rules = Rules::at_commit(complex).in_place(surface.as_ref());
             trial.offer(rules, |_, _| Some(Merit { operation: Operation::SplitEdge, score: (), bar }));
-        }
-        if trial.commit(&mut self.complex, &mut self.operations, None) {
-            let inserted = trial.inserted().iter().copied();
-            self.inserted_bad.extend(inserted.filter(|&t| self.complex.quality(t) < self.target));
         }
     }
 }

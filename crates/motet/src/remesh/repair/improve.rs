@@ -14,13 +14,15 @@
 use crate::base::{Point, Result, TetId, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
-use crate::kernel::{Behind, Change, Complex, Fill, Hold};
+use crate::kernel::{Behind, Change, Complex, Fill, Hold, NO_TET};
 use crate::ops::{Anywhere, Objective, Reach, defect};
 use crate::remesh::input_mesh::Pose;
+use crate::remesh::repair::Repair;
+use crate::remesh::repair::ahead::Pass;
 use crate::remesh::repair::score::adds_below;
-use crate::remesh::repair::trial::{Merit, Rules, Trial};
+use crate::remesh::repair::search::{Search, Tools};
+use crate::remesh::repair::trial::{Found, Merit, Rules};
 use crate::remesh::repair::tried::Settled;
-use crate::remesh::repair::{Repair, Sizing};
 use crate::remesh::report::Operation;
 
 /// A change has to lower the sum of the defects of the tets it touches by this fraction. For the paddle
@@ -137,36 +139,25 @@ impl Objective for CostModel<'_> {
     }
 }
 
-/// The search for the best change at a tet, and the constraints on it.
-#[derive(Debug)]
-struct Search {
-    /// Changes are compared by how much they lower the cost.
-    trial: Trial,
-    /// The requested sizes, if any: no change may make an edge too long or too short.
-    sizing: Option<Sizing>,
-}
-
 /// The working state of one call of [`Repair::improve`].
 #[derive(Debug)]
 struct Progress {
     aim: Aim,
     /// The mean cost over the mesh.
     mean: f64,
-    search: Search,
     settled: Settled,
     inserted: Vec<TetId>,
 }
 
-impl Repair {
+impl Repair<'_> {
     /// Swaps and moves the tets of a zone, worst first, then the tets that were inserted, as long as they
     /// improve as a whole.
     pub(in crate::remesh) fn improve(&mut self, aim: Aim, mut zone: Vec<TetId>) -> Result<()> {
         if let Some(pose) = &mut self.pose {
-            pose.update(&self.complex);
+            pose.update(&self.complex, self.threads);
         }
         let mean = self.mean_cost(aim);
-        let search = Search { trial: Trial::new(), sizing: self.sizing.take() };
-        let mut progress = Progress { aim, mean, search, settled: Settled::default(), inserted: Vec::new() };
+        let mut progress = Progress { aim, mean, settled: Settled::default(), inserted: Vec::new() };
         for _ in 0..ROUNDS {
             self.swap_low(&mut zone, &mut progress)?;
             self.move_low(&mut zone, &mut progress)?;
@@ -175,7 +166,6 @@ impl Repair {
                 break;
             }
         }
-        self.sizing = progress.search.sizing;
         Ok(())
     }
 
@@ -191,7 +181,8 @@ impl Repair {
 
     fn mean_cost(&self, aim: Aim) -> f64 {
         let model = CostModel::new(aim, 0.0, self.pose.as_ref());
-        let sum: f64 = self.complex.tets().map(|t| model.of_tet(&self.complex, t)).sum();
+        let cost = |t: TetId| if self.complex.is_alive(t) { model.of_tet(&self.complex, t) } else { 0.0 };
+        let sum: f64 = self.threads.map(self.complex.n_slots(), |t| cost(TetId::new(t))).into_iter().sum();
         sum / self.complex.n_tets().max(1) as f64
     }
 
@@ -204,14 +195,7 @@ impl Repair {
         let below = progress.aim.below;
         zone.retain(|&t| self.is_low(t, below));
         self.sort(zone);
-        for (i, &tet) in zone.iter().enumerate() {
-            if self.is_low(tet, below) {
-                self.watch.report_and_check("improving tets", i, zone.len())?;
-                self.weigh_swaps(tet, progress);
-                self.make_best(progress);
-            }
-        }
-        Ok(())
+        self.make(&mut Swaps(progress), "improving tets", zone)
     }
 
     /// Moves each vertex of the low-quality tets of a zone, and of inserted ones, once if that improves them,
@@ -226,118 +210,7 @@ impl Repair {
         vertices.retain(|&v| {
             self.complex.hold(v) == Hold::Free && !progress.settled.has_vertex(&self.changes, v)
         });
-        for (i, &vertex) in vertices.iter().enumerate() {
-            self.watch.report_and_check("improving tets", i, vertices.len())?;
-            if self.weigh_move(vertex, progress) {
-                self.make_best(progress);
-            } else {
-                progress.settled.settle_vertex(&self.changes, vertex);
-            }
-        }
-        Ok(())
-    }
-
-    /// Commits the best change found, if there is one and the kernel allows it, and forgets it.
-    fn make_best(&mut self, progress: &mut Progress) {
-        let Progress { search: Search { trial, .. }, inserted, .. } = progress;
-        if trial.commit(&mut self.complex, &mut self.operations, Some(&mut self.changes)) {
-            inserted.extend_from_slice(trial.inserted());
-            if let Some(pose) = &mut self.pose {
-                pose.follow(&self.complex, trial.vertex(), trial.inserted());
-            }
-        }
-    }
-
-    fn weigh_swaps(&mut self, tet: TetId, Progress { aim, mean, search, settled, .. }: &mut Progress) {
-        let mut model = CostModel::new(*aim, *mean, self.pose.as_ref());
-        let vertices = self.complex.vertices(tet);
-        let mut shell = self.shells.pop().unwrap_or_default();
-        for (place, edge) in EDGES.map(|e| e.map(|i| vertices[i])).into_iter().enumerate() {
-            if settled.has_edge(&self.changes, &self.complex, tet, place) {
-                continue;
-            }
-            shell.walk(&self.complex, tet, edge[0], edge[1]);
-            // Walls change to repair tets, not to improve them.
-            let may_go = self.surface.is_none() || self.hold_on(&shell, edge) == Hold::Free;
-            let is_better = may_go
-                && self.edge_removal.propose_for(
-                    &self.complex,
-                    &shell,
-                    edge,
-                    &mut model,
-                    &mut search.trial.proposal,
-                )
-                && self.weigh((Operation::EdgeRemoval, None), model, search);
-            if !is_better {
-                settled.settle_edge(&self.changes, &self.complex, &shell.tets, edge);
-            }
-        }
-        self.shells.push(shell);
-        for facet in 0..4 {
-            if settled.has_facet(&self.changes, &self.complex, tet, facet) {
-                continue;
-            }
-            let behind = match self.complex.behind(tet, facet) {
-                Behind::Tet(half) => half,
-                Behind::Wall(_) => {
-                    settled.settle_facet(&self.changes, tet, facet);
-                    continue;
-                }
-            };
-            let worst = self.complex.quality(tet).min(self.complex.quality(behind.tet()));
-            let bar = worst.min(aim.floor).next_down();
-            let proposal = &mut search.trial.proposal;
-            let is_better = self.face_removal.propose(&self.complex, tet, facet, bar, proposal)
-                && self.weigh((Operation::FaceRemoval, None), model, search);
-            if !is_better {
-                settled.settle_facet(&self.changes, tet, facet);
-                settled.settle_facet(&self.changes, behind.tet(), behind.facet());
-            }
-        }
-    }
-
-    fn weigh_move(&mut self, vertex: VertexId, Progress { aim, mean, search, .. }: &mut Progress) -> bool {
-        let mut model = CostModel::new(*aim, *mean, self.pose.as_ref());
-        let pose = self.pose.as_ref().map(|pose| |v: VertexId| pose.point(v));
-        self.star.gather(&self.complex, vertex);
-        let star = &self.star.tets;
-        model.set_bars(&self.complex, star);
-        let (least, _) = model.of_cavity(&self.complex, star);
-        let is_proposed = self.relaxation.propose(
-            (&self.complex, pose.as_ref()),
-            star,
-            vertex,
-            Reach { floor: model.bars[0], gain: least },
-            &Anywhere,
-            &mut search.trial.proposal,
-        );
-        let moved = self.relaxation.place_in_pose().map(|place| (vertex, place));
-        is_proposed && self.weigh((Operation::Smoothing, moved), model, search)
-    }
-
-    /// Keeps the proposal as the best change if it gains enough, and more than the best so far. `moved` is a
-    /// vertex that moves, and its place in the other pose, if there is one. Returns whether the proposal
-    /// gains enough.
-    fn weigh(
-        &self,
-        (operation, moved): (Operation, Option<(VertexId, Point)>),
-        mut model: CostModel,
-        Search { trial, sizing }: &mut Search,
-    ) -> bool {
-        let change = &trial.proposal;
-        model.set_bars(&self.complex, &change.cavity);
-        let (least, before) = model.of_cavity(&self.complex, &change.cavity);
-        let gain = before - model.of_fill(change, moved);
-        if gain <= least || self.adds_low(change, model.aim) || self.touches_kept(change) {
-            return false;
-        }
-        // Sizes are checked only for a change that would be the best.
-        if trial.score().is_some_and(|known| gain <= known) {
-            return true;
-        }
-        let field = sizing.as_mut().map(|sizing| &mut sizing.field);
-        let merit = Merit { operation, score: gain, bar: model.bars[0] };
-        trial.offer(Rules::at_commit(&self.complex).fit(field), |_, _| Some(merit))
+        self.make(&mut Moves(progress), "improving tets", &vertices)
     }
 
     /// Whether a change leaves more tets below the floor or the limit than it found without raising the worst
@@ -348,5 +221,266 @@ impl Repair {
         let adds = |bar: f64| adds_below(&self.complex, change, bar);
         let raises_worst = || change.worst() > self.complex.worst_of(&change.cavity);
         (adds(aim.floor) || aim.limit < aim.floor && adds(aim.limit)) && !raises_worst()
+    }
+}
+
+impl Progress {
+    /// The cost model of a mesh that is being repaired.
+    fn model<'a>(&self, repair: &'a Repair) -> CostModel<'a> {
+        CostModel::new(self.aim, self.mean, repair.pose.as_ref())
+    }
+
+    /// Commits a change that was found if the kernel allows it.
+    fn make(&mut self, repair: &mut Repair, tools: &mut Tools, found: Found<f64>) {
+        let trial = &mut tools.best;
+        trial.set(found);
+        if trial.commit(&mut repair.complex, &mut repair.operations, &mut repair.changes) {
+            self.inserted.extend_from_slice(trial.inserted());
+            repair.learn_sizes(trial.inserted());
+            if let Some(pose) = &mut repair.pose {
+                pose.follow(&repair.complex, trial.vertex(), trial.inserted());
+            }
+        }
+    }
+}
+
+/// A pass that makes the best swap at each tet.
+struct Swaps<'a>(&'a mut Progress);
+
+/// What came of an edge or a facet of a tet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Outcome {
+    /// Nothing was searched for, since nothing would be found.
+    Settled,
+    /// No change gains enough.
+    Failed,
+    /// A change gains enough.
+    Better,
+}
+
+/// What came of a tet.
+#[derive(Debug, PartialEq)]
+struct SwapFound {
+    /// Of its edges, then its facets.
+    outcomes: [Outcome; N_PLACES],
+    /// The tets around the edges that failed, one edge after the other.
+    shells: Vec<TetId>,
+    best: Option<Found<f64>>,
+}
+
+/// The number of edges and facets of a tet.
+const N_PLACES: usize = EDGES.len() + 4;
+
+impl Pass for Swaps<'_> {
+    type Candidate = TetId;
+    type Found = SwapFound;
+
+    fn search(&self, search: &mut Search, tet: TetId) -> SwapFound {
+        let Self(progress) = self;
+        let repair = search.repair;
+        let mut found = SwapFound {
+            outcomes: [Outcome::Settled; N_PLACES],
+            shells: std::mem::take(&mut search.tools.settled_shells),
+            best: None,
+        };
+        found.shells.clear();
+        if !repair.is_low(tet, progress.aim.below) {
+            return found;
+        }
+        for place in (0..N_PLACES).filter(|&place| !progress.is_settled(repair, tet, place)) {
+            let is_better = match place.checked_sub(EDGES.len()) {
+                None => search.weigh_edge(progress, tet, place, &mut found.shells),
+                Some(facet) => search.weigh_facet(progress, tet, facet),
+            };
+            found.outcomes[place] = if is_better { Outcome::Better } else { Outcome::Failed };
+        }
+        found.best = search.tools.best.take(&repair.complex);
+        found
+    }
+
+    fn is_current(&self, repair: &Repair, tet: TetId, found: &SwapFound, since: u32) -> bool {
+        let Self(progress) = self;
+        let is_settled_now =
+            |place: usize| found.outcomes[place] == Outcome::Better && progress.is_settled(repair, tet, place);
+        repair.is_unchanged(tet, since) && !(0..N_PLACES).any(is_settled_now)
+    }
+
+    /// What has been settled since was not searched for.
+    fn update(&self, repair: &Repair, tet: TetId, found: &mut SwapFound) {
+        let mut n_before = 0;
+        for (place, outcome) in found.outcomes.iter_mut().enumerate() {
+            if *outcome != Outcome::Failed {
+                continue;
+            }
+            let is_settled = self.0.is_settled(repair, tet, place);
+            if is_settled {
+                *outcome = Outcome::Settled;
+            }
+            if place < EDGES.len() {
+                let n = n_before + n_around(&found.shells[n_before..]) + 1;
+                match is_settled {
+                    true => _ = found.shells.drain(n_before..n),
+                    false => n_before = n,
+                }
+            }
+        }
+        found.best.iter_mut().for_each(|best| best.renumber(&repair.complex));
+    }
+
+    fn act(&mut self, repair: &mut Repair, tools: &mut Tools, tet: TetId, found: SwapFound) {
+        let Self(progress) = self;
+        progress.settle(repair, tet, &found);
+        tools.settled_shells = found.shells;
+        if let Some(best) = found.best {
+            progress.make(repair, tools, best);
+        }
+    }
+}
+
+impl Progress {
+    /// Whether a change at an edge or a facet of a tet failed, and would fail again.
+    fn is_settled(&self, repair: &Repair, tet: TetId, place: usize) -> bool {
+        let Repair { complex, changes, .. } = repair;
+        match place.checked_sub(EDGES.len()) {
+            None => self.settled.has_edge(changes, complex, tet, place),
+            Some(facet) => self.settled.has_facet(changes, complex, tet, facet),
+        }
+    }
+
+    /// Records the edges and facets of a tet at which no change gains enough.
+    fn settle(&mut self, repair: &Repair, tet: TetId, found: &SwapFound) {
+        let Repair { complex, changes, .. } = repair;
+        let (vertices, settled) = (complex.vertices(tet), &mut self.settled);
+        let mut shells = &found.shells[..];
+        for place in (0..N_PLACES).filter(|&place| found.outcomes[place] == Outcome::Failed) {
+            if let Some(facet) = place.checked_sub(EDGES.len()) {
+                settled.settle_facet(changes, tet, facet);
+                if let Behind::Tet(behind) = complex.behind(tet, facet) {
+                    settled.settle_facet(changes, behind.tet(), behind.facet());
+                }
+            } else {
+                let n = n_around(shells);
+                settled.settle_edge(changes, complex, &shells[..n], EDGES[place].map(|i| vertices[i]));
+                shells = &shells[n + 1..];
+            }
+        }
+    }
+}
+
+/// The number of tets of the first shell in a list.
+fn n_around(shells: &[TetId]) -> usize {
+    shells.iter().position(|&tet| tet == NO_TET).unwrap_or(shells.len())
+}
+
+/// A pass that moves each vertex to where its tets are better.
+struct Moves<'a>(&'a mut Progress);
+
+impl Pass for Moves<'_> {
+    type Candidate = VertexId;
+    type Found = Option<Found<f64>>;
+
+    fn search(&self, search: &mut Search, vertex: VertexId) -> Option<Found<f64>> {
+        search.weigh_move(self.0, vertex);
+        search.tools.best.take(search.complex())
+    }
+
+    fn is_current(&self, repair: &Repair, vertex: VertexId, _: &Self::Found, since: u32) -> bool {
+        repair.changes.none_since(vertex, since)
+    }
+
+    fn update(&self, repair: &Repair, _: VertexId, found: &mut Self::Found) {
+        found.iter_mut().for_each(|found| found.renumber(&repair.complex));
+    }
+
+    fn act(&mut self, repair: &mut Repair, tools: &mut Tools, vertex: VertexId, found: Self::Found) {
+        let Self(progress) = self;
+        match found {
+            Some(found) => progress.make(repair, tools, found),
+            None => progress.settled.settle_vertex(&repair.changes, vertex),
+        }
+    }
+}
+
+impl Search<'_> {
+    /// Weighs the removal of an edge of a tet, by its number in [`EDGES`]; returns whether it gains enough.
+    /// If not, adds the tets around it to `shells`, and [`NO_TET`].
+    fn weigh_edge(&mut self, progress: &Progress, tet: TetId, edge: usize, shells: &mut Vec<TetId>) -> bool {
+        let repair = self.repair;
+        let (complex, mut model) = (&repair.complex, progress.model(repair));
+        let vertices = complex.vertices(tet);
+        let edge = EDGES[edge].map(|i| vertices[i]);
+        self.around(tet, edge, |search, shell| {
+            // Walls change to repair tets, not to improve them.
+            let may_go = repair.surface.is_none() || search.hold_on(shell, edge) == Hold::Free;
+            let Tools { edge_removal, best, .. } = &mut *search.tools;
+            let is_better = may_go
+                && edge_removal.propose_for(complex, shell, edge, &mut model, &mut best.proposal)
+                && search.weigh((Operation::EdgeRemoval, None), model);
+            if !is_better {
+                shells.extend_from_slice(&shell.tets);
+                shells.push(NO_TET);
+            }
+            is_better
+        })
+    }
+
+    /// Weighs the removal of a facet of a tet; returns whether it gains enough.
+    fn weigh_facet(&mut self, progress: &Progress, tet: TetId, facet: usize) -> bool {
+        let repair = self.repair;
+        let complex = &repair.complex;
+        let Behind::Tet(behind) = complex.behind(tet, facet) else { return false };
+        let worst = complex.quality(tet).min(complex.quality(behind.tet()));
+        let bar = worst.min(progress.aim.floor).next_down();
+        let Tools { face_removal, best, .. } = &mut *self.tools;
+        face_removal.propose(complex, tet, facet, bar, &mut best.proposal)
+            && self.weigh((Operation::FaceRemoval, None), progress.model(repair))
+    }
+
+    /// Weighs the best move of a vertex.
+    fn weigh_move(&mut self, progress: &Progress, vertex: VertexId) {
+        let repair = self.repair;
+        let (complex, mut model) = (&repair.complex, progress.model(repair));
+        let pose = repair.pose.as_ref().map(|pose| |v: VertexId| pose.point(v));
+        self.gather(vertex);
+        let Tools { star, relaxation, best, .. } = &mut *self.tools;
+        model.set_bars(complex, &star.tets);
+        let (least, _) = model.of_cavity(complex, &star.tets);
+        let is_proposed = relaxation.propose(
+            (complex, pose.as_ref()),
+            &star.tets,
+            vertex,
+            Reach { floor: model.bars[0], gain: least },
+            &Anywhere,
+            &mut best.proposal,
+        );
+        let moved = relaxation.place_in_pose().map(|place| (vertex, place));
+        if is_proposed {
+            self.weigh((Operation::Smoothing, moved), model);
+        }
+    }
+
+    /// Keeps the proposal as the best change if it gains enough, and more than the best so far. `moved` is a
+    /// vertex that moves, and its place in the other pose, if there is one. Returns whether the proposal
+    /// gains enough.
+    fn weigh(
+        &mut self,
+        (operation, moved): (Operation, Option<(VertexId, Point)>),
+        mut model: CostModel,
+    ) -> bool {
+        let repair = self.repair;
+        let (complex, trial) = (&repair.complex, &mut self.tools.best);
+        let change = &trial.proposal;
+        model.set_bars(complex, &change.cavity);
+        let (least, before) = model.of_cavity(complex, &change.cavity);
+        let gain = before - model.of_fill(change, moved);
+        if gain <= least || repair.adds_low(change, model.aim) || repair.touches_kept(change) {
+            return false;
+        }
+        // Sizes are checked only for a change that would be the best.
+        if trial.score().is_some_and(|known| gain <= known) {
+            return true;
+        }
+        let merit = Merit { operation, score: gain, bar: model.bars[0] };
+        trial.offer(Rules::at_commit(complex).fit(repair.sizes()), |_, _| Some(merit))
     }
 }

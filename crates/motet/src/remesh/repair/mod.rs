@@ -1,10 +1,12 @@
 //! The repair of bad tets one by one, worst first.
 
+mod ahead;
 mod by_length;
 mod density;
 mod divide;
 mod improve;
 mod score;
+mod search;
 mod sizing;
 mod stages;
 mod thin;
@@ -15,17 +17,19 @@ pub(super) use density::Density;
 pub(super) use improve::Aim;
 pub(super) use sizing::Sizing;
 
-use crate::base::{Result, TetId, VertexId, Watch};
-use crate::kernel::{Change, Complex, Shell, Star};
-use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Relaxation, Smoothing};
+use crate::base::{Result, TetId, Threads, VertexId};
+use crate::kernel::{Complex, Shell, Star};
 use crate::remesh::input_mesh::Pose;
 use crate::remesh::left::{forced, is_forced};
 use crate::remesh::options::SurfaceRule;
-use crate::remesh::repair::score::{Limits, Score, worth_more_bad};
+use crate::remesh::repair::ahead::Pass;
+use crate::remesh::repair::score::{Score, worth_more_bad};
+use crate::remesh::repair::search::{Search, Toolbox, Tools};
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
-use crate::remesh::repair::trial::{Merit, Rules, Trial};
+use crate::remesh::repair::trial::Found;
 use crate::remesh::repair::tried::{Changes, Tried};
-use crate::remesh::report::{Counts, Operation};
+use crate::remesh::report::Counts;
+use crate::remesh::sizes::SizeField;
 use crate::remesh::surface::{Crease, Surface};
 
 /// How much higher the target is for tets around those that no operation repairs, one attempt after another.
@@ -48,7 +52,7 @@ const HOPELESS: (usize, f64, f64) = (100, 0.01, 0.95);
 
 /// What is done with the bad tets that the first rounds leave.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Pass {
+pub(super) enum Treatment {
     /// Repeats the rounds.
     Again,
     /// Divides the tets that nothing else repairs.
@@ -57,10 +61,10 @@ pub(super) enum Pass {
     Soften(Crease),
 }
 
-/// The passes that a surface rule allows: made one after the other as long as bad tets are left.
-pub(super) fn passes(surface: SurfaceRule) -> &'static [Pass] {
-    const ALL: [Pass; 5] =
-        [Pass::Again, Pass::Divide, Pass::Soften(Crease::BLUNT), Pass::Divide, Pass::Soften(Crease::NONE)];
+/// The treatments that a surface rule allows: made one after the other as long as bad tets are left.
+pub(super) fn treatments(surface: SurfaceRule) -> &'static [Treatment] {
+    use Treatment::{Again, Divide, Soften};
+    const ALL: [Treatment; 5] = [Again, Divide, Soften(Crease::BLUNT), Divide, Soften(Crease::NONE)];
     match surface {
         SurfaceRule::Keep | SurfaceRule::Flat { .. } => &ALL[..1],
         SurfaceRule::Adapt { .. } => &ALL[..4],
@@ -78,8 +82,8 @@ fn union(a: &[bool], b: &[bool]) -> Vec<bool> {
     (0..a.len().max(b.len())).map(TetId::new).map(|tet| is_among(a, tet) || is_among(b, tet)).collect()
 }
 
-/// The state of a repair, and its work arrays.
-pub(super) struct Repair {
+/// The state of a repair.
+pub(super) struct Repair<'a> {
     pub(super) complex: Complex,
     pub(super) operations: Counts,
     surface: Option<Surface>,
@@ -93,18 +97,7 @@ pub(super) struct Repair {
     pub(super) kept: Vec<bool>,
     target: f64,
     n_stages: usize,
-    /// The search for the change that repairs one bad tet.
-    trial: Trial<Score>,
-    /// The worst quality from which that change may leave more bad tets than it found.
-    worth_more_bad: f64,
-    edge_removal: EdgeRemoval,
-    face_removal: FaceRemoval,
-    smoothing: Smoothing,
-    insertion: Insertion,
-    relaxation: Relaxation,
-    star: Star,
-    /// Buffers of [`Self::around`].
-    shells: Vec<Shell>,
+    toolbox: Toolbox,
     /// Bad tets among those inserted.
     inserted_bad: Vec<TetId>,
     changes: Changes,
@@ -112,16 +105,16 @@ pub(super) struct Repair {
     tried: Tried,
     /// Whether rounds ended because the mesh is hopelessly tangled.
     is_hopeless: bool,
-    watch: Watch,
+    threads: &'a Threads,
 }
 
-impl Repair {
+impl<'a> Repair<'a> {
     pub(super) fn new(
         complex: Complex,
         surface: Option<Surface>,
         never_bad: Vec<bool>,
         target: f64,
-        watch: &Watch,
+        threads: &'a Threads,
     ) -> Self {
         Self {
             complex,
@@ -133,20 +126,12 @@ impl Repair {
             kept: Vec::new(),
             target,
             n_stages: FIRST_STAGES,
-            trial: Trial::new(),
-            worth_more_bad: f64::INFINITY,
-            edge_removal: EdgeRemoval::default(),
-            face_removal: FaceRemoval::default(),
-            smoothing: Smoothing::default(),
-            insertion: Insertion::default(),
-            relaxation: Relaxation::default(),
-            star: Star::default(),
-            shells: Vec::new(),
+            toolbox: Toolbox::default(),
             inserted_bad: Vec::new(),
             changes: Changes::new(),
             tried: Tried::nothing(),
             is_hopeless: false,
-            watch: watch.clone(),
+            threads,
         }
     }
 
@@ -215,28 +200,33 @@ impl Repair {
         after > many && n_left > of_all * n_tets && n_left > of_before * before as f64
     }
 
-    /// Makes one pass over the bad tets that are left; returns those that remain.
-    pub(super) fn pass(&mut self, pass: Pass, left: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
-        if let (Some(surface), Pass::Soften(crease)) = (&mut self.surface, pass) {
+    /// Treats the bad tets that are left; returns those that remain.
+    pub(super) fn treat(
+        &mut self,
+        treatment: Treatment,
+        left: Vec<TetId>,
+        rounds: usize,
+    ) -> Result<Vec<TetId>> {
+        if let (Some(surface), Treatment::Soften(crease)) = (&mut self.surface, treatment) {
             surface.constrain_features(&mut self.complex, crease);
         }
-        let left = if pass == Pass::Divide { left } else { self.run(left, rounds)? };
-        if pass == Pass::Again { Ok(left) } else { self.divide(left, rounds) }
+        let left = if treatment == Treatment::Divide { left } else { self.run(left, rounds)? };
+        if treatment == Treatment::Again { Ok(left) } else { self.divide(left, rounds) }
     }
 
-    /// Makes a pass over the bad tets that are left, with an exemption: tets as good as the walls at them
-    /// allow count as good, since they cannot get better and would block their neighbours. Returns what is
-    /// left below the target, forced tets included. The pass is undone if it leaves more bad tets than
-    /// before: walls can force two tets in place of one.
+    /// Treats the bad tets that are left, with an exemption: tets as good as the walls at them allow count as
+    /// good, since they cannot get better and would block their neighbours. Returns what is left below the
+    /// target, forced tets included. The treatment is undone if it leaves more bad tets than before: walls
+    /// can force two tets in place of one.
     pub(super) fn beside_forced(
         &mut self,
         left: &[TetId],
-        pass: impl Fn(&mut Self, Vec<TetId>) -> Result<Vec<TetId>>,
+        treat: impl Fn(&mut Self, Vec<TetId>) -> Result<Vec<TetId>>,
     ) -> Result<Vec<TetId>> {
         let forced = forced(&self.complex, self.surface.as_ref(), left);
         self.complex.exempt(&forced, self.target);
         let (start, operations) = (self.complex.mark(), self.operations);
-        let unforced = pass(self, left.to_vec())?;
+        let unforced = treat(self, left.to_vec())?;
         if unforced.len() + self.complex.n_exempt() > left.len() {
             self.complex.undo(start);
             self.operations = operations;
@@ -347,25 +337,20 @@ impl Repair {
     fn round(&mut self, bad: &mut Vec<TetId>) -> Result<bool> {
         bad.retain(|&t| self.is_bad(t));
         self.sort(bad);
-        let mut progressed = false;
-        for (i, &tet) in bad.iter().enumerate() {
-            if self.is_bad(tet) {
-                self.watch.report_and_check("repairing tets", i, bad.len())?;
-                progressed |= self.repair(tet);
-            }
-        }
+        let mut repairs = Repairs { progressed: false };
+        self.make(&mut repairs, "repairing tets", bad)?;
         bad.append(&mut self.inserted_bad);
         bad.retain(|&t| self.is_bad(t));
-        Ok(progressed)
+        Ok(repairs.progressed)
     }
 
     /// Improves the tets that share a vertex with a bad one, up to a higher target.
     fn improve_around(&mut self, bad: &[TetId], target: f64) -> Result<()> {
-        let mut around = Vec::new();
+        let (mut around, mut star) = (Vec::new(), Star::default());
         for &tet in bad {
             for vertex in self.complex.vertices(tet) {
-                self.star.gather(&self.complex, vertex);
-                around.extend_from_slice(&self.star.tets);
+                star.gather(&self.complex, vertex);
+                around.extend_from_slice(&star.tets);
             }
         }
         let usual = std::mem::replace(&mut self.target, target);
@@ -391,7 +376,7 @@ impl Repair {
 
     /// The tets below a quality that may be changed, worst first.
     pub(super) fn below(&self, quality: f64) -> Vec<TetId> {
-        let mut below = self.complex.below(quality);
+        let mut below = self.complex.below(quality, self.threads);
         below.retain(|&t| !self.complex.is_locked(t) && !self.is_never_bad(t));
         self.sort(&mut below);
         below
@@ -410,80 +395,95 @@ impl Repair {
         self.complex.is_original(tet) && is_among(&self.never_bad, tet)
     }
 
-    /// Makes the best change for one bad tet; returns whether there was one.
-    fn repair(&mut self, tet: TetId) -> bool {
-        if self.tried.knows(&self.changes, &self.complex, tet, self.target) {
-            return false;
+    /// Whether all stages are tried.
+    fn is_last_stage(&self) -> bool {
+        self.n_stages == STAGES.len()
+    }
+
+    /// The sizes that edges are to have, if any are requested.
+    fn sizes(&self) -> Option<&SizeField> {
+        self.sizing.as_ref().map(|sizing| &sizing.field)
+    }
+
+    /// Evaluates the sizes at the vertices of tets that were inserted.
+    fn learn_sizes(&mut self, inserted: &[TetId]) {
+        if let Some(sizing) = &mut self.sizing {
+            sizing.field.learn_all(&self.complex, inserted.iter().copied());
+        }
+    }
+}
+
+/// A pass that makes the best change for each bad tet.
+struct Repairs {
+    /// Whether a change was made.
+    progressed: bool,
+}
+
+/// The result of a search for the change that repairs a tet.
+#[derive(Debug, PartialEq)]
+enum RepairFound {
+    /// The tet is not bad, or its repair failed and would fail again.
+    Nothing,
+    /// Walls force the tet.
+    Forced,
+    /// No change helps.
+    Failed,
+    Change(Found<Score>),
+}
+
+impl Pass for Repairs {
+    type Candidate = TetId;
+    type Found = RepairFound;
+
+    fn search(&self, search: &mut Search, tet: TetId) -> RepairFound {
+        let repair = search.repair;
+        let complex = &repair.complex;
+        if !repair.is_bad(tet) || repair.tried.knows(&repair.changes, complex, tet, repair.target) {
+            return RepairFound::Nothing;
         }
         // Where the surface may change, walls do not force a tet.
-        if self.surface.is_none()
-            && self.with_shell(|repair, shell| is_forced(&repair.complex, None, tet, shell))
-        {
-            self.tried.note_failure(&self.changes, tet, self.target);
-            return false;
+        if repair.surface.is_none() && search.with_shell(|_, shell| is_forced(complex, None, tet, shell)) {
+            return RepairFound::Forced;
         }
-        let (complex, is_last) = (&self.complex, self.n_stages == STAGES.len());
-        self.worth_more_bad = worth_more_bad(is_last.then(|| complex.quality(tet)));
-        for stage in &STAGES[..self.n_stages] {
-            stage(self, tet);
-            if self.trial.reaches(self.target) {
+        search.worth_more_bad = worth_more_bad(repair.is_last_stage().then(|| complex.quality(tet)));
+        for stage in &STAGES[..repair.n_stages] {
+            stage(search, tet);
+            if search.tools.repairs.reaches(repair.target) {
                 break;
             }
         }
-        if !self.trial.commit(&mut self.complex, &mut self.operations, Some(&mut self.changes)) {
-            if is_last {
-                self.tried.note_failure(&self.changes, tet, self.target);
+        search.tools.repairs.take(complex).map_or(RepairFound::Failed, RepairFound::Change)
+    }
+
+    fn is_current(&self, repair: &Repair, tet: TetId, _: &RepairFound, since: u32) -> bool {
+        repair.is_unchanged(tet, since)
+    }
+
+    fn update(&self, repair: &Repair, _: TetId, found: &mut RepairFound) {
+        if let RepairFound::Change(found) = found {
+            found.renumber(&repair.complex);
+        }
+    }
+
+    fn act(&mut self, repair: &mut Repair, tools: &mut Tools, tet: TetId, found: RepairFound) {
+        let is_made = match found {
+            RepairFound::Nothing => return,
+            RepairFound::Forced => return repair.tried.note_failure(&repair.changes, tet, repair.target),
+            RepairFound::Failed => false,
+            RepairFound::Change(found) => {
+                tools.repairs.set(found);
+                tools.repairs.commit(&mut repair.complex, &mut repair.operations, &mut repair.changes)
             }
-            return false;
+        };
+        if is_made {
+            self.progressed = true;
+            let (complex, target) = (&repair.complex, repair.target);
+            let inserted = tools.repairs.inserted().iter().copied();
+            repair.inserted_bad.extend(inserted.filter(|&t| complex.quality(t) < target));
+            repair.learn_sizes(tools.repairs.inserted());
+        } else if repair.is_last_stage() {
+            repair.tried.note_failure(&repair.changes, tet, repair.target);
         }
-        let (complex, target) = (&self.complex, self.target);
-        let inserted = self.trial.inserted().iter().copied();
-        self.inserted_bad.extend(inserted.filter(|&t| complex.quality(t) < target));
-        true
-    }
-
-    /// Calls `act` with a buffer for the tets around an edge.
-    fn with_shell<T>(&mut self, act: impl FnOnce(&mut Self, &mut Shell) -> T) -> T {
-        let mut shell = self.shells.pop().unwrap_or_default();
-        let result = act(self, &mut shell);
-        self.shells.push(shell);
-        result
-    }
-
-    /// Calls `act` with the tets around the edge from `a` to `b` of a tet.
-    fn around<T>(
-        &mut self,
-        tet: TetId,
-        [a, b]: [VertexId; 2],
-        act: impl FnOnce(&mut Self, &Shell) -> T,
-    ) -> T {
-        self.with_shell(|repair, shell| {
-            shell.walk(&repair.complex, tet, a, b);
-            act(repair, shell)
-        })
-    }
-
-    fn bar(&self, tet: TetId) -> f64 {
-        self.trial.bar(self.complex.quality(tet), self.target)
-    }
-
-    /// Offers the proposal for the bad tet whose repair is searched for.
-    fn offer(&mut self, operation: Operation) {
-        if self.touches_kept(&self.trial.proposal) {
-            return;
-        }
-        let (complex, surface) = (&self.complex, self.surface.as_ref());
-        let limits = Limits { target: self.target, worth_more_bad: self.worth_more_bad };
-        let field = self.sizing.as_mut().map(|sizing| &mut sizing.field);
-        self.trial.offer(Rules::of(complex).near(surface).fit(field), |proposal, best| {
-            let score = Score::of_better(complex, proposal, best, limits)?;
-            Some(Merit { operation, score, bar: complex.worst_of(&proposal.cavity) })
-        });
-    }
-
-    /// Whether a change removes a tet that is to stay.
-    fn touches_kept(&self, change: &Change) -> bool {
-        !self.kept.is_empty() && change.cavity.iter().any(|&t| self.is_kept(t))
     }
 }
 

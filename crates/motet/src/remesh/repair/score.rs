@@ -8,7 +8,7 @@ use crate::remesh::repair::trial::Trial;
 const MUCH_BETTER: f64 = 10.0;
 
 /// What counts of a change for a bad tet.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Score {
     worst: f64,
     /// How many tets of the first mesh it touches.

@@ -3,15 +3,18 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 use crate::base::{Point, Result, TetId, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
-use crate::kernel::{Hold, Shell};
+use crate::kernel::{Complex, Hold, Shell};
 use crate::ops::{collapse, split_edge};
 use crate::remesh::lengths::locked_edges;
+use crate::remesh::repair::ahead::Pass;
+use crate::remesh::repair::search::{Search, Tools};
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
-use crate::remesh::repair::trial::{Merit, Rules, Trial};
+use crate::remesh::repair::trial::{Found, Merit, Rules};
 use crate::remesh::repair::tried::Tried;
 use crate::remesh::repair::{RAISES, Repair};
 use crate::remesh::report::Operation;
@@ -31,6 +34,9 @@ const ALIKE: f64 = 1.0 + 1e-9;
 /// Tets below this quality are nearly flat: a tenth of the default limit for bad tets. Next to a longer edge
 /// that stays, no split may make one, whatever was there.
 const FLATTEST: f64 = 0.02;
+
+/// The number of tets that a thread sweeps at a time.
+const SWEEP: usize = 1 << 14;
 
 /// The requested sizes, and the limits of the work.
 #[derive(Debug)]
@@ -65,7 +71,7 @@ impl Ord for Edge {
     }
 }
 
-impl Repair {
+impl Repair<'_> {
     /// Brings edges to their sizes and repairs the bad tets, alternately, until nothing changes; returns the
     /// bad tets that are left.
     ///
@@ -74,22 +80,21 @@ impl Repair {
     pub(in crate::remesh) fn bring_to_sizes(&mut self, sizing: Sizing, rounds: usize) -> Result<Vec<TetId>> {
         let splits = sizing.splits;
         // Splits next to a flat tet make more flat ones, and sizes are not reached near them.
-        if splits && !self.complex.below(FLATTEST).is_empty() {
+        if splits && !self.complex.below(FLATTEST, self.threads).is_empty() {
             self.run(self.below(self.target), rounds)?;
         }
         self.sizing = Some(sizing);
         if !splits {
-            self.with_sizing(Self::collapse_short)?;
+            self.collapse_short()?;
             return self.run(self.below(self.target), rounds);
         }
         let (mut raises, mut before) = (RAISES.iter(), usize::MAX);
         self.tried = Tried::of(self.target);
         self.split_by_levels()?;
         for _ in 0..rounds {
-            let n_made = self.with_sizing(Self::split_long)? + self.with_sizing(Self::collapse_short)?;
+            let n_made = self.split_long()? + self.collapse_short()?;
             self.repair_once()?;
-            let short =
-                self.with_sizing(|repair, sizing| Ok(repair.short_edges(&mut sizing.field, SHORT)))?;
+            let short = self.short_edges(SHORT);
             if n_made as f64 > ENOUGH * short.len() as f64 {
                 continue;
             }
@@ -113,14 +118,12 @@ impl Repair {
     /// which edges are split, again and again, down to twice the final one. Halves of flat tets are flat: a
     /// coarse mesh that is split to the end at once has bad tets nearly everywhere.
     fn split_by_levels(&mut self) -> Result<()> {
-        let longest = self.with_sizing(|repair, sizing| {
-            let long = repair.edges(&mut sizing.field, |ratio, _| ratio > LONG);
-            Ok(long.iter().map(|edge| edge.ratio).fold(LONG, f64::max))
-        })?;
+        let long = self.edges(|_, ratio, _| ratio > LONG);
+        let longest = long.iter().map(|edge| edge.ratio).fold(LONG, f64::max);
         let n_levels = (longest / LONG).log2().ceil() as i32;
         for level in (1..n_levels).rev() {
             self.sizing.iter_mut().for_each(|sizing| sizing.field.long_limit = LONG * 2f64.powi(level));
-            self.with_sizing(Self::split_long)?;
+            self.split_long()?;
             self.repair_once()?;
         }
         self.sizing.iter_mut().for_each(|sizing| sizing.field.long_limit = LONG);
@@ -137,145 +140,40 @@ impl Repair {
         Ok(())
     }
 
-    fn with_sizing<T: Default>(
-        &mut self,
-        work: impl FnOnce(&mut Self, &mut Sizing) -> Result<T>,
-    ) -> Result<T> {
-        let Some(mut sizing) = self.sizing.take() else { return Ok(T::default()) };
-        let done = work(self, &mut sizing);
-        self.sizing = Some(sizing);
-        done
-    }
-
     /// Splits edges that are too long at their midpoints, longest first, until none is left that may be
     /// split; returns how many were split.
-    fn split_long(&mut self, sizing: &mut Sizing) -> Result<usize> {
-        let too_long = sizing.field.long_limit;
-        let mut long = BinaryHeap::from(self.edges(&mut sizing.field, |ratio, _| ratio > too_long));
-        let (mut n_split, mut trial) = (0, Trial::new());
-        while let Some(edge) = long.pop() {
-            if self.complex.n_tets() > sizing.max_tets {
-                break;
-            }
-            self.watch.report_and_check("splitting long edges", n_split, n_split + long.len())?;
-            // An edge is removed only by its own split.
-            let Some(tet) = self.tet_at(edge) else { continue };
-            let Some(middle) = self.split(tet, edge.ends, &mut sizing.field, &mut trial) else { continue };
-            n_split += 1;
-            for &tet in trial.inserted() {
-                for other in self.complex.vertices(tet).into_iter().filter(|&v| v != middle) {
-                    let ends = [middle.min(other), middle.max(other)];
-                    let ratio = sizing.field.of_edge(&self.complex, ends);
-                    if ratio > too_long {
-                        long.push(Edge { ratio, ends, tet });
-                    }
-                }
-            }
+    fn split_long(&mut self) -> Result<usize> {
+        let Some(sizing) = &self.sizing else { return Ok(0) };
+        let (too_long, max_tets) = (sizing.field.long_limit, sizing.max_tets);
+        let long = self.edges(|_, ratio, _| ratio > too_long);
+        let mut splits = Splits { too_long, max_tets, long: BinaryHeap::from(long), n_made: 0 };
+        while !splits.long.is_empty() {
+            let mut longest_first = std::mem::take(&mut splits.long).into_sorted_vec();
+            longest_first.reverse();
+            self.make(&mut splits, "splitting long edges", &longest_first)?;
         }
-        Ok(n_split)
-    }
-
-    /// Splits an edge at its midpoint if the new tets are good enough; returns the new vertex. On a smooth
-    /// patch, the vertex is placed on the first surface, at the point closest to the midpoint, if the walls
-    /// may lie there.
-    fn split(
-        &mut self,
-        tet: TetId,
-        ends: [VertexId; 2],
-        field: &mut SizeField,
-        trial: &mut Trial<()>,
-    ) -> Option<VertexId> {
-        self.around(tet, ends, |repair, shell| repair.split_around(shell, ends, field, trial))
-    }
-
-    /// Splits an edge with the tets `shell` around it; see [`Self::split`].
-    fn split_around(
-        &mut self,
-        shell: &Shell,
-        ends: [VertexId; 2],
-        field: &mut SizeField,
-        trial: &mut Trial<()>,
-    ) -> Option<VertexId> {
-        let [a, b] = ends;
-        if !self.complex.may_divide(a, b) || self.surface.is_none() && !shell.is_free() {
-            return None;
-        }
-        let hold: Hold = self.hold_on(shell, ends);
-        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let vertex = self.complex.next_vertex();
-        let bar = self.bar_of_split(shell, ends, field);
-        for (point, is_middle) in [(self.on_surface(shell, middle, hold), false), (Some(middle), true)] {
-            let Some(point) = point else { continue };
-            let (complex, surface) = (&self.complex, self.surface.as_ref());
-            if !split_edge(complex, shell, ends, (point, hold), bar, &mut trial.proposal) {
-                continue;
-            }
-            let rules = Rules::at_commit(complex);
-            let rules = if is_middle { rules.in_place(surface) } else { rules.near(surface) };
-            trial.offer(rules, |_, _| Some(Merit { operation: Operation::SplitEdge, score: (), bar }));
-            if trial.commit(&mut self.complex, &mut self.operations, Some(&mut self.changes)) {
-                return Some(vertex);
-            }
-        }
-        None
-    }
-
-    /// The point of the first surface closest to the midpoint of an edge of a smooth patch, if it differs
-    /// from the midpoint; `shell` are the tets around the edge.
-    fn on_surface(&self, shell: &Shell, middle: Point, hold: Hold) -> Option<Point> {
-        let surface = self.surface.as_ref()?;
-        let place = shell.walls.first().filter(|_| hold == Hold::Surface)?;
-        let patch = self.complex.wall(shell.wall_at(&self.complex, *place)).patch;
-        surface.on_patch(patch, middle).filter(|point| *point != middle)
-    }
-
-    /// The quality that the tets of a split must exceed, for an edge with the tets `shell` around it.
-    ///
-    /// The longest edge of all may always be split. If a longer one stays, because it is held or its halves
-    /// would give only flat tets, splits of the others would make flatter and flatter tets: then no new tet
-    /// may be bad and worse than the worst that was there, and none nearly flat whatever was there.
-    fn bar_of_split(&self, shell: &Shell, ends: [VertexId; 2], field: &mut SizeField) -> f64 {
-        let tets = &shell.tets;
-        let ratio = field.of_edge(&self.complex, ends);
-        let mut edges = tets.iter().flat_map(|&t| {
-            let vertices = self.complex.vertices(t);
-            EDGES.map(|edge| edge.map(|i| vertices[i]))
-        });
-        if self.surface.is_some() && edges.all(|[a, b]| field.of_edge(&self.complex, [a, b]) <= ratio * ALIKE)
-        {
-            return 0.0;
-        }
-        let floor = if self.surface.is_some() { FLATTEST } else { 0.0 };
-        self.complex.worst_of(tets).min(self.target).next_down().max(floor)
+        Ok(splits.n_made)
     }
 
     /// Collapses edges that are too short, shortest first, if that makes no edge too long and no tet that is
     /// bad and worse than the worst that was there; returns how many were collapsed.
-    fn collapse_short(&mut self, sizing: &mut Sizing) -> Result<usize> {
-        let (mut n_collapsed, mut trial) = (0, Trial::new());
-        // Whether a tet at a vertex was inserted since all edges were last tried: elsewhere a refused
-        // collapse would be refused again.
-        let mut is_changed = vec![true; self.complex.n_vertex_slots()];
+    fn collapse_short(&mut self) -> Result<usize> {
+        let Some(splits) = self.sizing.as_ref().map(|sizing| sizing.splits) else { return Ok(0) };
+        let mut n_collapsed = 0;
+        // When all edges were last tried: elsewhere a refused collapse would be refused again.
+        let mut last_tried = None;
         loop {
-            let dense = if sizing.splits { DENSE } else { SHORT };
-            let short = self.short_edges(&mut sizing.field, dense);
-            let was_changed = std::mem::replace(&mut is_changed, vec![false; self.complex.n_vertex_slots()]);
-            let mut n_now = 0;
-            for (i, &edge) in short.iter().enumerate() {
-                if !edge.ends.iter().any(|v| was_changed[v.index()]) {
-                    continue;
-                }
-                self.watch.report_and_check("collapsing short edges", i, short.len())?;
-                // An earlier collapse may have removed this edge.
-                let Some(tet) = self.tet_at(edge) else { continue };
-                if self.collapse_to_size(tet, edge.ends, &mut sizing.field, &mut trial) {
-                    n_now += 1;
-                    let vertices = trial.inserted().iter().flat_map(|&t| self.complex.vertices(t));
-                    vertices.for_each(|v| is_changed[v.index()] = true);
-                }
+            let dense = if splits { DENSE } else { SHORT };
+            let mut short = self.short_edges(dense);
+            let n_short = short.len();
+            if let Some(time) = last_tried {
+                short.retain(|edge| !edge.ends.iter().all(|&v| self.changes.none_since(v, time)));
             }
-            n_collapsed += n_now;
-            if n_now as f64 <= ENOUGH * short.len() as f64 {
+            last_tried = Some(self.changes.now());
+            let mut collapses = Collapses { n_made: 0 };
+            self.make(&mut collapses, "collapsing short edges", &short)?;
+            n_collapsed += collapses.n_made;
+            if collapses.n_made as f64 <= ENOUGH * n_short as f64 {
                 return Ok(n_collapsed);
             }
         }
@@ -283,10 +181,11 @@ impl Repair {
 
     /// Edges that may be collapsed and are too short, or shorter than `dense` times their size in a tet that
     /// has changed; shortest first.
-    fn short_edges(&self, field: &mut SizeField, dense: f64) -> Vec<Edge> {
-        let is_short =
-            |ratio: f64, tet: TetId| ratio < SHORT || ratio < dense && !self.complex.is_original(tet);
-        let mut short = self.edges(field, is_short);
+    fn short_edges(&mut self, dense: f64) -> Vec<Edge> {
+        let is_short = |complex: &Complex, ratio: f64, tet: TetId| {
+            ratio < SHORT || ratio < dense && !complex.is_original(tet)
+        };
+        let mut short = self.edges(is_short);
         let is_removable = |v: &VertexId| match self.complex.hold(*v) {
             Hold::Free => true,
             Hold::Surface | Hold::Edge => self.surface.is_some(),
@@ -297,63 +196,231 @@ impl Repair {
         short
     }
 
-    /// Collapses an edge in the better of the two directions, if one is allowed.
-    fn collapse_to_size(
-        &mut self,
-        tet: TetId,
-        [a, b]: [VertexId; 2],
-        field: &mut SizeField,
-        trial: &mut Trial,
-    ) -> bool {
-        for [removed, kept] in [[a, b], [b, a]] {
-            if !self.may_collapse(tet, removed, kept) {
-                continue;
-            }
-            self.star.gather(&self.complex, removed);
-            let bar = self.complex.worst_of(&self.star.tets).min(self.target);
-            // Of two equally good ones, the second is taken.
-            let bar = trial.score().map_or(bar.max(0.0), |best| best.max(bar)).next_down();
-            if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut trial.proposal) {
-                let rules = Rules::of(&self.complex).near(self.surface.as_ref()).not_longer(field);
-                trial.offer(rules, |proposal, _| {
-                    Some(Merit { operation: Operation::Collapse, score: proposal.worst(), bar })
-                });
-            }
-        }
-        trial.commit(&mut self.complex, &mut self.operations, Some(&mut self.changes))
-    }
-
     /// The edges for which `is_such` holds, given their ratio of length to size and one of their tets,
-    /// without those of locked tets; each once, ordered by vertices.
-    fn edges(&self, field: &mut SizeField, is_such: impl Fn(f64, TetId) -> bool) -> Vec<Edge> {
-        let mut edges = Vec::new();
-        for tet in self.complex.tets() {
-            let vertices = self.complex.vertices(tet);
-            let ratios = field.of_tet(vertices, self.complex.corners(tet));
-            for (ratio, [i, j]) in ratios.into_iter().zip(EDGES) {
-                if is_such(ratio, tet) {
-                    edges.push(Edge { ratio, ends: sorted_ids([vertices[i], vertices[j]]), tet });
+    /// without those of locked tets; each once, ordered by vertices. None without sizes.
+    fn edges(&mut self, is_such: impl Fn(&Complex, f64, TetId) -> bool + Sync) -> Vec<Edge> {
+        let Some(sizing) = &mut self.sizing else { return Vec::new() };
+        sizing.field.learn_all(&self.complex, self.complex.tets());
+        let (complex, field) = (&self.complex, &sizing.field);
+        let of_tets = |(): &mut (), range: Range<usize>| {
+            let mut edges = Vec::new();
+            for tet in range.map(TetId::new).filter(|&t| complex.is_alive(t)) {
+                let vertices = complex.vertices(tet);
+                let ratios = field.of_tet(vertices, complex.corners(tet));
+                for (ratio, [i, j]) in ratios.into_iter().zip(EDGES) {
+                    if is_such(complex, ratio, tet) {
+                        edges.push(Edge { ratio, ends: sorted_ids([vertices[i], vertices[j]]), tet });
+                    }
                 }
             }
-        }
+            edges
+        };
+        let mut edges = self.threads.in_runs(complex.n_slots(), SWEEP, of_tets);
         edges.sort_unstable_by_key(|edge| (edge.ends, edge.tet));
         edges.dedup_by_key(|edge| edge.ends);
-        let locked = locked_edges(&self.complex);
+        let locked = locked_edges(complex);
         edges.retain(|edge| locked.binary_search(&edge.ends).is_err());
         edges
     }
 
-    /// A tet that has this edge; `None` if none does any more.
-    fn tet_at(&mut self, Edge { ends, tet, .. }: Edge) -> Option<TetId> {
-        let has =
-            |t: TetId| self.complex.is_alive(t) && ends.iter().all(|v| self.complex.vertices(t).contains(v));
-        if has(tet) {
-            return Some(tet);
-        }
-        if !self.complex.is_used(ends[0]) {
+    /// Whether both ends of an edge are vertices of the mesh.
+    fn has_ends(&self, edge: Edge) -> bool {
+        edge.ends.iter().all(|&v| self.complex.is_used(v))
+    }
+}
+
+/// A pass that splits long edges at their midpoints.
+struct Splits {
+    /// Edges longer than this multiple of their size are too long.
+    too_long: f64,
+    /// No edge is split once the mesh has more than this many tets.
+    max_tets: usize,
+    /// Long edges that splits have made.
+    long: BinaryHeap<Edge>,
+    n_made: usize,
+}
+
+impl Pass for Splits {
+    type Candidate = Edge;
+    type Found = Option<Found<()>>;
+
+    fn search(&self, search: &mut Search, edge: Edge) -> Option<Found<()>> {
+        let complex = search.complex();
+        if complex.n_tets() > self.max_tets {
             return None;
         }
-        self.star.gather(&self.complex, ends[0]);
-        self.star.tets.iter().copied().find(|&t| has(t))
+        // An edge is removed only by its own split.
+        let tet = search.tet_at(edge)?;
+        search.around(tet, edge.ends, |search, shell| search.split(shell, edge.ends));
+        search.tools.first.take(complex)
     }
+
+    fn is_current(&self, repair: &Repair, edge: Edge, _: &Self::Found, since: u32) -> bool {
+        let is_old = |v: VertexId| repair.changes.none_since(v, since);
+        // A tet at the edge changes at both ends. From which tet a walk begins depends on the first end.
+        let [first, second] = edge.ends;
+        repair.complex.n_tets() <= self.max_tets
+            && repair.has_ends(edge)
+            && (is_old(first) || is_old(second) && has_edge(&repair.complex, edge.tet, edge.ends))
+    }
+
+    fn update(&self, repair: &Repair, _: Edge, found: &mut Self::Found) {
+        found.iter_mut().for_each(|found| found.renumber(&repair.complex));
+    }
+
+    fn act(&mut self, repair: &mut Repair, tools: &mut Tools, _: Edge, found: Self::Found) {
+        let Some(found) = found else { return };
+        let (middle, trial) = (repair.complex.next_vertex(), &mut tools.first);
+        trial.set(found);
+        if !trial.commit(&mut repair.complex, &mut repair.operations, &mut repair.changes) {
+            return;
+        }
+        self.n_made += 1;
+        repair.learn_sizes(trial.inserted());
+        let (complex, Some(field)) = (&repair.complex, repair.sizes()) else { return };
+        for &tet in trial.inserted() {
+            for other in complex.vertices(tet).into_iter().filter(|&v| v != middle) {
+                let ends = sorted_ids([middle, other]);
+                let ratio = field.of_edge(complex, ends);
+                if ratio > self.too_long {
+                    self.long.push(Edge { ratio, ends, tet });
+                }
+            }
+        }
+    }
+
+    fn first(&mut self, candidate: Edge) -> Option<Edge> {
+        if self.long.peek().is_some_and(|longest| *longest > candidate) { self.long.pop() } else { None }
+    }
+}
+
+/// A pass that collapses short edges.
+struct Collapses {
+    n_made: usize,
+}
+
+impl Pass for Collapses {
+    type Candidate = Edge;
+    type Found = Option<Found<f64>>;
+
+    fn search(&self, search: &mut Search, edge: Edge) -> Option<Found<f64>> {
+        // An earlier collapse may have removed this edge.
+        let tet = search.tet_at(edge)?;
+        search.collapse_to_size(tet, edge.ends);
+        search.tools.best.take(search.complex())
+    }
+
+    fn is_current(&self, repair: &Repair, edge: Edge, _: &Self::Found, since: u32) -> bool {
+        repair.has_ends(edge) && edge.ends.iter().all(|&v| repair.changes.none_since(v, since))
+    }
+
+    fn update(&self, repair: &Repair, _: Edge, found: &mut Self::Found) {
+        found.iter_mut().for_each(|found| found.renumber(&repair.complex));
+    }
+
+    fn act(&mut self, repair: &mut Repair, tools: &mut Tools, _: Edge, found: Self::Found) {
+        let Some(found) = found else { return };
+        tools.best.set(found);
+        if tools.best.commit(&mut repair.complex, &mut repair.operations, &mut repair.changes) {
+            self.n_made += 1;
+        }
+    }
+}
+
+impl Search<'_> {
+    /// Searches for a split of an edge at its midpoint, with the tets `shell` around it, whose tets are good
+    /// enough. On a smooth patch, the vertex is placed on the first surface, at the point closest to the
+    /// midpoint, if the walls may lie there.
+    fn split(&mut self, shell: &Shell, ends: [VertexId; 2]) {
+        let Repair { complex, surface, .. } = self.repair;
+        let [a, b] = ends;
+        if !complex.may_divide(a, b) || surface.is_none() && !shell.is_free() {
+            return;
+        }
+        let hold: Hold = self.hold_on(shell, ends);
+        let middle = scale(add(complex.point(a), complex.point(b)), 0.5);
+        let bar = self.bar_of_split(shell, ends);
+        let on_surface = self.on_surface(shell, middle, hold);
+        let trial = &mut self.tools.first;
+        let merit = Merit { operation: Operation::SplitEdge, score: (), bar };
+        if let Some(point) = on_surface
+            && split_edge(complex, shell, ends, (point, hold), bar, &mut trial.proposal)
+            && trial.offer(Rules::of(complex).near(surface.as_ref()), |_, _| Some(merit))
+        {
+            return;
+        }
+        if split_edge(complex, shell, ends, (middle, hold), bar, &mut trial.proposal) {
+            trial.offer(Rules::at_commit(complex).in_place(surface.as_ref()), |_, _| Some(merit));
+        }
+    }
+
+    /// The point of the first surface closest to the midpoint of an edge of a smooth patch, if it differs
+    /// from the midpoint; `shell` are the tets around the edge.
+    fn on_surface(&self, shell: &Shell, middle: Point, hold: Hold) -> Option<Point> {
+        let Repair { complex, surface, .. } = self.repair;
+        let place = shell.walls.first().filter(|_| hold == Hold::Surface)?;
+        let patch = complex.wall(shell.wall_at(complex, *place)).patch;
+        surface.as_ref()?.on_patch(patch, middle).filter(|point| *point != middle)
+    }
+
+    /// The quality that the tets of a split must exceed, for an edge with the tets `shell` around it.
+    ///
+    /// The longest edge of all may always be split. If a longer one stays, because it is held or its halves
+    /// would give only flat tets, splits of the others would make flatter and flatter tets: then no new tet
+    /// may be bad and worse than the worst that was there, and none nearly flat whatever was there.
+    fn bar_of_split(&self, shell: &Shell, ends: [VertexId; 2]) -> f64 {
+        let Repair { complex, surface, target, .. } = self.repair;
+        let ratio = |ends: [VertexId; 2]| self.repair.sizes().map_or(1.0, |field| field.of_edge(complex, ends));
+        let of_this = ratio(ends);
+        let mut edges = shell.tets.iter().flat_map(|&t| {
+            let vertices = complex.vertices(t);
+            EDGES.map(|edge| edge.map(|i| vertices[i]))
+        });
+        if surface.is_some() && edges.all(|edge| ratio(edge) <= of_this * ALIKE) {
+            return 0.0;
+        }
+        let floor = if surface.is_some() { FLATTEST } else { 0.0 };
+        complex.worst_of(&shell.tets).min(*target).next_down().max(floor)
+    }
+
+    /// Searches for the better of the two collapses of an edge.
+    fn collapse_to_size(&mut self, tet: TetId, [a, b]: [VertexId; 2]) {
+        let repair = self.repair;
+        let complex = &repair.complex;
+        let Some(field) = repair.sizes() else { return };
+        for [removed, kept] in [[a, b], [b, a]] {
+            if !self.may_collapse(tet, removed, kept) {
+                continue;
+            }
+            self.gather(removed);
+            let Tools { star, best, .. } = &mut *self.tools;
+            let bar = complex.worst_of(&star.tets).min(repair.target);
+            // Of two equally good ones, the second is taken.
+            let bar = best.score().map_or(bar.max(0.0), |best| best.max(bar)).next_down();
+            if collapse(complex, &star.tets, removed, kept, bar, &mut best.proposal) {
+                let rules = Rules::of(complex).near(repair.surface.as_ref()).not_longer(field);
+                best.offer(rules, |proposal, _| {
+                    Some(Merit { operation: Operation::Collapse, score: proposal.worst(), bar })
+                });
+            }
+        }
+    }
+
+    /// A tet that has this edge; `None` if none does any more.
+    fn tet_at(&mut self, Edge { ends, tet, .. }: Edge) -> Option<TetId> {
+        let complex = self.complex();
+        if has_edge(complex, tet, ends) {
+            return Some(tet);
+        }
+        if !complex.is_used(ends[0]) {
+            return None;
+        }
+        self.gather(ends[0]);
+        self.tools.star.tets.iter().copied().find(|&t| has_edge(complex, t, ends))
+    }
+}
+
+/// Whether a tet exists and has an edge.
+fn has_edge(complex: &Complex, tet: TetId, ends: [VertexId; 2]) -> bool {
+    complex.is_alive(tet) && ends.iter().all(|v| complex.vertices(tet).contains(v))
 }

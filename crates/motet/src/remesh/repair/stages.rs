@@ -7,18 +7,18 @@ use crate::geometry::vector::{add, norm, scale, sub};
 use crate::kernel::{Behind, Hold, Shell};
 use crate::ops::{collapse, split_crossed, split_edge, split_onto};
 use crate::remesh::classify::{Defect, classify};
-use crate::remesh::repair::Repair;
+use crate::remesh::repair::search::{Search, Tools};
 use crate::remesh::report::Operation;
 use crate::remesh::surface::SurfaceTrack;
 
 /// The stages, tried one after the other until the tet is no longer bad.
-pub(super) const STAGES: [fn(&mut Repair, TetId); 6] = [
-    Repair::reconnect,
-    Repair::by_type,
-    Repair::by_length,
-    Repair::smooth,
-    Repair::collapse_any,
-    Repair::insert,
+pub(super) const STAGES: [fn(&mut Search, TetId); 6] = [
+    |search, tet| search.reconnect(tet),
+    |search, tet| search.by_type(tet),
+    |search, tet| search.by_length(tet),
+    |search, tet| search.smooth(tet),
+    |search, tet| search.collapse_any(tet),
+    |search, tet| search.insert(tet),
 ];
 /// How many stages the first round tries. Each round that leaves bad tets adds one: many tets that seem to
 /// need an inserted vertex no longer do once their neighbours are repaired.
@@ -28,50 +28,41 @@ pub(super) const FIRST_STAGES: usize = 3;
 /// wall.
 const HEIGHTS: [f64; 3] = [1.24, 0.62, 0.31];
 
-impl Repair {
+impl Search<'_> {
     /// Stage one of the paper: removes an edge or a facet of the tet.
     fn reconnect(&mut self, tet: TetId) {
-        let vertices = self.complex.vertices(tet);
+        let vertices = self.complex().vertices(tet);
         for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
             let bar = self.bar(tet);
-            let is_feature = |repair: &mut Self, shell: &Shell| repair.hold_on(shell, edge) == Hold::Edge;
-            if self.surface.is_some() && self.around(tet, edge, is_feature) {
+            let is_feature = |search: &mut Self, shell: &Shell| search.hold_on(shell, edge) == Hold::Edge;
+            if self.repair.surface.is_some() && self.around(tet, edge, is_feature) {
                 continue;
             }
-            if self.edge_removal.propose(&self.complex, tet, edge, bar, &mut self.trial.proposal) {
+            if self.tools.edge_removal.propose(self.complex(), tet, edge, bar, &mut self.tools.repairs.proposal) {
                 self.offer(Operation::EdgeRemoval);
             }
         }
         for facet in 0..4 {
             let bar = self.bar(tet);
-            if self.face_removal.propose(&self.complex, tet, facet, bar, &mut self.trial.proposal) {
+            if self.tools.face_removal.propose(self.complex(), tet, facet, bar, &mut self.tools.repairs.proposal) {
                 self.offer(Operation::FaceRemoval);
             }
         }
     }
 
-    /// The constraint on a vertex that lies on an edge with the tets `shell` around it.
-    pub(super) fn hold_on(&self, shell: &Shell, edge: [VertexId; 2]) -> Hold {
-        match &self.surface {
-            _ if self.complex.line(edge[0], edge[1]).is_some() => Hold::Edge,
-            _ if shell.is_free() => Hold::Free,
-            Some(surface) if surface.is_smooth(&self.complex, edge, shell) => Hold::Surface,
-            _ => Hold::Edge,
-        }
-    }
-
     /// Stage two of the paper: the repair for the type of the tet.
     fn by_type(&mut self, tet: TetId) {
-        let vertices = self.complex.vertices(tet);
-        match classify(self.complex.corners(tet)) {
+        let vertices = self.complex().vertices(tet);
+        match classify(self.complex().corners(tet)) {
             Defect::CrossedEdges { edge } => {
                 self.cross(tet, EDGES[edge].map(|i| vertices[i]), EDGES[5 - edge].map(|i| vertices[i]))
             }
             Defect::VertexAtEdge { vertex, edge } => {
-                self.around(tet, EDGES[edge].map(|i| vertices[i]), |repair, shell| {
-                    let (bar, proposal) = (repair.bar(tet), &mut repair.trial.proposal);
-                    if split_onto(&repair.complex, shell, vertices[vertex], bar, proposal) {
-                        repair.offer(Operation::SplitOnto);
+                self.around(tet, EDGES[edge].map(|i| vertices[i]), |search, shell| {
+                    let (complex, bar) = (search.complex(), search.bar(tet));
+                    let proposal = &mut search.tools.repairs.proposal;
+                    if split_onto(complex, shell, vertices[vertex], bar, proposal) {
+                        search.offer(Operation::SplitOnto);
                     }
                 });
             }
@@ -91,13 +82,14 @@ impl Repair {
     }
 
     fn cross(&mut self, tet: TetId, [a, b]: [VertexId; 2], [c, d]: [VertexId; 2]) {
-        let sum = [a, b, c, d].into_iter().fold([0.0; 3], |sum, v| add(sum, self.complex.point(v)));
+        let sum = [a, b, c, d].into_iter().fold([0.0; 3], |sum, v| add(sum, self.complex().point(v)));
         let middle = scale(sum, 0.25);
-        self.around(tet, [a, b], |repair, first| {
-            repair.around(tet, [c, d], |repair, second| {
-                let (bar, proposal) = (repair.bar(tet), &mut repair.trial.proposal);
-                if split_crossed(&repair.complex, [first, second], middle, bar, proposal) {
-                    repair.offer(Operation::SplitCrossed);
+        self.around(tet, [a, b], |search, first| {
+            search.around(tet, [c, d], |search, second| {
+                let (complex, bar) = (search.complex(), search.bar(tet));
+                let proposal = &mut search.tools.repairs.proposal;
+                if split_crossed(complex, [first, second], middle, bar, proposal) {
+                    search.offer(Operation::SplitCrossed);
                 }
             });
         });
@@ -107,48 +99,33 @@ impl Repair {
         if !self.may_collapse(tet, removed, kept) {
             return;
         }
-        self.star.gather(&self.complex, removed);
+        self.gather(removed);
         let bar = self.bar(tet);
-        if collapse(&self.complex, &self.star.tets, removed, kept, bar, &mut self.trial.proposal) {
+        if collapse(self.complex(), &self.tools.star.tets, removed, kept, bar, &mut self.tools.repairs.proposal) {
             self.offer(Operation::Collapse);
         }
     }
 
-    /// Whether the constraint on vertex `removed` lets it be collapsed into `kept`: along the surface, or
-    /// along a feature.
-    pub(super) fn may_collapse(&mut self, tet: TetId, removed: VertexId, kept: VertexId) -> bool {
-        let hold = self.complex.hold(removed);
-        if self.surface.is_none() || hold == Hold::Free || hold == Hold::Fixed {
-            return hold == Hold::Free;
-        }
-        let edge = [removed, kept];
-        self.around(tet, edge, |Self { complex, surface, .. }, shell| {
-            let is_line = complex.line(removed, kept).is_some();
-            let is_feature = || surface.as_ref().is_some_and(|s| !s.is_smooth(complex, edge, shell));
-            is_line || !shell.walls.is_empty() && (hold == Hold::Surface || is_feature())
-        })
-    }
-
     /// Moves the vertices of a tet: anywhere if free; along the surface and its features if these may change.
     fn smooth(&mut self, tet: TetId) {
-        for vertex in self.complex.vertices(tet) {
-            let hold = self.complex.hold(vertex);
-            if hold == Hold::Fixed || hold != Hold::Free && self.surface.is_none() {
+        for vertex in self.complex().vertices(tet) {
+            let hold = self.complex().hold(vertex);
+            if hold == Hold::Fixed || hold != Hold::Free && self.repair.surface.is_none() {
                 continue;
             }
-            self.star.gather(&self.complex, vertex);
-            let mut shell = self.shells.pop().unwrap_or_default();
-            let track = match &self.surface {
-                Some(surface) if hold != Hold::Free => {
-                    surface.track(&self.complex, &self.star.tets, vertex, &mut shell)
-                }
+            self.gather(vertex);
+            let repair = self.repair;
+            let track = match &repair.surface {
+                Some(surface) if hold != Hold::Free => self.with_shell(|search, shell| {
+                    surface.track(&repair.complex, &search.tools.star.tets, vertex, shell)
+                }),
                 _ => Some(SurfaceTrack::Anywhere),
             };
-            self.shells.push(shell);
             let Some(track) = track else { continue };
-            let limits = [self.bar(tet), self.target];
-            let (complex, star) = (&self.complex, &self.star.tets);
-            if self.smoothing.propose(complex, star, vertex, limits, &track, &mut self.trial.proposal) {
+            let limits = [self.bar(tet), repair.target];
+            let Tools { star, smoothing, repairs, .. } = &mut *self.tools;
+            let proposal = &mut repairs.proposal;
+            if smoothing.propose(&repair.complex, &star.tets, vertex, limits, &track, proposal) {
                 self.offer(Operation::Smoothing);
             }
         }
@@ -156,15 +133,15 @@ impl Repair {
 
     /// Splits the edges of a tet that lie on the surface or are lines.
     fn split_surface(&mut self, tet: TetId) {
-        if self.surface.is_none() {
+        if self.repair.surface.is_none() {
             return;
         }
-        let vertices = self.complex.vertices(tet);
+        let vertices = self.complex().vertices(tet);
         for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
-            self.around(tet, edge, |repair, shell| {
-                let is_inside = shell.walls.is_empty() && repair.complex.line(edge[0], edge[1]).is_none();
+            self.around(tet, edge, |search, shell| {
+                let is_inside = shell.walls.is_empty() && search.complex().line(edge[0], edge[1]).is_none();
                 if !is_inside {
-                    repair.split_at_middle(tet, shell, edge, repair.hold_on(shell, edge));
+                    search.split_at_middle(tet, shell, edge, search.hold_on(shell, edge));
                 }
             });
         }
@@ -174,19 +151,20 @@ impl Repair {
     /// divided; `hold` is the constraint on the new vertex.
     pub(super) fn split_at_middle(&mut self, tet: TetId, shell: &Shell, edge: [VertexId; 2], hold: Hold) {
         let [a, b] = edge;
-        if !self.complex.may_divide(a, b) {
+        if !self.complex().may_divide(a, b) {
             return;
         }
-        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let (bar, proposal) = (self.bar(tet), &mut self.trial.proposal);
-        if split_edge(&self.complex, shell, edge, (middle, hold), bar, proposal) {
+        let middle = scale(add(self.complex().point(a), self.complex().point(b)), 0.5);
+        let (complex, bar) = (self.complex(), self.bar(tet));
+        let proposal = &mut self.tools.repairs.proposal;
+        if split_edge(complex, shell, edge, (middle, hold), bar, proposal) {
             self.offer(Operation::SplitEdge);
         }
     }
 
     /// Collapses any edge of a tet, in either direction.
     fn collapse_any(&mut self, tet: TetId) {
-        let vertices = self.complex.vertices(tet);
+        let vertices = self.complex().vertices(tet);
         for removed in vertices {
             for kept in vertices.into_iter().filter(|&v| v != removed) {
                 self.collapse(tet, removed, kept);
@@ -197,16 +175,16 @@ impl Repair {
     /// Inserts a vertex at the centroid of a tet, at the midpoint of an edge, or at the centroid of a facet.
     fn insert(&mut self, tet: TetId) {
         self.split_surface(tet);
-        let corners = self.complex.corners(tet);
+        let corners = self.complex().corners(tet);
         self.insert_at(tet, &[tet], centroid(corners));
-        let vertices = self.complex.vertices(tet);
+        let vertices = self.complex().vertices(tet);
         for [i, j] in EDGES {
-            self.around(tet, [vertices[i], vertices[j]], |repair, shell| {
-                repair.insert_at(tet, &shell.tets, scale(add(corners[i], corners[j]), 0.5));
+            self.around(tet, [vertices[i], vertices[j]], |search, shell| {
+                search.insert_at(tet, &shell.tets, scale(add(corners[i], corners[j]), 0.5));
             });
         }
         for (i, facet) in FACETS.into_iter().enumerate() {
-            if let Behind::Tet(half) = self.complex.behind(tet, i) {
+            if let Behind::Tet(half) = self.complex().behind(tet, i) {
                 let [a, b, c] = facet.map(|corner| corners[corner]);
                 self.insert_at(tet, &[tet, half.tet()], scale(add(add(a, b), c), 1.0 / 3.0));
             }
@@ -217,10 +195,10 @@ impl Repair {
     /// Inserts a vertex above the walls of a tet, starting at the height of a regular tet: in a tet that lies
     /// flat on its walls, all the tet's own midpoints are too close to them.
     fn insert_off_walls(&mut self, tet: TetId) {
-        let corners = self.complex.corners(tet);
+        let corners = self.complex().corners(tet);
         let (mut inwards, mut middle, mut area) = ([0.0; 3], [0.0; 3], 0.0);
         for facet in
-            FACETS.into_iter().enumerate().filter_map(|(i, f)| self.complex.is_wall(tet, i).then_some(f))
+            FACETS.into_iter().enumerate().filter_map(|(i, f)| self.complex().is_wall(tet, i).then_some(f))
         {
             let wall = facet.map(|corner| corners[corner]);
             let outwards = area_vector(wall);
@@ -239,8 +217,11 @@ impl Repair {
     }
 
     fn insert_at(&mut self, tet: TetId, seed: &[TetId], point: Point) {
-        let limits = [self.bar(tet), self.target];
-        if self.insertion.propose(&self.complex, seed, point, limits, &mut self.trial.proposal) {
+        let (complex, limits) = (self.complex(), [self.bar(tet), self.repair.target]);
+        let proposal = &mut self.tools.repairs.proposal;
+        let is_better = self.tools.insertion.propose(complex, seed, point, limits, proposal);
+        self.note_cavity();
+        if is_better {
             self.offer(Operation::Insertion);
         }
     }

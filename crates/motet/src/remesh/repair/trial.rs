@@ -1,6 +1,6 @@
 //! A search for the best change at one place: what is proposed is judged, the best is kept and committed.
 
-use crate::base::TetId;
+use crate::base::{TetId, VertexId};
 use crate::kernel::{Change, Complex, VertexChange};
 use crate::remesh::repair::tried::Changes;
 use crate::remesh::report::{Counts, Operation};
@@ -22,8 +22,27 @@ pub(super) struct Trial<S = f64> {
     inserted: Vec<TetId>,
 }
 
+/// The best change of a search, and what is known of it.
+#[derive(Debug, PartialEq)]
+pub(super) struct Found<S> {
+    change: Change,
+    merit: Merit<S>,
+    /// The id that the change gives to the vertex that it inserts, if it inserts one.
+    next: VertexId,
+}
+
+impl<S> Found<S> {
+    /// Gives the vertex that the change inserts the id that the next one gets now.
+    pub(super) fn renumber(&mut self, complex: &Complex) {
+        let before = std::mem::replace(&mut self.next, complex.next_vertex());
+        if let VertexChange::Insert(..) = self.change.vertex {
+            self.change.renumber(before, self.next);
+        }
+    }
+}
+
 /// What is known of an accepted change.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Merit<S> {
     pub(super) operation: Operation,
     pub(super) score: S,
@@ -31,14 +50,27 @@ pub(super) struct Merit<S> {
     pub(super) bar: f64,
 }
 
-impl<S: Copy> Trial<S> {
-    pub(super) fn new() -> Self {
+impl<S> Default for Trial<S> {
+    fn default() -> Self {
         Self { proposal: Change::default(), best: Change::default(), merit: None, inserted: Vec::new() }
     }
+}
 
+impl<S: Copy> Trial<S> {
     /// The best change so far.
     pub(super) fn best(&self) -> Option<&Change> {
         self.merit.map(|_| &self.best)
+    }
+
+    /// Ends the search: takes the best change, if there is one.
+    pub(super) fn take(&mut self, complex: &Complex) -> Option<Found<S>> {
+        let merit = self.merit.take()?;
+        Some(Found { change: std::mem::take(&mut self.best), merit, next: complex.next_vertex() })
+    }
+
+    /// Makes what a search has found the best change.
+    pub(super) fn set(&mut self, found: Found<S>) {
+        (self.best, self.merit) = (found.change, Some(found.merit));
     }
 
     /// The score of the best change so far.
@@ -53,21 +85,15 @@ impl<S: Copy> Trial<S> {
 
     /// Keeps the proposal as the best change if the rules accept it; returns whether they do. `weigh` gets
     /// the proposal and the score of the best so far, and returns `None` if the proposal is not better.
-    ///
-    /// Sizes are checked first, for every proposal: a field of sizes evaluates anew what has moved since the
-    /// last check, and a size interpolated at a vertex may differ from the given one by a rounding. So
-    /// results depend on which proposals it has checked.
     pub(super) fn offer(
         &mut self,
         rules: Rules,
         weigh: impl FnOnce(&Change, Option<S>) -> Option<Merit<S>>,
     ) -> bool {
         let Rules { complex, lengths, walls, check } = rules;
-        if !lengths.accept(complex, &self.proposal) {
-            return false;
-        }
         let Some(merit) = weigh(&self.proposal, self.score()) else { return false };
-        let is_accepted = walls.accept(complex, &self.proposal)
+        let is_accepted = lengths.accept(complex, &self.proposal)
+            && walls.accept(complex, &self.proposal)
             && (check == Check::Best || complex.check_against(&self.proposal, merit.bar).is_ok());
         if is_accepted {
             std::mem::swap(&mut self.proposal, &mut self.best);
@@ -78,22 +104,18 @@ impl<S: Copy> Trial<S> {
 
     /// Ends the search: commits the best change, if there is one and the kernel accepts it, and counts its
     /// operation. Returns whether a change was made.
-    ///
-    /// `changes` records the inserted tets; it is `None` where every record of failed operations begins
-    /// anew before it is read again.
+    /// `changes` records the inserted tets.
     pub(super) fn commit(
         &mut self,
         complex: &mut Complex,
         operations: &mut Counts,
-        changes: Option<&mut Changes>,
+        changes: &mut Changes,
     ) -> bool {
         let Some(merit) = self.merit.take() else { return false };
         let Ok(checked) = complex.check_against(&self.best, merit.bar) else { return false };
         complex.commit(checked, &mut self.inserted);
         operations.add(merit.operation);
-        if let Some(changes) = changes {
-            changes.inserted(complex, &self.inserted);
-        }
+        changes.inserted(complex, &self.inserted);
         true
     }
 
@@ -129,9 +151,9 @@ enum Check {
 enum LengthRule<'a> {
     Any,
     /// Neither too long nor too short.
-    Fit(&'a mut SizeField),
+    Fit(&'a SizeField),
     /// Not too long.
-    NotLonger(&'a mut SizeField),
+    NotLonger(&'a SizeField),
 }
 
 /// Where the walls and lines that a change makes may lie.
@@ -167,18 +189,18 @@ impl<'a> Rules<'a> {
     }
 
     /// If there are sizes, no edge becomes too long or too short.
-    pub(super) fn fit(self, field: Option<&'a mut SizeField>) -> Self {
+    pub(super) fn fit(self, field: Option<&'a SizeField>) -> Self {
         Self { lengths: field.map_or(LengthRule::Any, LengthRule::Fit), ..self }
     }
 
     /// No edge becomes longer than a collapse may make it.
-    pub(super) fn not_longer(self, field: &'a mut SizeField) -> Self {
+    pub(super) fn not_longer(self, field: &'a SizeField) -> Self {
         Self { lengths: LengthRule::NotLonger(field), ..self }
     }
 }
 
 impl LengthRule<'_> {
-    fn accept(self, complex: &Complex, change: &Change) -> bool {
+    fn accept(&self, complex: &Complex, change: &Change) -> bool {
         match self {
             Self::Any => true,
             Self::Fit(field) => field.accepts(complex, change),
