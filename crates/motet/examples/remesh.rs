@@ -1,7 +1,7 @@
 //! Repairs the bad tets of a mesh and prints one line of JSON with the median time, for the comparison with
 //! other programs.
 //!
-//! `remesh IN OUT [--goal best] [--adapt] [--min-eas Q] [--rounds N] [--sizes H]`
+//! `remesh IN OUT [--goal best] [--adapt] [--min-eas Q] [--rounds N] [--sizes H] [--threads N]`
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -45,13 +45,14 @@ fn run(arguments: &[String]) -> motet::Result<()> {
     }
     options.sizes = value("--sizes").and_then(|h| h.parse().ok()).map(Sizes::Uniform);
     let n_rounds = value("--rounds").map_or(3, |n| n.parse().unwrap_or(3)).max(1);
+    let threads = Threads::new(value("--threads").map_or(1, |n| n.parse().unwrap_or(1)))?;
     let mesh = TetPart::of(&motet::io::read(&arguments[0])?)?.mesh;
     let (mut seconds, mut joins, mut measures, mut last) = (vec![], vec![], vec![], None);
     for _ in 0..n_rounds {
         let [join, measure] = minimal_cost(&mesh);
         joins.push(join);
         measures.push(measure);
-        let (time, outcome) = timed(|| remesh(&mesh, &options, &Threads::single()));
+        let (time, outcome) = timed(|| remesh(&mesh, &options, &threads));
         seconds.push(time);
         last = Some(outcome?);
     }
@@ -71,7 +72,9 @@ fn run(arguments: &[String]) -> motet::Result<()> {
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if arguments.len() < 2 {
-        eprintln!("remesh IN OUT [--goal best] [--adapt] [--min-eas Q] [--rounds N] [--sizes H]");
+        eprintln!(
+            "remesh IN OUT [--goal best] [--adapt] [--min-eas Q] [--rounds N] [--sizes H] [--threads N]"
+        );
         return ExitCode::from(2);
     }
     match run(&arguments) {

@@ -218,6 +218,11 @@ impl Complex {
         self.locks.keeps_surface
     }
 
+    /// Whether tets overlap, or parts of the mesh are connected at single vertices or edges.
+    pub fn is_tangled(&self) -> bool {
+        self.overlaps.is_tangled
+    }
+
     /// Forbids changes to touch a tet.
     pub fn lock(&mut self, tet: TetId) {
         self.locks.add_tet(tet, self.n_slots());

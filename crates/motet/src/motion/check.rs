@@ -1,6 +1,8 @@
 //! Which cells a motion has inverted, relative to the reference: linear ones by exact signs at their corners,
 //! quadratic ones by bounds of the determinant of their Jacobian.
 
+use std::sync::Arc;
+
 use crate::base::{CellId, Point, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::volume_6;
@@ -16,7 +18,7 @@ use crate::motion::corners::CornerTets;
 pub(crate) struct Check {
     pub(crate) corners: CornerTets,
     /// The linear tets, which identify layers among those of low quality.
-    pub(crate) tets: OrientedTets,
+    pub(crate) tets: Arc<OrientedTets>,
     pub(crate) curved: CurvedCells,
     /// What was inverted or flat in the reference.
     before: Inverted,
@@ -37,7 +39,7 @@ const CHUNK: usize = 1 << 14;
 impl Check {
     pub(crate) fn new(mesh: &Mesh, threads: &Threads) -> Self {
         let (cells, points) = (&mesh.cells, &mesh.points);
-        let tets = OrientedTets::of_linear(mesh);
+        let tets = Arc::new(OrientedTets::of_linear(mesh));
         let mut corners = CornerTets::of(cells, &tets);
         let signs = threads.map(corners.len(), |i| orientation(corners.tets[i], points));
         let mut before = corners.orient_upright(cells, &signs);

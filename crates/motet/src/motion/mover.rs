@@ -1,10 +1,11 @@
 //! The mover: set up once, then milliseconds per step.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{in_range, sub};
-use crate::mesh::{Boundary, Mesh};
+use crate::mesh::{Boundary, Mesh, OrientedTets};
 use crate::motion::check::Check;
 use crate::motion::methods::{self, Follower, Prepare, Prepared, Reference, Scene};
 use crate::motion::middles::Middles;
@@ -137,6 +138,11 @@ impl Mover {
     /// [`Options::also_moved`].
     pub fn boundary(&self) -> &[VertexId] {
         &self.nodes.vertices[..self.nodes.n_driven]
+    }
+
+    /// The linear tets of the mesh, oriented as in the reference.
+    pub(crate) fn oriented_tets(&self) -> Arc<OrientedTets> {
+        self.check.tets.clone()
     }
 
     /// The points of the mesh as it was given.

@@ -171,7 +171,7 @@ impl Current {
         threads: &Threads,
     ) -> Result<Self> {
         let drive = wall.drive(mover.boundary(), &records.first, &records.node, threads)?;
-        let tets = Tets::of(&mesh);
+        let tets = Tets::of_mover(&mover);
         Ok(Self { mesh, tets, mover, records, drive, left })
     }
 

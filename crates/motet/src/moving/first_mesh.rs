@@ -85,18 +85,19 @@ impl FirstMesh {
         };
         let records =
             Records { before: Vec::new(), rest: None, in_first: InFirst::same(&mesh), ..now.records.clone() };
-        Some(Box::new(Self::from_parts(mesh, records, now.left.clone(), options, threads)))
+        Some(Box::new(Self::from_parts(mesh, &now.tets, records, now.left.clone(), options, threads)))
     }
 
-    /// Builds the first mesh from its parts, and evaluates its quality.
+    /// Builds the first mesh from its parts, of which `tets` are the tets of `mesh`, and evaluates its
+    /// quality.
     pub(super) fn from_parts(
         mesh: Mesh,
+        tets: &Tets,
         records: Records,
         left: Vec<LeftBad>,
         options: &Options,
         threads: &Threads,
     ) -> Self {
-        let tets = Tets::of(&mesh);
         let mean_eas = tets.qualities(&mesh.points, threads).mean;
         let n_bad = tets.shape(&mesh.points, options.limit(), threads).bad.len();
         Self { lengths: lengths(&mesh), mesh, records, left, mean_eas, n_bad }

@@ -5,6 +5,7 @@ use crate::mesh::{CellKind, Cells, Field, Mesh};
 use crate::moving::current::{InFirst, LeftBad, Records};
 use crate::moving::first_mesh::{Count, FirstMesh, Returns};
 use crate::moving::options::Options;
+use crate::moving::shapes::Tets;
 use crate::moving::state::{StateArrays, damaged_state};
 use crate::moving::wall::NO_NODE;
 
@@ -85,7 +86,8 @@ impl Returns {
             cells: ids_of(arrays, CELL, mesh.cells.len(), first.cells.len())?,
         };
         let left = arrays.left(LEFT, first.cells.len())?;
-        let first = FirstMesh::from_parts(first, records, left, options, threads);
+        let tets = Tets::of(&first);
+        let first = FirstMesh::from_parts(first, &tets, records, left, options, threads);
         Ok((Self { first: Some(Box::new(first)), count }, in_first))
     }
 }

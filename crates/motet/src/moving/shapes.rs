@@ -1,13 +1,16 @@
 //! Which tets are bad, and how bad the worst is.
 
+use std::sync::Arc;
+
 use crate::base::{CellId, Point, Threads};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas, rough_eas};
 use crate::geometry::tet;
 use crate::mesh::{Mesh, OrientedTets, Qualities, is_inverted};
+use crate::motion::Mover;
 
 /// The tets of a mesh, oriented.
 #[derive(Clone, Debug)]
-pub(super) struct Tets(OrientedTets);
+pub(super) struct Tets(Arc<OrientedTets>);
 
 /// The quality of the tets with the vertices at some positions.
 #[derive(Clone, Debug, Default)]
@@ -25,7 +28,12 @@ const CHUNK: usize = 1 << 13;
 
 impl Tets {
     pub(super) fn of(mesh: &Mesh) -> Self {
-        Self(OrientedTets::of_linear(mesh))
+        Self(Arc::new(OrientedTets::of_linear(mesh)))
+    }
+
+    /// The tets of the mesh that a mover moves.
+    pub(super) fn of_mover(mover: &Mover) -> Self {
+        Self(mover.oriented_tets())
     }
 
     pub(super) fn len(&self) -> usize {

@@ -5,7 +5,8 @@ use serde::Serialize;
 use crate::base::{TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::kernel::{Complex, Hold};
-use crate::remesh::sizes::{LONG, SHORT, SizeField};
+use crate::remesh::input_mesh::InputMesh;
+use crate::remesh::sizes::{LONG, SHORT, SizeField, SizesIn};
 
 /// Statistics of the edge lengths of a mesh, each length divided by the mean size at its ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -33,14 +34,15 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    pub(super) fn of(complex: &Complex, field: &mut SizeField) -> Self {
-        field.learn_all(complex, complex.tets());
+    pub(super) fn of(complex: &Complex, field: &mut SizeField, input: &InputMesh) -> Self {
+        field.learn(complex, input, complex.tets());
+        let sizes = SizesIn { field, input, complex };
         let mut edges = edges_of(complex, complex.tets());
         let locked = locked_edges(complex);
         let mut lengths = Self { edges: edges.len(), min: f64::INFINITY, ..Self::default() };
         let mut logarithms = [0.0; 2];
         for edge in edges.drain(..) {
-            let ratio = field.of_edge(complex, edge);
+            let ratio = sizes.of_edge(edge);
             let logarithm = ratio.ln();
             logarithms = [logarithms[0] + logarithm, logarithms[1] + logarithm * logarithm];
             lengths.min = lengths.min.min(ratio);

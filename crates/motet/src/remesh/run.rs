@@ -1,7 +1,5 @@
 //! The remeshing of a mesh from start to end: join, find, repair, extract.
 
-use std::cell::LazyCell;
-use std::sync::Arc;
 use std::time::Instant;
 
 use crate::base::{CellId, Point, Result, TetId, Threads};
@@ -14,7 +12,7 @@ use crate::remesh::lengths::Lengths;
 use crate::remesh::options::{Goal, Improve, Options, SurfaceRule};
 use crate::remesh::repair::{Aim, Density, Repair, Sizing, is_among, treatments};
 use crate::remesh::report::{Operation, Report, SizesReport, State};
-use crate::remesh::sizes::{LONG, SizeField};
+use crate::remesh::sizes::{LONG, SizeField, Sizes};
 use crate::remesh::surface::{Crease, Surface};
 
 /// A mesh after remeshing, with its history and a report.
@@ -27,7 +25,7 @@ pub struct Outcome {
 }
 
 /// Repairs the bad tets of a mesh, and only those; if [`Options::sizes`] are given, brings edges to them,
-/// too. Runs on one thread.
+/// too. The result is the same for any number of threads.
 ///
 /// # Errors
 /// If the mesh is invalid (see [`Complex::new`]), if a size is not a positive length, and if a mesh of these
@@ -61,19 +59,22 @@ pub(super) fn remesh_keeping(
     let n_peeled = complex.peel();
     let bad: Vec<TetId> = bad.into_iter().filter(|&t| complex.is_alive(t)).collect();
     let surface = adaptable(&mut complex, mesh, options);
-    let input = LazyCell::new(|| Arc::new(InputMesh::new(mesh)));
+    let is_graded = matches!(options.sizes, Some(Sizes::Vertices(_)));
+    let looks_back =
+        options.improve.as_ref().is_some_and(|improve| improve.density.is_some() || improve.pose.is_some());
+    let input = InputMesh::new(mesh, is_graded || looks_back);
     let splits = options.goal != Goal::Coarsen;
     let longest = if splits { LONG } else { 1.0 };
     let mut sizing = options.sizes.as_ref().zip(max_tets).map(|(sizes, max_tets)| Sizing {
-        field: SizeField::new(sizes, || input.clone(), longest),
+        field: SizeField::new(sizes, &input, longest),
         splits,
         max_tets,
     });
-    let lengths_before = sizing.as_mut().map(|sizing| Lengths::of(&complex, &mut sizing.field));
-    let mut repair = Repair::new(complex, surface, others, min_eas, threads);
+    let lengths_before = sizing.as_mut().map(|sizing| Lengths::of(&complex, &mut sizing.field, &input));
+    let mut repair = Repair::new(complex, input, surface, others, min_eas, threads);
     repair.operations.add_many(Operation::Peeling, n_peeled);
     let pose = options.improve.as_ref().and_then(|improve| improve.pose.clone());
-    repair.pose = pose.map(|pose| Pose::new(input.clone(), pose));
+    repair.pose = pose.map(Pose::new);
     let mut left = match sizing {
         Some(sizing) => repair.bring_to_sizes(sizing, options.rounds)?,
         None => repair.run(bad, options.rounds)?,
@@ -82,17 +83,18 @@ pub(super) fn remesh_keeping(
     if let Some(improve) = options.improve.as_ref().filter(|_| !repair.is_hopeless()) {
         let density = improve.density.as_ref().map(|density| {
             let n_free = density.free_vertices.unwrap_or(report.before.free_vertices);
-            Density::new(&density.sizes, &input, n_free)
+            Density::new(&density.sizes, &repair.input, n_free)
         });
         let vertices_left = repair.vertices_of(&left);
         improve_near(&mut repair, improve, density, options, mesh.tets.len())?;
         left = repair.try_again_at(&vertices_left, min_eas, options.rounds)?;
     }
     report.operations = repair.operations;
-    let (complex, sizing) = (repair.complex, repair.sizing);
-    report.sizes = lengths_before
-        .zip(sizing)
-        .map(|(before, mut sizing)| SizesReport { before, after: Lengths::of(&complex, &mut sizing.field) });
+    let (complex, input, sizing) = (repair.complex, repair.input, repair.sizing);
+    report.sizes = lengths_before.zip(sizing).map(|(before, mut sizing)| SizesReport {
+        before,
+        after: Lengths::of(&complex, &mut sizing.field, &input),
+    });
     report.seconds.repair = clock.lap();
 
     let extract = complex.extract(mesh);

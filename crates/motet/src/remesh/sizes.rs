@@ -1,7 +1,5 @@
 //! Requested edge lengths: given, checked, and evaluated anywhere.
 
-use std::sync::Arc;
-
 use serde::Serialize;
 
 use crate::base::{Error, Point, Result, TetId, VertexId};
@@ -116,66 +114,84 @@ pub(super) struct SizeField {
 enum Source {
     Uniform(f64),
     /// One size for each vertex of the mesh as it was given.
-    Vertices(Arc<InputMesh>, Vec<f64>),
+    Vertices(Vec<f64>),
+}
+
+/// Sizes in a mesh that has changed, with the mesh as it was given.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SizesIn<'a> {
+    pub(super) field: &'a SizeField,
+    pub(super) input: &'a InputMesh<'a>,
+    pub(super) complex: &'a Complex,
 }
 
 impl SizeField {
     /// A field of sizes that have been checked. Where nothing is split, `collapse_limit` keeps collapses from
     /// making edges that a later remeshing would split at once.
-    pub(super) fn new(sizes: &Sizes, input: impl FnOnce() -> Arc<InputMesh>, collapse_limit: f64) -> Self {
+    pub(super) fn new(sizes: &Sizes, input: &InputMesh, collapse_limit: f64) -> Self {
         let (source, known) = match sizes {
             Sizes::Uniform(h) => (Source::Uniform(*h), Vec::new()),
             Sizes::Vertices(sizes) => {
-                let input = input();
                 let known = input.points().iter().copied().zip(sizes.iter().copied()).collect();
-                (Source::Vertices(input, sizes.clone()), known)
+                (Source::Vertices(sizes.clone()), known)
             }
         };
         Self { source, known, collapse_limit, long_limit: LONG, may_shorten: false }
     }
 
-    /// The size at a vertex that is, or will be, at `point`: linear in the tet that contains it.
-    pub(super) fn at(&self, vertex: VertexId, point: Point) -> f64 {
-        let (input, sizes) = match &self.source {
-            Source::Uniform(h) => return *h,
-            Source::Vertices(input, sizes) => (input, sizes),
-        };
-        match self.known.get(vertex.index()) {
-            Some(&(place, size)) if place == point => size,
-            _ => input.at(point).map_or(f64::NAN, |(tet, weights)| {
-                tet.iter().zip(weights).map(|(v, weight)| sizes[v.index()] * weight).sum()
-            }),
-        }
+    /// Whether sizes differ from place to place.
+    pub(super) fn is_graded(&self) -> bool {
+        matches!(self.source, Source::Vertices(_))
     }
 
-    /// Evaluates the size at a vertex that was inserted or moved, so that later calls find it.
-    pub(super) fn learn(&mut self, vertex: VertexId, point: Point) {
-        if matches!(self.source, Source::Uniform(_)) {
+    /// Evaluates the sizes at all vertices of some tets that were inserted or moved, so that later calls find
+    /// them.
+    pub(super) fn learn(
+        &mut self,
+        complex: &Complex,
+        input: &InputMesh,
+        tets: impl IntoIterator<Item = TetId>,
+    ) {
+        if !self.is_graded() {
             return;
         }
-        if self.known.len() <= vertex.index() {
-            self.known.resize(vertex.index() + 1, ([f64::NAN; 3], f64::NAN));
-        }
-        if self.known[vertex.index()].0 != point {
-            self.known[vertex.index()] = (point, self.at(vertex, point));
+        for vertex in tets.into_iter().flat_map(|t| complex.vertices(t)) {
+            if self.known.len() <= vertex.index() {
+                self.known.resize(vertex.index() + 1, ([f64::NAN; 3], f64::NAN));
+            }
+            let point = complex.point(vertex);
+            if self.known[vertex.index()].0 != point {
+                self.known[vertex.index()] =
+                    (point, SizesIn { field: self, input, complex }.at(vertex, point, &[]));
+            }
         }
     }
+}
 
-    /// Evaluates the sizes at all vertices of some tets that were inserted or moved.
-    pub(super) fn learn_all(&mut self, complex: &Complex, tets: impl IntoIterator<Item = TetId>) {
-        if matches!(self.source, Source::Vertices(..)) {
-            let vertices = tets.into_iter().flat_map(|t| complex.vertices(t));
-            vertices.for_each(|v| self.learn(v, complex.point(v)));
+impl SizesIn<'_> {
+    /// The size at a vertex that is, or will be after a change of `cavity`, at `point`: linear in the tet
+    /// that contained it.
+    fn at(self, vertex: VertexId, point: Point, cavity: &[TetId]) -> f64 {
+        let sizes = match &self.field.source {
+            Source::Uniform(h) => return *h,
+            Source::Vertices(sizes) => sizes,
+        };
+        match self.field.known.get(vertex.index()) {
+            Some(&(place, size)) if place == point => size,
+            _ => self.input.at(self.complex, point, cavity).map_or(f64::NAN, |(tet, weights)| {
+                tet.iter().zip(weights).map(|(v, weight)| sizes[v.index()] * weight).sum()
+            }),
         }
     }
 
     /// The lengths of the six edges of a tet divided by their sizes. Used to sweep whole meshes, so the size
     /// at each corner is looked up once.
     #[inline]
-    pub(super) fn of_tet(&self, vertices: [VertexId; 4], corners: [Point; 4]) -> [f64; 6] {
+    pub(super) fn of_tet(self, tet: TetId) -> [f64; 6] {
+        let (vertices, corners) = (self.complex.vertices(tet), self.complex.corners(tet));
         let (mut sizes, mut ratios) = ([0.0; 4], [0.0; 6]);
         for i in 0..4 {
-            sizes[i] = self.at(vertices[i], corners[i]);
+            sizes[i] = self.at(vertices[i], corners[i], &[]);
         }
         for (ratio, [i, j]) in ratios.iter_mut().zip(EDGES) {
             *ratio = distance(corners[i], corners[j]) / (0.5 * (sizes[i] + sizes[j]));
@@ -183,33 +199,34 @@ impl SizeField {
         ratios
     }
 
-    /// The length of an edge of a complex divided by its size, the mean of those at its ends.
-    pub(super) fn of_edge(&self, complex: &Complex, ends: [VertexId; 2]) -> f64 {
-        let [p, q] = ends.map(|v| complex.point(v));
-        distance(p, q) / (0.5 * (self.at(ends[0], p) + self.at(ends[1], q)))
+    /// The length of an edge divided by its size, the mean of those at its ends.
+    pub(super) fn of_edge(self, ends: [VertexId; 2]) -> f64 {
+        let [p, q] = ends.map(|v| self.complex.point(v));
+        distance(p, q) / (0.5 * (self.at(ends[0], p, &[]) + self.at(ends[1], q, &[])))
     }
 
     /// Whether a change makes no new edge that is too long or too short, and none that already is more so.
-    pub(super) fn accepts(&self, complex: &Complex, change: &Change) -> bool {
-        let low = if self.may_shorten { 0.0 } else { SHORT };
-        self.keeps_within([low, self.long_limit], complex, change)
+    pub(super) fn accepts(self, change: &Change) -> bool {
+        let low = if self.field.may_shorten { 0.0 } else { SHORT };
+        self.keeps_within([low, self.field.long_limit], change)
     }
 
     /// Whether a collapse makes no edge too long.
-    pub(super) fn lengthens_none(&self, complex: &Complex, change: &Change) -> bool {
-        self.keeps_within([0.0, self.collapse_limit], complex, change)
+    pub(super) fn lengthens_none(self, change: &Change) -> bool {
+        self.keeps_within([0.0, self.field.collapse_limit], change)
     }
 
-    fn keeps_within(&self, [low, high]: [f64; 2], complex: &Complex, change: &Change) -> bool {
+    fn keeps_within(self, [low, high]: [f64; 2], change: &Change) -> bool {
+        let complex = self.complex;
         let placed = match change.vertex {
             VertexChange::Insert(point, _) => Some((complex.next_vertex(), point)),
             VertexChange::Move(vertex, point) => Some((vertex, point)),
             VertexChange::None | VertexChange::Remove(_) => None,
         };
-        let placed = placed.map(|(vertex, point)| (vertex, point, self.at(vertex, point)));
+        let placed = placed.map(|(vertex, point)| (vertex, point, self.at(vertex, point, &change.cavity)));
         let of = |v: VertexId| match placed {
             Some((vertex, point, size)) if vertex == v => (point, size),
-            _ => (complex.point(v), self.at(v, complex.point(v))),
+            _ => (complex.point(v), self.at(v, complex.point(v), &[])),
         };
         for tet in &change.fill {
             for ends in EDGES.map(|e| e.map(|i| tet.vertices[i])) {
@@ -222,7 +239,7 @@ impl SizeField {
                 if !change.cavity.iter().any(had) {
                     return false;
                 }
-                let before = self.of_edge(complex, ends);
+                let before = self.of_edge(ends);
                 if after > high && after > before || after < low && after < before {
                     return false;
                 }

@@ -1,6 +1,7 @@
 //! Floor 3: searching in space.
 
 mod boxes;
+mod growing_boxes;
 pub(crate) mod hilbert;
 mod locate;
 mod nearest;
@@ -10,6 +11,7 @@ mod winding;
 
 pub use boxes::{Bounds, BoxTree};
 pub(crate) use boxes::{bounding_box, expanded, touch};
+pub(crate) use growing_boxes::GrowingBoxes;
 pub use locate::{Located, Locator, OUTSIDE};
 pub use nearest::{Closest, NearestTriangle};
 pub use winding::WindingNumber;

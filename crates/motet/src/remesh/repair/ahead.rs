@@ -105,20 +105,34 @@ impl Repair<'_> {
         found
     }
 
-    /// The searches of a block made by several threads; nothing if there is one.
+    /// Whether a search reads no more than its candidate and what it notes. In a tangled mesh, it looks for
+    /// tets that overlap. Where walls move, new vertices may lie outside the mesh as it was given, and their
+    /// sizes depend on what else was removed.
+    fn is_local(&self) -> bool {
+        let is_graded = self.sizing.as_ref().is_some_and(|sizing| sizing.field.is_graded());
+        !self.complex.is_tangled() && !(is_graded && self.surface.is_some())
+    }
+
+    /// The searches of a block made by several threads; nothing if there is one, or if they are not local.
     fn search_ahead<P: Pass>(&self, pass: &P, block: &[P::Candidate]) -> Vec<Option<Ahead<P::Found>>> {
-        if self.threads.count() < 2 || block.len() < 2 * RUN {
+        if self.threads.count() < 2 || block.len() < 2 * RUN || !self.is_local() {
             return Vec::new();
         }
         let mut all: Vec<_> = block.iter().map(|_| None).collect();
-        self.threads.fill(&mut all, RUN, || (), |(), start, some| {
-            let mut tools = self.toolbox.take();
-            for (found, &candidate) in some.iter_mut().zip(&block[start..]) {
-                let mut search = Search::ahead(self, &mut tools);
-                *found = Some(Ahead { found: pass.search(&mut search, candidate), reads: search.reads() });
-            }
-            self.toolbox.put_back(tools);
-        });
+        self.threads.fill(
+            &mut all,
+            RUN,
+            || (),
+            |(), start, some| {
+                let mut tools = self.toolbox.take();
+                for (found, &candidate) in some.iter_mut().zip(&block[start..]) {
+                    let mut search = Search::ahead(self, &mut tools);
+                    *found =
+                        Some(Ahead { found: pass.search(&mut search, candidate), reads: search.reads() });
+                }
+                self.toolbox.put_back(tools);
+            },
+        );
         all
     }
 

@@ -51,8 +51,14 @@ impl Search<'_> {
     /// The number of edges of a vertex, and their total length.
     fn edges_at(&mut self, vertex: VertexId) -> (usize, f64) {
         self.gather(vertex);
-        let mut others: Vec<VertexId> =
-            self.tools.star.tets.iter().flat_map(|&t| self.complex().vertices(t)).filter(|&v| v != vertex).collect();
+        let mut others: Vec<VertexId> = self
+            .tools
+            .star
+            .tets
+            .iter()
+            .flat_map(|&t| self.complex().vertices(t))
+            .filter(|&v| v != vertex)
+            .collect();
         others.sort_unstable();
         others.dedup();
         let length = |v: &VertexId| distance(self.complex().point(vertex), self.complex().point(*v));

@@ -5,8 +5,6 @@
 //! mesh that is repaired in each step would grow or thin out without end. Edge lengths are judged by
 //! remembered sizes: those of the mesh as it was at first.
 
-use std::sync::Arc;
-
 use crate::base::{Result, TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
@@ -17,7 +15,7 @@ use crate::remesh::repair::Repair;
 use crate::remesh::repair::search::{Search, Tools};
 use crate::remesh::repair::trial::{Merit, Rules};
 use crate::remesh::report::Operation;
-use crate::remesh::sizes::{SHORT, SizeField, Sizes};
+use crate::remesh::sizes::{SHORT, SizeField, Sizes, SizesIn};
 
 /// A surplus or lack of up to this many vertices is tolerated.
 const TOLERANCE: isize = 2;
@@ -48,9 +46,9 @@ pub(in crate::remesh) struct Density {
 
 impl Density {
     /// The density with these sizes at the vertices of the given mesh.
-    pub(in crate::remesh) fn new(sizes: &[f64], input: &Arc<InputMesh>, n_free: usize) -> Self {
+    pub(in crate::remesh) fn new(sizes: &[f64], input: &InputMesh, n_free: usize) -> Self {
         let sizes = Sizes::Vertices(sizes.to_vec());
-        Self { field: SizeField::new(&sizes, || input.clone(), LONG), n_free }
+        Self { field: SizeField::new(&sizes, input, LONG), n_free }
     }
 }
 
@@ -87,7 +85,7 @@ impl Repair<'_> {
             self.threads.watch().report_and_check("collapsing short edges", i, edges.len())?;
             Search::new(self, &mut tools).collapse_crowded(edge, floor, field);
             let trial = &mut tools.best;
-            if trial.commit(&mut self.complex, &mut self.operations, &mut self.changes) {
+            if trial.commit(self) {
                 lack += 1;
                 zone.extend_from_slice(trial.inserted());
             }
@@ -104,7 +102,7 @@ impl Repair<'_> {
             self.threads.watch().report_and_check("splitting long edges", i, edges.len())?;
             Search::new(self, &mut tools).insert_on(edge, floor);
             let trial = &mut tools.first;
-            if trial.commit(&mut self.complex, &mut self.operations, &mut self.changes) {
+            if trial.commit(self) {
                 lack -= 1;
                 zone.extend_from_slice(trial.inserted());
             }
@@ -118,10 +116,11 @@ impl Repair<'_> {
         let mut edges = Vec::new();
         for tet in tets.filter(|&t| !self.complex.is_locked(t)) {
             let vertices = self.complex.vertices(tet);
-            field.learn_all(&self.complex, [tet]);
+            field.learn(&self.complex, &self.input, [tet]);
+            let sizes = SizesIn { field, input: &self.input, complex: &self.complex };
             for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
                 let ends = [a.min(b), a.max(b)];
-                edges.push(Edge { ratio: field.of_edge(&self.complex, ends), ends, tet });
+                edges.push(Edge { ratio: sizes.of_edge(ends), ends, tet });
             }
         }
         edges.sort_unstable_by_key(|edge| (edge.ends, edge.tet));
@@ -133,14 +132,14 @@ impl Repair<'_> {
     fn has(&self, &Edge { ends, tet, .. }: &Edge) -> bool {
         self.complex.is_alive(tet) && ends.iter().all(|v| self.complex.vertices(tet).contains(v))
     }
-
 }
 
 impl Search<'_> {
     /// Searches for the better of the collapses of an edge towards its ends for which the removed vertex is
     /// free and no edge becomes too long.
     fn collapse_crowded(&mut self, edge: &Edge, floor: f64, field: &SizeField) {
-        let complex = self.complex();
+        let (complex, input) = (self.complex(), &self.repair.input);
+        let sizes = SizesIn { field, input, complex };
         if !self.repair.has(edge) {
             return;
         }
@@ -153,7 +152,7 @@ impl Search<'_> {
             let Tools { star, best, .. } = &mut *self.tools;
             let bar = complex.worst_of(&star.tets).min(floor).next_down();
             if collapse(complex, &star.tets, removed, kept, bar, &mut best.proposal) {
-                best.offer(Rules::of(complex).not_longer(field), |proposal, least| {
+                best.offer(Rules::of(complex).not_longer(sizes), |proposal, least| {
                     let sum: f64 = proposal.fill.iter().map(|tet| defect(tet.quality)).sum();
                     let score = sum / proposal.fill.len() as f64;
                     let is_better = least.is_none_or(|least| score < least);
@@ -174,9 +173,7 @@ impl Search<'_> {
             let Tools { insertion, first, .. } = &mut *search.tools;
             let bar_of = |tets: &[TetId]| complex.worst_of(tets).min(floor).next_down();
             let bars = [bar_of(&shell.tets), GOOD.max(floor)];
-            if shell.is_free()
-                && insertion.propose(complex, &shell.tets, middle, bars, &mut first.proposal)
-            {
+            if shell.is_free() && insertion.propose(complex, &shell.tets, middle, bars, &mut first.proposal) {
                 first.offer(Rules::at_commit(complex), |proposal, _| {
                     let bar = bar_of(&proposal.cavity);
                     Some(Merit { operation: Operation::Insertion, score: (), bar })

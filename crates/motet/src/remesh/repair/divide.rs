@@ -60,7 +60,7 @@ impl Repair<'_> {
     fn split_longest(&mut self, tet: TetId, tools: &mut Tools) {
         Search::new(self, tools).split_longest(tet);
         let trial = &mut tools.first;
-        if trial.commit(&mut self.complex, &mut self.operations, &mut self.changes) {
+        if trial.commit(self) {
             let (complex, target) = (&self.complex, self.target);
             let inserted = trial.inserted().iter().copied();
             self.inserted_bad.extend(inserted.filter(|&t| complex.quality(t) < target));

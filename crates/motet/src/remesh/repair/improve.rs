@@ -154,7 +154,7 @@ impl Repair<'_> {
     /// improve as a whole.
     pub(in crate::remesh) fn improve(&mut self, aim: Aim, mut zone: Vec<TetId>) -> Result<()> {
         if let Some(pose) = &mut self.pose {
-            pose.update(&self.complex, self.threads);
+            pose.update(&self.complex, &self.input, self.threads);
         }
         let mean = self.mean_cost(aim);
         let mut progress = Progress { aim, mean, settled: Settled::default(), inserted: Vec::new() };
@@ -234,11 +234,10 @@ impl Progress {
     fn make(&mut self, repair: &mut Repair, tools: &mut Tools, found: Found<f64>) {
         let trial = &mut tools.best;
         trial.set(found);
-        if trial.commit(&mut repair.complex, &mut repair.operations, &mut repair.changes) {
+        if trial.commit(repair) {
             self.inserted.extend_from_slice(trial.inserted());
-            repair.learn_sizes(trial.inserted());
             if let Some(pose) = &mut repair.pose {
-                pose.follow(&repair.complex, trial.vertex(), trial.inserted());
+                pose.follow(&repair.complex, &repair.input, trial.vertex(), trial.inserted());
             }
         }
     }
@@ -300,8 +299,9 @@ impl Pass for Swaps<'_> {
 
     fn is_current(&self, repair: &Repair, tet: TetId, found: &SwapFound, since: u32) -> bool {
         let Self(progress) = self;
-        let is_settled_now =
-            |place: usize| found.outcomes[place] == Outcome::Better && progress.is_settled(repair, tet, place);
+        let is_settled_now = |place: usize| {
+            found.outcomes[place] == Outcome::Better && progress.is_settled(repair, tet, place)
+        };
         repair.is_unchanged(tet, since) && !(0..N_PLACES).any(is_settled_now)
     }
 

@@ -18,8 +18,8 @@ pub(super) use improve::Aim;
 pub(super) use sizing::Sizing;
 
 use crate::base::{Result, TetId, Threads, VertexId};
-use crate::kernel::{Complex, Shell, Star};
-use crate::remesh::input_mesh::Pose;
+use crate::kernel::{Change, Complex, Shell, Star};
+use crate::remesh::input_mesh::{InputMesh, Pose};
 use crate::remesh::left::{forced, is_forced};
 use crate::remesh::options::SurfaceRule;
 use crate::remesh::repair::ahead::Pass;
@@ -28,8 +28,8 @@ use crate::remesh::repair::search::{Search, Toolbox, Tools};
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
 use crate::remesh::repair::trial::Found;
 use crate::remesh::repair::tried::{Changes, Tried};
-use crate::remesh::report::Counts;
-use crate::remesh::sizes::SizeField;
+use crate::remesh::report::{Counts, Operation};
+use crate::remesh::sizes::SizesIn;
 use crate::remesh::surface::{Crease, Surface};
 
 /// How much higher the target is for tets around those that no operation repairs, one attempt after another.
@@ -85,6 +85,8 @@ fn union(a: &[bool], b: &[bool]) -> Vec<bool> {
 /// The state of a repair.
 pub(super) struct Repair<'a> {
     pub(super) complex: Complex,
+    /// The mesh that the complex was made of.
+    pub(super) input: InputMesh<'a>,
     pub(super) operations: Counts,
     surface: Option<Surface>,
     /// The sizes, if any are requested.
@@ -111,6 +113,7 @@ pub(super) struct Repair<'a> {
 impl<'a> Repair<'a> {
     pub(super) fn new(
         complex: Complex,
+        input: InputMesh<'a>,
         surface: Option<Surface>,
         never_bad: Vec<bool>,
         target: f64,
@@ -118,6 +121,7 @@ impl<'a> Repair<'a> {
     ) -> Self {
         Self {
             complex,
+            input,
             operations: Counts::default(),
             surface,
             sizing: None,
@@ -401,15 +405,24 @@ impl<'a> Repair<'a> {
     }
 
     /// The sizes that edges are to have, if any are requested.
-    fn sizes(&self) -> Option<&SizeField> {
-        self.sizing.as_ref().map(|sizing| &sizing.field)
+    fn sizes(&self) -> Option<SizesIn<'_>> {
+        let Self { complex, input, sizing, .. } = self;
+        sizing.as_ref().map(|sizing| SizesIn { field: &sizing.field, input, complex })
     }
 
-    /// Evaluates the sizes at the vertices of tets that were inserted.
-    fn learn_sizes(&mut self, inserted: &[TetId]) {
-        if let Some(sizing) = &mut self.sizing {
-            sizing.field.learn_all(&self.complex, inserted.iter().copied());
+    /// Makes a change if the kernel accepts it; its tets have to be better than `bar`. `inserted` gets the new
+    /// tets. Returns whether it was made.
+    fn commit(&mut self, change: &Change, of: Operation, bar: f64, inserted: &mut Vec<TetId>) -> bool {
+        let Self { complex, input, sizing, changes, operations, .. } = self;
+        let Ok(checked) = complex.check_against(change, bar) else { return false };
+        input.note_removed(complex, &change.cavity);
+        complex.commit(checked, inserted);
+        operations.add(of);
+        changes.inserted(complex, inserted);
+        if let Some(sizing) = sizing {
+            sizing.field.learn(complex, input, inserted.iter().copied());
         }
+        true
     }
 }
 
@@ -472,7 +485,7 @@ impl Pass for Repairs {
             RepairFound::Failed => false,
             RepairFound::Change(found) => {
                 tools.repairs.set(found);
-                tools.repairs.commit(&mut repair.complex, &mut repair.operations, &mut repair.changes)
+                tools.repairs.commit(repair)
             }
         };
         if is_made {
@@ -480,7 +493,6 @@ impl Pass for Repairs {
             let (complex, target) = (&repair.complex, repair.target);
             let inserted = tools.repairs.inserted().iter().copied();
             repair.inserted_bad.extend(inserted.filter(|&t| complex.quality(t) < target));
-            repair.learn_sizes(tools.repairs.inserted());
         } else if repair.is_last_stage() {
             repair.tried.note_failure(&repair.changes, tet, repair.target);
         }

@@ -18,7 +18,7 @@ use crate::remesh::repair::trial::{Found, Merit, Rules};
 use crate::remesh::repair::tried::Tried;
 use crate::remesh::repair::{RAISES, Repair};
 use crate::remesh::report::Operation;
-use crate::remesh::sizes::{LONG, SHORT, SizeField};
+use crate::remesh::sizes::{LONG, SHORT, SizeField, SizesIn};
 
 /// Short edges are searched for once more if this fraction of them has been collapsed.
 const ENOUGH: f64 = 0.02;
@@ -199,15 +199,15 @@ impl Repair<'_> {
     /// The edges for which `is_such` holds, given their ratio of length to size and one of their tets,
     /// without those of locked tets; each once, ordered by vertices. None without sizes.
     fn edges(&mut self, is_such: impl Fn(&Complex, f64, TetId) -> bool + Sync) -> Vec<Edge> {
-        let Some(sizing) = &mut self.sizing else { return Vec::new() };
-        sizing.field.learn_all(&self.complex, self.complex.tets());
-        let (complex, field) = (&self.complex, &sizing.field);
+        let Self { complex, input, sizing, .. } = self;
+        let Some(Sizing { field, .. }) = sizing else { return Vec::new() };
+        field.learn(complex, input, complex.tets());
+        let sizes = SizesIn { field, input, complex };
         let of_tets = |(): &mut (), range: Range<usize>| {
             let mut edges = Vec::new();
             for tet in range.map(TetId::new).filter(|&t| complex.is_alive(t)) {
                 let vertices = complex.vertices(tet);
-                let ratios = field.of_tet(vertices, complex.corners(tet));
-                for (ratio, [i, j]) in ratios.into_iter().zip(EDGES) {
+                for (ratio, [i, j]) in sizes.of_tet(tet).into_iter().zip(EDGES) {
                     if is_such(complex, ratio, tet) {
                         edges.push(Edge { ratio, ends: sorted_ids([vertices[i], vertices[j]]), tet });
                     }
@@ -272,16 +272,15 @@ impl Pass for Splits {
         let Some(found) = found else { return };
         let (middle, trial) = (repair.complex.next_vertex(), &mut tools.first);
         trial.set(found);
-        if !trial.commit(&mut repair.complex, &mut repair.operations, &mut repair.changes) {
+        if !trial.commit(repair) {
             return;
         }
         self.n_made += 1;
-        repair.learn_sizes(trial.inserted());
-        let (complex, Some(field)) = (&repair.complex, repair.sizes()) else { return };
+        let Some(sizes) = repair.sizes() else { return };
         for &tet in trial.inserted() {
-            for other in complex.vertices(tet).into_iter().filter(|&v| v != middle) {
+            for other in repair.complex.vertices(tet).into_iter().filter(|&v| v != middle) {
                 let ends = sorted_ids([middle, other]);
-                let ratio = field.of_edge(complex, ends);
+                let ratio = sizes.of_edge(ends);
                 if ratio > self.too_long {
                     self.long.push(Edge { ratio, ends, tet });
                 }
@@ -321,7 +320,7 @@ impl Pass for Collapses {
     fn act(&mut self, repair: &mut Repair, tools: &mut Tools, _: Edge, found: Self::Found) {
         let Some(found) = found else { return };
         tools.best.set(found);
-        if tools.best.commit(&mut repair.complex, &mut repair.operations, &mut repair.changes) {
+        if tools.best.commit(repair) {
             self.n_made += 1;
         }
     }
@@ -370,7 +369,7 @@ impl Search<'_> {
     /// may be bad and worse than the worst that was there, and none nearly flat whatever was there.
     fn bar_of_split(&self, shell: &Shell, ends: [VertexId; 2]) -> f64 {
         let Repair { complex, surface, target, .. } = self.repair;
-        let ratio = |ends: [VertexId; 2]| self.repair.sizes().map_or(1.0, |field| field.of_edge(complex, ends));
+        let ratio = |ends: [VertexId; 2]| self.repair.sizes().map_or(1.0, |sizes| sizes.of_edge(ends));
         let of_this = ratio(ends);
         let mut edges = shell.tets.iter().flat_map(|&t| {
             let vertices = complex.vertices(t);
@@ -387,7 +386,7 @@ impl Search<'_> {
     fn collapse_to_size(&mut self, tet: TetId, [a, b]: [VertexId; 2]) {
         let repair = self.repair;
         let complex = &repair.complex;
-        let Some(field) = repair.sizes() else { return };
+        let Some(sizes) = repair.sizes() else { return };
         for [removed, kept] in [[a, b], [b, a]] {
             if !self.may_collapse(tet, removed, kept) {
                 continue;
@@ -398,7 +397,7 @@ impl Search<'_> {
             // Of two equally good ones, the second is taken.
             let bar = best.score().map_or(bar.max(0.0), |best| best.max(bar)).next_down();
             if collapse(complex, &star.tets, removed, kept, bar, &mut best.proposal) {
-                let rules = Rules::of(complex).near(repair.surface.as_ref()).not_longer(field);
+                let rules = Rules::of(complex).near(repair.surface.as_ref()).not_longer(sizes);
                 best.offer(rules, |proposal, _| {
                     Some(Merit { operation: Operation::Collapse, score: proposal.worst(), bar })
                 });

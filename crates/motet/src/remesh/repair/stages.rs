@@ -38,13 +38,25 @@ impl Search<'_> {
             if self.repair.surface.is_some() && self.around(tet, edge, is_feature) {
                 continue;
             }
-            if self.tools.edge_removal.propose(self.complex(), tet, edge, bar, &mut self.tools.repairs.proposal) {
+            if self.tools.edge_removal.propose(
+                self.complex(),
+                tet,
+                edge,
+                bar,
+                &mut self.tools.repairs.proposal,
+            ) {
                 self.offer(Operation::EdgeRemoval);
             }
         }
         for facet in 0..4 {
             let bar = self.bar(tet);
-            if self.tools.face_removal.propose(self.complex(), tet, facet, bar, &mut self.tools.repairs.proposal) {
+            if self.tools.face_removal.propose(
+                self.complex(),
+                tet,
+                facet,
+                bar,
+                &mut self.tools.repairs.proposal,
+            ) {
                 self.offer(Operation::FaceRemoval);
             }
         }
@@ -101,7 +113,14 @@ impl Search<'_> {
         }
         self.gather(removed);
         let bar = self.bar(tet);
-        if collapse(self.complex(), &self.tools.star.tets, removed, kept, bar, &mut self.tools.repairs.proposal) {
+        if collapse(
+            self.complex(),
+            &self.tools.star.tets,
+            removed,
+            kept,
+            bar,
+            &mut self.tools.repairs.proposal,
+        ) {
             self.offer(Operation::Collapse);
         }
     }

@@ -32,7 +32,7 @@ impl Repair<'_> {
             let mut search = Search::new(self, &mut tools);
             if search.closeness(vertex) < CLOSE {
                 search.collapse_into_best(vertex);
-                were_any |= tools.best.commit(&mut self.complex, &mut self.operations, &mut self.changes);
+                were_any |= tools.best.commit(self);
             }
         }
         self.toolbox.put_back(tools);

@@ -2,9 +2,9 @@
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::{Change, Complex, VertexChange};
-use crate::remesh::repair::tried::Changes;
-use crate::remesh::report::{Counts, Operation};
-use crate::remesh::sizes::SizeField;
+use crate::remesh::repair::Repair;
+use crate::remesh::report::Operation;
+use crate::remesh::sizes::SizesIn;
 use crate::remesh::surface::Surface;
 
 /// A search for the best change at one place. An operation writes each proposal into the buffer, which is
@@ -92,7 +92,7 @@ impl<S: Copy> Trial<S> {
     ) -> bool {
         let Rules { complex, lengths, walls, check } = rules;
         let Some(merit) = weigh(&self.proposal, self.score()) else { return false };
-        let is_accepted = lengths.accept(complex, &self.proposal)
+        let is_accepted = lengths.accept(&self.proposal)
             && walls.accept(complex, &self.proposal)
             && (check == Check::Best || complex.check_against(&self.proposal, merit.bar).is_ok());
         if is_accepted {
@@ -102,21 +102,11 @@ impl<S: Copy> Trial<S> {
         is_accepted
     }
 
-    /// Ends the search: commits the best change, if there is one and the kernel accepts it, and counts its
-    /// operation. Returns whether a change was made.
-    /// `changes` records the inserted tets.
-    pub(super) fn commit(
-        &mut self,
-        complex: &mut Complex,
-        operations: &mut Counts,
-        changes: &mut Changes,
-    ) -> bool {
+    /// Ends the search: commits the best change, if there is one and the kernel accepts it. Returns whether a
+    /// change was made.
+    pub(super) fn commit(&mut self, repair: &mut Repair) -> bool {
         let Some(merit) = self.merit.take() else { return false };
-        let Ok(checked) = complex.check_against(&self.best, merit.bar) else { return false };
-        complex.commit(checked, &mut self.inserted);
-        operations.add(merit.operation);
-        changes.inserted(complex, &self.inserted);
-        true
+        repair.commit(&self.best, merit.operation, merit.bar, &mut self.inserted)
     }
 
     /// The tets that the last change inserted.
@@ -151,9 +141,9 @@ enum Check {
 enum LengthRule<'a> {
     Any,
     /// Neither too long nor too short.
-    Fit(&'a SizeField),
+    Fit(SizesIn<'a>),
     /// Not too long.
-    NotLonger(&'a SizeField),
+    NotLonger(SizesIn<'a>),
 }
 
 /// Where the walls and lines that a change makes may lie.
@@ -189,22 +179,22 @@ impl<'a> Rules<'a> {
     }
 
     /// If there are sizes, no edge becomes too long or too short.
-    pub(super) fn fit(self, field: Option<&'a SizeField>) -> Self {
-        Self { lengths: field.map_or(LengthRule::Any, LengthRule::Fit), ..self }
+    pub(super) fn fit(self, sizes: Option<SizesIn<'a>>) -> Self {
+        Self { lengths: sizes.map_or(LengthRule::Any, LengthRule::Fit), ..self }
     }
 
     /// No edge becomes longer than a collapse may make it.
-    pub(super) fn not_longer(self, field: &'a SizeField) -> Self {
-        Self { lengths: LengthRule::NotLonger(field), ..self }
+    pub(super) fn not_longer(self, sizes: SizesIn<'a>) -> Self {
+        Self { lengths: LengthRule::NotLonger(sizes), ..self }
     }
 }
 
 impl LengthRule<'_> {
-    fn accept(&self, complex: &Complex, change: &Change) -> bool {
+    fn accept(&self, change: &Change) -> bool {
         match self {
             Self::Any => true,
-            Self::Fit(field) => field.accepts(complex, change),
-            Self::NotLonger(field) => field.lengthens_none(complex, change),
+            Self::Fit(sizes) => sizes.accepts(change),
+            Self::NotLonger(sizes) => sizes.lengthens_none(change),
         }
     }
 }
