@@ -60,11 +60,12 @@ fn skin(mesh: &Mesh) -> Mesh {
     Mesh::new(surface.points, cells)
 }
 
-/// Fills a ball whose triangles have edges of some 0.08 with tets of a given size.
-fn filled(size: f64, improves: bool) -> usize {
+/// Fills a ball of `n` by `n` squares on each of six sides with tets of half the edges of its triangles: many
+/// triangles are then missing from the Delaunay tets, and more of them the more triangles there are.
+fn filled(n: usize, improves: bool) -> usize {
     let threads = Threads::single();
-    let surfaces = Surfaces::new(&[(&skin(&ball(20, 4)), Role::Boundary, "ball")]).unwrap();
-    let sizes = Some(Sizes::Uniform(size));
+    let surfaces = Surfaces::new(&[(&skin(&ball(n, 4)), Role::Boundary, "ball")]).unwrap();
+    let sizes = Some(Sizes::Uniform(0.8 / n as f64));
     let options = match improves {
         true => Options::with_sizes(sizes, None),
         false => Options { sizes, ..Options::default() },
@@ -121,8 +122,8 @@ fn bytes_allocated_per_tet_do_not_grow() {
     // Each case with the sizes of a small mesh and of one with some eight times as many tets.
     let cases: [(&str, Work, [usize; 2]); 6] = [
         ("delaunay", triangulated, [4000, 32_000]),
-        ("mesh", |n| filled(1.0 / n as f64, false), [24, 48]),
-        ("mesh, improved", |n| filled(1.0 / n as f64, true), [20, 40]),
+        ("mesh", |n| filled(n, false), [10, 20]),
+        ("mesh, improved", |n| filled(n, true), [10, 20]),
         ("remesh", remeshed, [12, 24]),
         ("refine", refined, [10, 20]),
         ("move", moved, [12, 24]),

@@ -26,7 +26,8 @@ use crate::geometry::triangle;
 use crate::geometry::vector::{add, distance, sub};
 use crate::mesh::Cells;
 use crate::motion::options::{Extent, FacetSet};
-use crate::motion::rotation::{IDENTITY, Rotations, Wall};
+use crate::motion::polar::IDENTITY;
+use crate::motion::rotation::{Rotations, Wall};
 use crate::motion::update::Padded;
 use crate::spatial::NearestTriangle;
 

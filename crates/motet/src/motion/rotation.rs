@@ -9,21 +9,20 @@
 //! `(d_j - d) (g_j . c)` over the vertices j around, where `g_j` is half the sum of `n x e` over the facets
 //! at j, with the normal `n` and the edge `e` opposite to j, relative to the area around. A step needs it in
 //! two directions, chosen so that it takes them to unit vectors at right angles before anything moves.
+//!
+//! Where facets meet at an angle, it needs three (see `crease`).
 
 use pulp::NullaryFnOnce;
 
-use crate::base::four::{FourLanes, FourVectors, Plain, cross as cross4, dot as dot4};
+use crate::base::four::{FourLanes, Plain, cross as cross4};
 #[cfg(target_arch = "x86_64")]
 use crate::base::four::{Wide, wide_machine};
 use crate::base::{Csr, DisjointSets, Point, Threads};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
+use crate::motion::crease::Creases;
+use crate::motion::polar::{IDENTITY, Quaternion, frame, quaternion};
 use crate::motion::update::Padded;
-
-/// A rotation as a quaternion: `[w, x, y, z]`, of length 1.
-pub(crate) type Quaternion = [f64; 4];
-
-pub(crate) const IDENTITY: Quaternion = [1.0, 0.0, 0.0, 0.0];
 
 /// Vertices that take one stage of the computation before any takes the next. In short loops the processor
 /// overlaps several iterations, and so hides the roots and quotients.
@@ -31,6 +30,11 @@ const CHUNK: usize = 64;
 
 /// Vertices per part of the work.
 const PART: usize = 16 * CHUNK;
+
+/// A vertex is on a crease where the mean of the squared cosines between the normals of its facets and their
+/// mean is below this: where two facets meet at 26 degrees. On smoother walls the tilt that stretch causes is
+/// small: 3 degrees where one of the two is stretched by half.
+const MIN_FLATNESS: f64 = 0.95;
 
 /// The vertices of a wall, numbered from 0.
 #[derive(Debug)]
@@ -41,6 +45,8 @@ pub(crate) struct Wall {
     around: Csr<Pair>,
     /// For each four vertices, the unit vectors to which the mean gradient takes the two directions at first.
     references: Vec<[FourPoints; 2]>,
+    /// Those where facets meet at an angle.
+    creases: Creases,
 }
 
 /// Four points, coordinate by coordinate.
@@ -85,18 +91,24 @@ impl Wall {
         let (mut offsets, mut pairs) = (vec![0], Vec::new());
         let mut references = vec![Default::default(); points.len().div_ceil(4)];
         let mut ring = Ring::default();
+        let mut creases = Creases::default();
         for (v, facets) in facets.iter().enumerate() {
             if is_needed(v) {
                 ring.set(v as u32, facets.iter().map(|&t| triangles[t as usize]), points);
                 let [first, second] = ring.reference(v as u32, &mut pairs);
                 let [along, across]: &mut [FourPoints; 2] = &mut references[v / 4];
                 (0..3).for_each(|k| (along[k][v % 4], across[k][v % 4]) = (first[k], second[k]));
+                if ring.is_creased() {
+                    let around = ring.gradients.iter().map(|&(j, g)| (j, scale(g, 1.0 / ring.area)));
+                    creases.push(v as u32, ring.at_first(), around);
+                }
             }
             offsets.push(pairs.len() as u32);
         }
         pairs.shrink_to_fit();
         let around = Csr::new(offsets, pairs).expect("offsets rise to the number of pairs");
-        Self { parts: parts.roots(), around, references }
+        creases.shrink_to_fit();
+        Self { parts: parts.roots(), around, references, creases }
     }
 
     /// The rotations of all vertices in a motion by `displacement`.
@@ -188,12 +200,27 @@ impl Ring {
         }
     }
 
-    /// Appends the vertices around, and returns what the mean gradient makes of the two directions at first.
-    /// They are in the plane at right angles to the mean normal or, where facets face both ways, in that of
-    /// the largest facet.
-    fn reference(&self, v: u32, pairs: &mut Vec<Pair>) -> [Point; 2] {
+    /// The direction of the mean normal or, where facets face both ways, of the normal of the largest facet.
+    fn direction(&self) -> Point {
         let faces_one_way = 2.0 * norm(self.normal) > self.area;
-        let normal = if faces_one_way { self.normal } else { self.largest };
+        if faces_one_way { self.normal } else { self.largest }
+    }
+
+    /// The mean of `1 - n n`.
+    fn at_first(&self) -> [Point; 3] {
+        [0, 1, 2].map(|i| [0, 1, 2].map(|j| f64::from(u8::from(i == j)) - self.squares[i][j] / self.area))
+    }
+
+    fn is_creased(&self) -> bool {
+        let normal = self.direction();
+        let squares = dot(normal, self.squares.map(|row| dot(row, normal)));
+        squares < MIN_FLATNESS * self.area * dot(normal, normal)
+    }
+
+    /// Appends the vertices around, and returns what the mean gradient makes of the two directions at first.
+    /// They are in the plane at right angles to the normal.
+    fn reference(&self, v: u32, pairs: &mut Vec<Pair>) -> [Point; 2] {
+        let normal = self.direction();
         // Any direction that is not along the normal.
         let axis = (0..3).fold(0, |least, k| if normal[k].abs() < normal[least].abs() { k } else { least });
         let aside = [0, 1, 2].map(|k| if k == axis { 1.0 } else { 0.0 });
@@ -201,9 +228,8 @@ impl Ring {
         let first = unit(cross(normal, aside));
         let directions = [first, cross(unit(normal), first)];
         let share = 1.0 / self.area;
-        // The mean of `1 - n n`, times a direction.
-        let at_first = |c: Point| sub(c, scale(self.squares.map(|row| dot(row, c)), share));
-        let images = directions.map(at_first);
+        let at_first = self.at_first();
+        let images = directions.map(|c| at_first.map(|row| dot(row, c)));
         let splat = |p: Point| p.map(|x| Plain::splat((), x));
         let [along, _, normal] = frame((), images.map(splat)).map(|axis| axis.map(|x| x.stored()[0]));
         let frame = [along, cross(normal, along)];
@@ -294,72 +320,8 @@ impl<F: FourLanes> NullaryFnOnce for Chunk<'_, F> {
                 *rotation = [w[lane], x[lane], y[lane], z[lane]];
             }
         }
+        wall.creases.rotate::<F>(machine, displacement, first, rotations);
     }
-}
-
-/// The rotation that takes one right-handed set of axes to another (Shepperd 1978: computed from the largest
-/// of the four components, so that no precision is lost); [`IDENTITY`] where `moved` is 0, so that what only
-/// translates is not rounded, and where an axis is not a number.
-#[inline(always)]
-fn quaternion<F: FourLanes>(
-    machine: F::Machine,
-    from: [FourVectors<F>; 3],
-    to: [FourVectors<F>; 3],
-    moved: F,
-) -> [F; 4] {
-    let mut m = [[F::splat(machine, 0.0); 3]; 3];
-    for i in 0..3 {
-        for j in 0..3 {
-            m[i][j] = to[0][i] * from[0][j] + to[1][i] * from[1][j] + to[2][i] * from[2][j];
-        }
-    }
-    let one = F::splat(machine, 1.0);
-    let (x, y, z) = (m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]);
-    let (xy, yz, zx) = (m[1][0] + m[0][1], m[2][1] + m[1][2], m[0][2] + m[2][0]);
-    // Four times the square of each component, and the component times all.
-    let (sum, difference) = (m[0][0] + m[1][1], m[0][0] - m[1][1]);
-    let mut square = one + sum + m[2][2];
-    let mut all = [square, x, y, z];
-    let of_x = one + difference - m[2][2];
-    let of_y = one - difference - m[2][2];
-    let of_z = one - sum + m[2][2];
-    for (other, of_other) in [(of_x, [x, of_x, xy, zx]), (of_y, [y, xy, of_y, yz]), (of_z, [z, zx, yz, of_z])]
-    {
-        let is_larger = other - square;
-        square = square.max(other);
-        for i in 0..4 {
-            all[i] = is_larger.select_positive(of_other[i], all[i]);
-        }
-    }
-    let share = F::splat(machine, 0.5) / square.sqrt();
-    let is_known = moved * square;
-    for i in 0..4 {
-        all[i] = is_known.select_positive(all[i] * share, F::splat(machine, IDENTITY[i]));
-    }
-    all
-}
-
-/// The axes to which the polar factor of a plane gradient takes two unit vectors at right angles and their
-/// normal, given what the gradient makes of the two. Not numbers where these are along a line.
-#[inline(always)]
-fn frame<F: FourLanes>(machine: F::Machine, [a, b]: [FourVectors<F>; 2]) -> [FourVectors<F>; 3] {
-    let normal = unit4(machine, cross4(a, b));
-    // Of `a` and `b` turned by 90 degrees, the stretch cancels in the sum.
-    let back = cross4(b, normal);
-    let along = unit4(machine, [a[0] + back[0], a[1] + back[1], a[2] + back[2]]);
-    [along, cross4(normal, along), normal]
-}
-
-#[inline(always)]
-fn unit4<F: FourLanes>(machine: F::Machine, a: FourVectors<F>) -> FourVectors<F> {
-    let share = F::splat(machine, 1.0) / dot4(a, a).sqrt();
-    [a[0] * share, a[1] * share, a[2] * share]
-}
-
-/// The difference between the rotated `v` and `v`, without cancellation where the rotation is small.
-pub(crate) fn rotation_change(q: Quaternion, v: Point) -> Point {
-    let axis = [q[1], q[2], q[3]];
-    scale(cross(axis, add(cross(axis, v), scale(v, q[0]))), 2.0)
 }
 
 #[cfg(test)]
@@ -369,6 +331,7 @@ mod tests {
     use super::*;
     use crate::geometry::vector::distance;
     use crate::motion::Prescribed;
+    use crate::motion::polar::rotation_change;
 
     const TRIANGLES: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
     const POINTS: [Point; 4] = [[0.1, 0.2, 0.0], [1.0, 0.0, 0.3], [0.2, 1.4, 0.0], [0.0, -0.2, 1.1]];
@@ -397,6 +360,12 @@ mod tests {
         (points, (0..n).flat_map(|i| (0..n).flat_map(move |j| square(i, j))).collect())
     }
 
+    /// Four sides of a cube. Some of its vertices have triangles of unequal areas on two or three sides.
+    fn cube() -> (Vec<Point>, [[u32; 3]; 8]) {
+        let points = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from)).collect();
+        (points, [[0, 1, 3], [0, 3, 2], [0, 4, 5], [0, 5, 1], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
+    }
+
     /// The columns of the matrix of a rotation.
     fn columns(q: Quaternion) -> [Point; 3] {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| add(axis, rotation_change(q, axis)))
@@ -405,8 +374,7 @@ mod tests {
     #[test]
     fn a_rigid_turn_is_found_at_any_angle() {
         let (flat, squares) = sheet(3);
-        let cube: Vec<Point> = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from)).collect();
-        let sides = [[0, 1, 3], [0, 3, 2], [0, 4, 5], [0, 5, 1], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]];
+        let (cube, sides) = cube();
         for degrees in [0.0, 1e-6, 30.0, 90.0, 179.9, 180.0, 250.0] {
             for axis in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.3, 0.4, -2.0]] {
                 let turn =
@@ -429,9 +397,39 @@ mod tests {
     fn stretch_does_not_turn() {
         let anyhow = |[x, y, z]: Point| [0.7 * x, 1.9 * y, 3.0 * z];
         let (points, triangles) = sheet(2);
+        let (cube, sides) = cube();
         let of_solid = rotations(&POINTS, &TRIANGLES, |p| scale(p, 0.7));
-        for q in of_solid.iter().chain(&rotations(&points, &triangles, anyhow)) {
+        let of_sheet = rotations(&points, &triangles, anyhow);
+        let of_cube = rotations(&cube, &sides, anyhow);
+        for q in of_solid.iter().chain(&of_sheet).chain(&of_cube) {
             assert!(difference(q, &IDENTITY) < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_stretched_crease_turns_with_its_facets() {
+        let (cube, sides) = cube();
+        let half = f64::to_radians(35.0);
+        let turn = [half.cos(), 0.6 * half.sin(), 0.0, -0.8 * half.sin()];
+        let to = |[x, y, z]: Point| {
+            let stretched = [0.5 * x, 1.4 * y, 2.0 * z];
+            add(stretched, rotation_change(turn, stretched))
+        };
+        assert!(rotations(&cube, &sides, to).iter().all(|q| difference(q, &turn) < 1e-15));
+    }
+
+    #[test]
+    fn a_crease_that_is_mirrored_or_collapses_still_has_a_rotation() {
+        let (points, sides) = cube();
+        let flat = |[x, y, _]: Point| [x, y, 0.0];
+        let line = |[x, y, z]: Point| [x + y + z, 0.0, 0.0];
+        let point = |_: Point| [0.1; 3];
+        let mirrored = |[x, y, z]: Point| [-x, y, z];
+        let nearly_flat = |[x, y, z]: Point| [x, y, 1e-13 * z];
+        for to in [flat, line, point, mirrored, nearly_flat] {
+            for q in rotations(&points, &sides, to) {
+                assert!((q.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-14, "{q:?}");
+            }
         }
     }
 
@@ -510,9 +508,10 @@ mod tests {
         assert!(wall.rotations(&vec![displacement[0]; points.len()], &Threads::single()).is_empty());
     }
 
-    /// A wall that is bent, in a grid with a last four that is not full.
+    /// A wall with a crease that is bent, in a grid with a last four that is not full.
     fn bent() -> (Wall, Vec<Padded>) {
-        let (points, triangles) = sheet(6);
+        let (mut points, triangles) = sheet(6);
+        points.iter_mut().for_each(|p| p[2] = (3.0 - p[0]).abs());
         let bend = |[x, y, _]: Point| [0.1 * y * y, -0.01 * x * y, (0.7 * x).sin() + 0.3 * x * y];
         let displacement = points.iter().map(|&p| Padded::new(bend(p))).collect();
         (Wall::new(&points, &triangles, |_| true), displacement)

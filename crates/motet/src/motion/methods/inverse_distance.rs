@@ -12,7 +12,8 @@ use crate::geometry::vector::{add, dot, norm, scale, sub};
 use crate::mesh::bounds;
 use crate::motion::methods::{Follower, Prepare, Prepared, Reference, Scene};
 use crate::motion::options::FacetSet;
-use crate::motion::rotation::{IDENTITY, Quaternion, Wall, rotation_change};
+use crate::motion::polar::{IDENTITY, Quaternion, rotation_change};
+use crate::motion::rotation::Wall;
 use crate::motion::setup::Setup;
 use crate::motion::update::{Displacements, Padded};
 

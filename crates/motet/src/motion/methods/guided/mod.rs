@@ -33,7 +33,8 @@ use crate::motion::methods::guided::helpers::{Helpers, choose_helpers};
 use crate::motion::methods::{Follower, Prepare, Prepared, Reference, Scene};
 use crate::motion::nodes::Nodes;
 use crate::motion::options::FacetSet;
-use crate::motion::rotation::{Quaternion, Wall};
+use crate::motion::polar::Quaternion;
+use crate::motion::rotation::Wall;
 use crate::motion::update::{Displacements, Padded, WeightTable};
 
 /// The tolerance of a step, far below what affects cells.
