@@ -70,12 +70,12 @@ fn a_tet_that_is_marked_counts_as_good_and_another_of_the_same_bits_does_not() {
     let mut complex = Complex::new(&TetMesh::new([corners, apart].concat(), tets.to_vec())).unwrap();
     let quality = eas(corners);
     assert!(quality > 0.0 && quality < 0.2);
-    assert_eq!(complex.below(0.2), [TetId(0), TetId(1)]);
+    assert_eq!(complex.below(0.2, &Threads::single()), [TetId(0), TetId(1)]);
     complex.exempt(&[TetId(0)], 0.2);
-    assert_eq!(complex.below(0.2), [TetId(1)]);
+    assert_eq!(complex.below(0.2, &Threads::single()), [TetId(1)]);
     assert_eq!(complex.quality(TetId(1)).to_bits(), quality.to_bits());
     complex.verify().unwrap();
     complex.end_exemptions();
-    assert_eq!(complex.below(0.2), [TetId(0), TetId(1)]);
+    assert_eq!(complex.below(0.2, &Threads::single()), [TetId(0), TetId(1)]);
     assert_eq!(complex.quality(TetId(0)).to_bits(), quality.to_bits());
 }

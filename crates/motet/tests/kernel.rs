@@ -4,7 +4,7 @@ mod common;
 
 use common::editor::Editor;
 use common::{Numbers, random_mesh};
-use motet::base::{TetId, VertexId};
+use motet::base::{TetId, Threads, VertexId};
 use motet::kernel::{Change, Complex, HalfFacet, Hold, Reject, VertexChange};
 use motet::mesh::TetMesh;
 use proptest::prelude::*;
@@ -143,7 +143,7 @@ fn tets_numbered_the_other_way_are_reported_from_inverted_ones() {
     mesh.points[inner.index()] = [3.0, 3.0, 3.0];
     let inverted = Complex::new(&mesh).unwrap();
     inverted.verify().unwrap();
-    assert!(!inverted.below(0.0).is_empty());
+    assert!(!inverted.below(0.0, &Threads::single()).is_empty());
     let volume = |c: &Complex| c.tets().map(|t| motet::geometry::tet::volume(c.corners(t))).sum::<f64>();
     assert!((volume(&inverted) - 1.0).abs() < 1e-12);
 }

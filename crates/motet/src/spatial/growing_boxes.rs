@@ -75,8 +75,8 @@ impl Grid {
         best: &mut Best<T>,
     ) {
         let n_cells: f64 = (0..3).map(|k| (around[1][k] - around[0][k]) * scale(level) + 2.0).product();
-        // The negation is true where the number is not finite.
-        if !(n_cells < 8.0 + self.boxes.len() as f64) {
+        let are_few = n_cells < 8.0 + self.boxes.len() as f64;
+        if !are_few {
             return self.boxes.iter().for_each(|&of| improve(of, point, measure, best));
         }
         for_each_cell(level, around, |cell| {

@@ -18,7 +18,7 @@ const BLOCKS: usize = 64;
 /// The least and the most candidates of a block.
 const BLOCK: [usize; 2] = [64, 4096];
 /// How many candidates a thread takes at a time.
-const RUN: usize = 8;
+const RUN: usize = 2;
 
 /// A pass over candidates.
 pub(super) trait Pass: Sync {
@@ -110,7 +110,7 @@ impl Repair<'_> {
     /// sizes depend on what else was removed.
     fn is_local(&self) -> bool {
         let is_graded = self.sizing.as_ref().is_some_and(|sizing| sizing.field.is_graded());
-        !self.complex.is_tangled() && !(is_graded && self.surface.is_some())
+        !(self.complex.is_tangled() || is_graded && self.surface.is_some())
     }
 
     /// The searches of a block made by several threads; nothing if there is one, or if they are not local.
@@ -122,15 +122,14 @@ impl Repair<'_> {
         self.threads.fill(
             &mut all,
             RUN,
-            || (),
-            |(), start, some| {
-                let mut tools = self.toolbox.take();
+            || self.toolbox.lend(),
+            |tools, start, some| {
                 for (found, &candidate) in some.iter_mut().zip(&block[start..]) {
+                    let mut tools = tools.borrow_mut();
                     let mut search = Search::ahead(self, &mut tools);
                     *found =
                         Some(Ahead { found: pass.search(&mut search, candidate), reads: search.reads() });
                 }
-                self.toolbox.put_back(tools);
             },
         );
         all

@@ -1,5 +1,6 @@
 //! A search for changes in a mesh that stays as it is meanwhile, so that several threads can search at once.
 
+use std::cell::{RefCell, RefMut};
 use std::sync::{Mutex, PoisonError};
 
 use crate::base::{TetId, VertexId};
@@ -31,18 +32,41 @@ pub(super) struct Tools {
     shells: Vec<Shell>,
 }
 
-/// Tools that threads borrow, one search after the other.
+/// Tools that nobody uses.
 #[derive(Debug, Default)]
-pub(super) struct Toolbox(Mutex<Vec<Box<Tools>>>);
+pub(super) struct Toolbox(Mutex<Vec<Tools>>);
 
 impl Toolbox {
     /// Tools that nobody uses, new ones if there are none.
-    pub(super) fn take(&self) -> Box<Tools> {
+    pub(super) fn take(&self) -> Tools {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
     }
 
-    pub(super) fn put_back(&self, tools: Box<Tools>) {
+    pub(super) fn put_back(&self, tools: Tools) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(tools);
+    }
+
+    /// Tools for a thread, which are put back in the end.
+    pub(super) fn lend(&self) -> LentTools<'_> {
+        LentTools { toolbox: self, tools: RefCell::new(self.take()) }
+    }
+}
+
+/// Tools that a thread has borrowed.
+pub(super) struct LentTools<'a> {
+    toolbox: &'a Toolbox,
+    tools: RefCell<Tools>,
+}
+
+impl LentTools<'_> {
+    pub(super) fn borrow_mut(&self) -> RefMut<'_, Tools> {
+        self.tools.borrow_mut()
+    }
+}
+
+impl Drop for LentTools<'_> {
+    fn drop(&mut self) {
+        self.toolbox.put_back(self.tools.take());
     }
 }
 
