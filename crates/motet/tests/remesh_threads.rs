@@ -66,7 +66,7 @@ fn tasks(mesh: &Mesh, n: usize) -> Vec<Options> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(3))]
+    #![proptest_config(ProptestConfig::with_cases(2))]
 
     #[test]
     fn threads_change_nothing(n in 3usize..5, shake in 0.2..0.75f64, seed in 1u64..1_000_000) {

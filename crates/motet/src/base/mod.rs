@@ -4,8 +4,8 @@ mod csr;
 mod error;
 pub(crate) mod four;
 mod ids;
-mod kept;
 mod lanewise;
+mod lazy_number;
 #[cfg(feature = "suite")]
 mod names;
 mod percent;
@@ -23,8 +23,8 @@ pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result, printable};
 pub use ids::{BodyId, CellId, Id, MaybeId, TetId, TriangleId, VertexId, rising_list};
 pub(crate) use ids::{EdgeId, ForestVertexId, LineId, NodeId, absent, id, same_orientation, sorted_ids};
-pub(crate) use kept::Kept;
 pub(crate) use lanewise::lanewise;
+pub(crate) use lazy_number::LazyNumber;
 #[cfg(feature = "suite")]
 #[doc(hidden)]
 pub use names::read_text;

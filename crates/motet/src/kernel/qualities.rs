@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use crate::base::{Kept, TetId};
+use crate::base::{LazyNumber, TetId};
 
 /// The quality of a tet that has not been measured.
 const UNMEASURED: f64 = f64::NAN;
@@ -19,7 +19,7 @@ const NONE_EXEMPT: Range<f64> = f64::INFINITY..f64::INFINITY;
 #[derive(Clone, Debug)]
 pub(super) struct Qualities {
     /// [`UNMEASURED`] until the quality is first requested.
-    known: Vec<Kept>,
+    known: Vec<LazyNumber>,
     /// Approximate qualities of the tets of the first mesh.
     rough: Vec<f32>,
     /// Marks exempt tets; empty if there are none.
@@ -40,7 +40,7 @@ impl Qualities {
     /// No quality of these tets is known, but for the approximate ones.
     pub(super) fn new(rough: Vec<f32>) -> Self {
         Self {
-            known: vec![Kept::new(UNMEASURED); rough.len()],
+            known: vec![LazyNumber::new(UNMEASURED); rough.len()],
             rough,
             is_exempt: Vec::new(),
             exempt_range: NONE_EXEMPT,
@@ -74,7 +74,7 @@ impl Qualities {
     pub(super) fn restore(&mut self, tet: TetId, QualityRecord { known, is_exempt }: QualityRecord) {
         match self.known.get_mut(tet.index()) {
             Some(slot) => slot.set(known),
-            None => self.known.push(Kept::new(known)),
+            None => self.known.push(LazyNumber::new(known)),
         }
         if is_exempt || !self.is_exempt.is_empty() {
             self.mark(tet, is_exempt);

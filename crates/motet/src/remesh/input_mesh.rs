@@ -1,6 +1,6 @@
 //! The mesh as it was given: finds the tet that held a point, and interpolates values at its vertices.
 
-use crate::base::{Kept, Point, TetId, Threads, VertexId};
+use crate::base::{LazyNumber, Point, TetId, Threads, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{add, dot, scale, sub};
 use crate::geometry::weights;
@@ -84,7 +84,7 @@ pub(super) struct Pose {
     /// Position in this pose of each vertex of the mesh as it is now.
     points: Vec<Point>,
     /// EAS of each tet; NaN until it is first requested.
-    qualities: Vec<Kept>,
+    qualities: Vec<LazyNumber>,
 }
 
 impl Pose {
@@ -97,7 +97,7 @@ impl Pose {
     pub(super) fn update(&mut self, complex: &Complex, input: &InputMesh, threads: &Threads) {
         self.points = threads.map(complex.n_vertex_slots(), |v| self.place(complex, input, VertexId::new(v)));
         self.qualities.clear();
-        self.qualities.resize(complex.n_slots(), Kept::new(f64::NAN));
+        self.qualities.resize(complex.n_slots(), LazyNumber::new(f64::NAN));
     }
 
     /// Updates the pose after one change that inserted these tets.
@@ -111,7 +111,7 @@ impl Pose {
         if let VertexChange::Move(vertex, _) = vertex {
             self.points[vertex.index()] = self.place(complex, input, vertex);
         }
-        self.qualities.resize(complex.n_slots(), Kept::new(f64::NAN));
+        self.qualities.resize(complex.n_slots(), LazyNumber::new(f64::NAN));
         inserted.iter().for_each(|tet| self.qualities[tet.index()].set(f64::NAN));
     }
 

@@ -410,8 +410,8 @@ impl<'a> Repair<'a> {
         sizing.as_ref().map(|sizing| SizesIn { field: &sizing.field, input, complex })
     }
 
-    /// Makes a change if the kernel accepts it; its tets have to be better than `bar`. `inserted` gets the new
-    /// tets. Returns whether it was made.
+    /// Makes a change if the kernel accepts it; its tets have to be better than `bar`. `inserted` gets the
+    /// new tets. Returns whether it was made.
     fn commit(&mut self, change: &Change, of: Operation, bar: f64, inserted: &mut Vec<TetId>) -> bool {
         let Self { complex, input, sizing, changes, operations, .. } = self;
         let Ok(checked) = complex.check_against(change, bar) else { return false };

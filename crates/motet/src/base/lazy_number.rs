@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 /// A number that threads may set while others read it. All that set it at the same time must set the same
 /// bits.
 #[derive(Debug)]
-pub(crate) struct Kept(AtomicU64);
+pub(crate) struct LazyNumber(AtomicU64);
 
-impl Kept {
+impl LazyNumber {
     pub(crate) fn new(value: f64) -> Self {
         Self(AtomicU64::new(value.to_bits()))
     }
@@ -23,7 +23,7 @@ impl Kept {
     }
 }
 
-impl Clone for Kept {
+impl Clone for LazyNumber {
     fn clone(&self) -> Self {
         Self::new(self.get())
     }
