@@ -4,16 +4,17 @@
 //! takes nearly all the time and only reads, so threads make those for a block of candidates at once, in the
 //! mesh as it is at the beginning of the block. What they found is used in order, as long as nothing has
 //! changed that the search has read; where something has, it is made again. So each search has the result
-//! that it would have at its turn, and the mesh does not depend on the number of threads. (Deterministic
-//! reservations, Blelloch, Fineman, Gibbons, Shun 2012, *Internally deterministic parallel algorithms can be
-//! fast*, with a priority that is the order of one thread.)
+//! that it would have at its turn, and the mesh does not depend on the number of threads. Deterministic
+//! reservations (Blelloch, Fineman, Gibbons, Shun 2012, *Internally deterministic parallel algorithms can be
+//! fast*) also do not depend on it, but make another mesh than one thread.
 
 use crate::base::{Result, TetId, VertexId};
 use crate::kernel::Behind;
 use crate::remesh::repair::Repair;
 use crate::remesh::repair::search::{Search, Tools};
 
-/// A block has this fraction of the candidates: fewer of its searches are made in vain where it is smaller.
+/// A block is the number of candidates divided by this: the smaller it is, the fewer searches are made in
+/// vain.
 const BLOCKS: usize = 64;
 /// The least and the most candidates of a block.
 const BLOCK: [usize; 2] = [64, 4096];
@@ -43,10 +44,10 @@ pub(super) trait Pass: Sync {
     /// vertex that is the next one now.
     fn update(&self, repair: &Repair, candidate: Self::Candidate, found: &mut Self::Found);
 
-    /// Makes the change that was found, and records what was not.
+    /// Makes the change that was found, or records that there is none.
     fn act(&mut self, repair: &mut Repair, tools: &mut Tools, candidate: Self::Candidate, found: Self::Found);
 
-    /// A new candidate that comes before the next one; it is removed from the new ones.
+    /// Takes a new candidate, made by a change, that comes before the next one.
     fn first(&mut self, _next: Self::Candidate) -> Option<Self::Candidate> {
         None
     }

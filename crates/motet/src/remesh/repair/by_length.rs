@@ -51,17 +51,12 @@ impl Search<'_> {
     /// The number of edges of a vertex, and their total length.
     fn edges_at(&mut self, vertex: VertexId) -> (usize, f64) {
         self.gather(vertex);
-        let mut others: Vec<VertexId> = self
-            .tools
-            .star
-            .tets
-            .iter()
-            .flat_map(|&t| self.complex().vertices(t))
-            .filter(|&v| v != vertex)
-            .collect();
+        let (complex, star) = (self.complex(), &self.tools.star.tets);
+        let mut others: Vec<VertexId> =
+            star.iter().flat_map(|&t| complex.vertices(t)).filter(|&v| v != vertex).collect();
         others.sort_unstable();
         others.dedup();
-        let length = |v: &VertexId| distance(self.complex().point(vertex), self.complex().point(*v));
+        let length = |v: &VertexId| distance(complex.point(vertex), complex.point(*v));
         (others.len(), others.iter().map(length).sum())
     }
 }

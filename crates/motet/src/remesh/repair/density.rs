@@ -12,7 +12,7 @@ use crate::kernel::Hold;
 use crate::ops::{collapse, defect};
 use crate::remesh::input_mesh::InputMesh;
 use crate::remesh::repair::Repair;
-use crate::remesh::repair::search::{Search, Tools};
+use crate::remesh::repair::search::{Search, Tools, has_edge};
 use crate::remesh::repair::trial::{Merit, Rules};
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{SHORT, SizeField, Sizes, SizesIn};
@@ -128,10 +128,6 @@ impl Repair<'_> {
         edges.sort_unstable_by(|x, y| x.ratio.total_cmp(&y.ratio).then(x.ends.cmp(&y.ends)));
         edges
     }
-
-    fn has(&self, &Edge { ends, tet, .. }: &Edge) -> bool {
-        self.complex.is_alive(tet) && ends.iter().all(|v| self.complex.vertices(tet).contains(v))
-    }
 }
 
 impl Search<'_> {
@@ -140,7 +136,7 @@ impl Search<'_> {
     fn collapse_crowded(&mut self, edge: &Edge, floor: f64, field: &SizeField) {
         let (complex, input) = (self.complex(), &self.repair.input);
         let sizes = SizesIn { field, input, complex };
-        if !self.repair.has(edge) {
+        if !has_edge(complex, edge.tet, edge.ends) {
             return;
         }
         let [a, b] = edge.ends;
@@ -165,7 +161,7 @@ impl Search<'_> {
     /// Searches for an insertion near the midpoint of an edge inside the volume.
     fn insert_on(&mut self, edge: &Edge, floor: f64) {
         let ([a, b], complex) = (edge.ends, self.complex());
-        if !self.repair.has(edge) || !complex.may_divide(a, b) {
+        if !has_edge(complex, edge.tet, edge.ends) || !complex.may_divide(a, b) {
             return;
         }
         let middle = scale(add(complex.point(a), complex.point(b)), 0.5);

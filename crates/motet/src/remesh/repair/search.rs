@@ -192,3 +192,8 @@ impl Repair<'_> {
         !self.kept.is_empty() && change.cavity.iter().any(|&t| self.is_kept(t))
     }
 }
+
+/// Whether a tet exists and has an edge.
+pub(super) fn has_edge(complex: &Complex, tet: TetId, ends: [VertexId; 2]) -> bool {
+    complex.is_alive(tet) && ends.iter().all(|v| complex.vertices(tet).contains(v))
+}

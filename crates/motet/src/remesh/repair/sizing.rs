@@ -12,7 +12,7 @@ use crate::kernel::{Complex, Hold, Shell};
 use crate::ops::{collapse, split_edge};
 use crate::remesh::lengths::locked_edges;
 use crate::remesh::repair::ahead::Pass;
-use crate::remesh::repair::search::{Search, Tools};
+use crate::remesh::repair::search::{Search, Tools, has_edge};
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
 use crate::remesh::repair::trial::{Found, Merit, Rules};
 use crate::remesh::repair::tried::Tried;
@@ -417,9 +417,4 @@ impl Search<'_> {
         self.gather(ends[0]);
         self.tools.star.tets.iter().copied().find(|&t| has_edge(complex, t, ends))
     }
-}
-
-/// Whether a tet exists and has an edge.
-fn has_edge(complex: &Complex, tet: TetId, ends: [VertexId; 2]) -> bool {
-    complex.is_alive(tet) && ends.iter().all(|v| complex.vertices(tet).contains(v))
 }
