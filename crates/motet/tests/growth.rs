@@ -74,6 +74,16 @@ fn filled(n: usize, improves: bool) -> usize {
     filled.mesh.cells.len()
 }
 
+/// Fills a cube of `n` by `n` squares on each of six sides without points inside: Delaunay tets lack half of
+/// the diagonals of the squares, all of a side in one plane.
+fn filled_cube(n: usize) -> usize {
+    let threads = Threads::single();
+    let cube = skin(&box_grid([n; 3], [[0.0; 3], [1.0; 3]]));
+    let surfaces = Surfaces::new(&[(&cube, Role::Boundary, "cube")]).unwrap();
+    let filled = fill(&surfaces, &surfaces.preflight(&threads), &Options::default(), &threads).unwrap();
+    filled.mesh.cells.len()
+}
+
 /// A grid of `n` cubes along each axis, whose inner vertices are shaken so that some tets are bad.
 fn shaken(n: usize) -> Mesh {
     let mut mesh = box_grid([n; 3], [[0.0; 3], [1.0; 3]]);
@@ -120,9 +130,10 @@ fn moved(n: usize) -> usize {
 fn bytes_allocated_per_tet_do_not_grow() {
     type Work = fn(usize) -> usize;
     // Each case with the sizes of a small mesh and of one with some eight times as many tets.
-    let cases: [(&str, Work, [usize; 2]); 6] = [
+    let cases: [(&str, Work, [usize; 2]); 7] = [
         ("delaunay", triangulated, [4000, 32_000]),
         ("mesh", |n| filled(n, false), [10, 20]),
+        ("mesh of planes", filled_cube, [8, 24]),
         ("mesh, improved", |n| filled(n, true), [10, 20]),
         ("remesh", remeshed, [12, 24]),
         ("refine", refined, [10, 20]),

@@ -1,10 +1,12 @@
 //! From the internal state to the caller's result: the tets inside, under the caller's ids.
 
+use hashbrown::HashMap;
+
 use super::bodies::Bodies;
 use super::plane::Plane;
 use super::sites::Place;
 use super::{Back, Constrained, Filled, PointInTriangle, PointOnEdge};
-use crate::base::{Csr, Point, VertexId};
+use crate::base::{Csr, Point, VertexId, sorted_ids};
 use crate::geometry::predicates::spot::Between;
 use crate::geometry::vector::{cross, dot, sub};
 
@@ -86,8 +88,13 @@ impl Filled {
                 continue;
             }
             let plane = self.plane(flat as u32, triangles);
+            let mut by_vertices = HashMap::with_capacity(list.len());
+            for &i in list {
+                by_vertices.entry(sorted_ids(triangles[i as usize])).or_insert(i as usize);
+            }
             for &part in parts {
-                let of = self.triangle_of(list, part, triangles);
+                let same = by_vertices.get(&sorted_ids(part));
+                let of = same.copied().unwrap_or_else(|| self.triangle_around(list, part, triangles));
                 let is_same = plane.turned(triangles[of]) == triangles[of];
                 pairs.push((of, if is_same { part } else { [part[0], part[2], part[1]] }));
             }
@@ -96,10 +103,8 @@ impl Filled {
         Csr::from_pairs(triangles.len(), renamed)
     }
 
-    /// The triangle of a flat facet to which a part belongs: the one with the same vertices, or else the one
-    /// in which its centroid lies deepest.
-    fn triangle_of(&self, list: &[u32], part: [VertexId; 3], triangles: &[[VertexId; 3]]) -> usize {
-        let same = list.iter().find(|&&i| triangles[i as usize].iter().all(|v| part.contains(v)));
+    /// The triangle of a flat facet in which the centroid of a part lies deepest.
+    fn triangle_around(&self, list: &[u32], part: [VertexId; 3], triangles: &[[VertexId; 3]]) -> usize {
         let corners = |t: [VertexId; 3]| t.map(|v| self.sites.near(v));
         let [a, b, c] = corners(part);
         let middle = [0, 1, 2].map(|i| (a[i] + b[i] + c[i]) / 3.0);
@@ -110,8 +115,8 @@ impl Filled {
                 |[p, q]: [Point; 2]| dot(cross(sub(q, p), sub(middle, p)), normal) / dot(normal, normal);
             [[a, b], [b, c], [c, a]].map(side).into_iter().fold(f64::INFINITY, f64::min)
         };
-        let best = || list.iter().max_by(|&&i, &&j| depth(i).total_cmp(&depth(j)));
-        same.or_else(best).map_or(0, |&i| i as usize)
+        let deepest = list.iter().max_by(|&&i, &&j| depth(i).total_cmp(&depth(j)));
+        deepest.map_or(0, |&i| i as usize)
     }
 }
 

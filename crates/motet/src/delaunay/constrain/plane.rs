@@ -35,6 +35,16 @@ impl<'a> Plane<'a> {
         Self { sites, beside }
     }
 
+    /// The plane that has `beside` in front of it, a point that [`Self::beside`] returned.
+    pub(super) fn behind(sites: &'a Sites, beside: Point) -> Self {
+        Self { sites, beside }
+    }
+
+    /// A point in front of the plane, from which [`Self::behind`] makes it again.
+    pub(super) fn beside(&self) -> Point {
+        self.beside
+    }
+
     /// The orientation of three vertices of the plane: 1 if they turn the same way as the triangle.
     pub(super) fn turn(&self, v: [VertexId; 3]) -> i8 {
         let [a, b, c] = v.map(|v| self.sites.spot(v));
@@ -177,6 +187,35 @@ impl Net {
     /// Whether an edge exists.
     pub(super) fn has(&self, [a, b]: [VertexId; 2]) -> bool {
         self.left.contains_key(&[a, b]) || self.left.contains_key(&[b, a])
+    }
+
+    /// The edges that the segment from a to b crosses, in the order of the way: walks from triangle to
+    /// triangle, starting at one of `fan`, the triangles of a. `None` where the way does not arrive at b.
+    pub(super) fn crossed(
+        &self,
+        plane: &Plane,
+        fan: impl Iterator<Item = [VertexId; 3]>,
+        [a, b]: [VertexId; 2],
+    ) -> Option<Vec<[VertexId; 2]>> {
+        let mut opposite = fan.filter_map(|t| {
+            let i = t.iter().position(|&v| v == a)?;
+            Some([t[(i + 1) % 3], t[(i + 2) % 3]])
+        });
+        let mut edge = opposite.find(|&edge| plane.cross([a, b], edge))?;
+        let mut crossed = vec![edge];
+        loop {
+            let [x, y] = edge;
+            let (_, next) = *self.left.get(&[y, x])?;
+            if next == b {
+                return Some(crossed);
+            }
+            edge = [[x, next], [next, y]].into_iter().find(|&edge| plane.cross([a, b], edge))?;
+            // A way that turns back would never end.
+            if crossed.len() > self.left.len() {
+                return None;
+            }
+            crossed.push(edge);
+        }
     }
 
     /// Replaces the edge a b by the one between the vertices p on its left and q on its right.

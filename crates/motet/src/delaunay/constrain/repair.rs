@@ -43,6 +43,8 @@ pub(super) struct SurfaceRepair<'a> {
     pub(super) n_failures_left: usize,
     /// The tets of each vertex, together with some that no longer have it.
     incident: Vec<Vec<TetId>>,
+    /// A point in front of the plane of each flat facet.
+    beside: Vec<Point>,
 }
 
 /// Facets of the surface, and those that replace them, each with its flat facet and oriented like its plane.
@@ -66,6 +68,8 @@ impl<'a> SurfaceRepair<'a> {
             list.iter().map(|&part| (sorted_ids(part), flat as u32)).collect::<Vec<_>>()
         };
         let walls = parts.iter().enumerate().flat_map(of_flat).collect();
+        let beside = |flat: &[u32]| Plane::new(sites, triangles[flat[0] as usize]).beside();
+        let beside = flats.triangles.iter().map(beside).collect();
         Self {
             tets,
             sites,
@@ -75,6 +79,7 @@ impl<'a> SurfaceRepair<'a> {
             walls,
             n_failures_left: MAX_FAILURES,
             incident: Vec::new(),
+            beside,
         }
     }
 
@@ -169,13 +174,13 @@ impl<'a> SurfaceRepair<'a> {
     pub(super) fn lists(&self) -> Vec<Vec<[VertexId; 3]>> {
         let mut lists = vec![Vec::new(); self.flats.triangles.len()];
         self.walls.iter().for_each(|(&face, &flat)| lists[flat as usize].push(face));
-        for (list, flat) in lists.iter_mut().zip(self.flats.triangles.iter()) {
-            let first = self.triangles[flat[0] as usize];
+        for (flat, list) in (0..).zip(&mut lists) {
+            let first = self.triangles[self.flats.triangles.list(flat as usize)[0] as usize];
             list.sort_unstable();
             if *list == [sorted_ids(first)] {
                 *list = vec![first];
             } else {
-                let plane = Plane::new(self.sites, first);
+                let plane = self.plane(flat);
                 list.iter_mut().for_each(|face| *face = plane.turned(*face));
             }
         }
@@ -236,7 +241,7 @@ impl<'a> SurfaceRepair<'a> {
     }
 
     pub(super) fn plane(&self, flat: u32) -> Plane<'_> {
-        Plane::new(self.sites, self.triangles[self.flats.triangles.list(flat as usize)[0] as usize])
+        Plane::behind(self.sites, self.beside[flat as usize])
     }
 
     /// The triangles that replace those around a vertex in one flat facet.

@@ -2,7 +2,9 @@
 
 use std::collections::VecDeque;
 
-use super::plane::Net;
+use hashbrown::HashMap;
+
+use super::plane::{Net, Plane};
 use super::repair::{Exchange, SurfaceRepair};
 use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::vector::{add, cross, dot, scale, sub};
@@ -23,13 +25,12 @@ impl SurfaceRepair<'_> {
         if wanted.len() != list.len() {
             return None;
         }
-        let mut net = Net::new(list);
+        let (mut net, mut fans) = (Net::new(list), Fans::of(list));
         for edge in Net::new(&wanted).edges() {
-            let mut crossing: VecDeque<_> = if net.has(edge) {
+            if net.has(edge) {
                 continue;
-            } else {
-                net.edges().into_iter().filter(|&e| self.plane(flat as u32).cross(edge, e)).collect()
-            };
+            }
+            let mut crossing = crossing(&net, &fans, list, &self.plane(flat as u32), edge);
             let mut left = 4 * crossing.len() * crossing.len() + 16;
             let mut n_failed = 0;
             while let Some([a, b]) = crossing.pop_front() {
@@ -52,6 +53,8 @@ impl SurfaceRepair<'_> {
                 }
                 n_failed = 0;
                 net.flip(list, [a, b], [(s, p), (t, q)]);
+                fans.add(q, s);
+                fans.add(p, t);
                 if self.plane(flat as u32).cross(edge, [p, q]) {
                     crossing.push_back([p, q]);
                 }
@@ -79,6 +82,45 @@ impl SurfaceRepair<'_> {
         let middle = add(from, scale(sub(to, from), crossing_share([from, to], [p, q])));
         self.commit(sides, middle, exchange, true)
     }
+}
+
+/// The triangles of each vertex of a flat facet, together with some that no longer have it.
+struct Fans(HashMap<VertexId, Vec<u32>>);
+
+impl Fans {
+    fn of(list: &[[VertexId; 3]]) -> Self {
+        let mut fans = Self(HashMap::with_capacity(list.len()));
+        for (triangle, vertices) in (0..).zip(list) {
+            vertices.iter().for_each(|&v| fans.add(v, triangle));
+        }
+        fans
+    }
+
+    fn add(&mut self, vertex: VertexId, triangle: u32) {
+        self.0.entry(vertex).or_default().push(triangle);
+    }
+
+    fn of_vertex(&self, vertex: VertexId) -> &[u32] {
+        self.0.get(&vertex).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// The edges of a flat facet that a segment crosses; ascending, with the smaller end first.
+fn crossing(
+    net: &Net,
+    fans: &Fans,
+    list: &[[VertexId; 3]],
+    plane: &Plane,
+    [a, b]: [VertexId; 2],
+) -> VecDeque<[VertexId; 2]> {
+    let fan = fans.of_vertex(a).iter().map(|&i| list[i as usize]);
+    let Some(mut edges) = net.crossed(plane, fan, [a, b]) else {
+        // Where triangles overlap by rounding, any of them may be in the way.
+        return net.edges().into_iter().filter(|&e| plane.cross([a, b], e)).collect();
+    };
+    edges.iter_mut().for_each(|edge| edge.sort_unstable());
+    edges.sort_unstable();
+    edges.into()
 }
 
 /// The fraction of the way from `a` to `b` at which the line through p and q crosses; all lie in one plane.
