@@ -42,7 +42,7 @@ pub fn edge_lengths<const N: usize>(
 
 /// Calls `found` with each edge once. Edges are gathered at their lower end, where each list is short: many
 /// times faster than sorting all of them.
-fn for_each_edge<const N: usize>(
+pub(crate) fn for_each_edge<const N: usize>(
     n_points: usize,
     simplices: impl Iterator<Item = [VertexId; N]> + Clone,
     mut found: impl FnMut([VertexId; 2]),

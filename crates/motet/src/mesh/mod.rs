@@ -37,6 +37,7 @@ pub use cell_kind::CellKind;
 pub use cells::Cells;
 pub use coincident::firsts_at_place;
 pub use data::{Mesh, bounds, largest_extent};
+pub(crate) use edge_lengths::for_each_edge;
 pub use edge_lengths::{edge_lengths, mean_edge_lengths};
 pub use field::{Field, Values};
 pub use labels::{LabelNames, Labels, unused_name};

@@ -24,9 +24,9 @@ use std::collections::BinaryHeap;
 
 use crate::base::{Csr, Point, VertexId, sorted_ids};
 use crate::geometry::distance::point_triangle;
-use crate::geometry::tet::{EDGES, FACETS};
+use crate::geometry::tet::FACETS;
 use crate::geometry::vector::distance;
-use crate::mesh::mean_edge_lengths;
+use crate::mesh::{bounds, for_each_edge, mean_edge_lengths};
 
 /// How many edges away from the body the band begins.
 const CLEARANCE: f64 = 0.3;
@@ -63,20 +63,25 @@ pub(super) fn shares(
     for (b, body) in bodies.iter().enumerate() {
         let is_body = |owner| owner == BODIES + b as u32;
         let is_other = |owner| owner != NOBODY && owner != BODIES + b as u32;
-        let of_body = walls.distances(is_body, (CLEARANCE + WIDTH) * longest);
+        let of_body = walls.distances(is_body, |_| true, (CLEARANCE + WIDTH) * longest);
+        let edge = |v: usize| {
+            let foot = of_body[v].foot.map_or(v, |facet| walls.facets[facet as usize][0].index());
+            0.5 * (lengths[v] + lengths[foot])
+        };
+        let is_near = |&v: &usize| of_body[v].distance < (CLEARANCE + WIDTH) * edge(v);
+        let longest_near = (0..points.len()).filter(is_near).map(edge).fold(0.0, f64::max);
         // A wall across a gap this wide does not change the ramp.
-        let of_others = walls.distances(
-            is_other,
-            ((CLEARANCE + WIDTH) / GAP_FRACTIONS[1]).max(CLEARANCE / GAP_FRACTIONS[0]) * longest,
-        );
+        let widest =
+            ((CLEARANCE + WIDTH) / GAP_FRACTIONS[1]).max(CLEARANCE / GAP_FRACTIONS[0]) * longest_near;
+        let around = Around::new(body, points, widest + (CLEARANCE + WIDTH + 1.0) * longest_near);
+        let of_others = walls.distances(is_other, |v| around.holds(points[v]), widest);
         let (along_body, along_others) = (walls.reached(is_body), walls.reached(is_other));
         let share = |v: usize| {
-            let foot = of_body[v].foot.map_or(v, |facet| walls.facets[facet as usize][0].index());
             let gap = of_body[v].distance + of_others[v].distance;
             match (along_body[v], along_others[v]) {
                 // A vertex that only the body encloses moves with it.
                 (true, false) => 1.0,
-                (true, true) => ramp(of_body[v].distance, gap, 0.5 * (lengths[v] + lengths[foot])),
+                (true, true) => ramp(of_body[v].distance, gap, edge(v)),
                 (false, _) => 0.0,
             }
         };
@@ -85,6 +90,23 @@ pub(super) fn shares(
         body.iter().for_each(|v| shares[v.index() * bodies.len() + b] = 1.0);
     }
     shares
+}
+
+/// A box around a body.
+struct Around([Point; 2]);
+
+impl Around {
+    /// The box that holds everything within a distance of a body.
+    fn new(body: &[VertexId], points: &[Point], distance: f64) -> Self {
+        let places: Vec<Point> = body.iter().map(|v| points[v.index()]).collect();
+        let [low, high] = bounds(&places).unwrap_or_default();
+        Self([low.map(|x| x - distance), high.map(|x| x + distance)])
+    }
+
+    fn holds(&self, p: Point) -> bool {
+        let Self([low, high]) = self;
+        (0..3).all(|k| (low[k]..=high[k]).contains(&p[k]))
+    }
 }
 
 /// The share at a distance from the body, given the width of the gap to the next wall and the length of
@@ -118,14 +140,12 @@ impl<'a> Walls<'a> {
             let [a, b, c] = facet.map(|v| owner[v.index()]);
             a != NOBODY && a == b && b == c
         };
-        let of_tet = |tet: &[VertexId; 4]| FACETS.map(|facet| sorted_ids(facet.map(|i| tet[i])));
-        let mut facets: Vec<_> = tets.iter().flat_map(of_tet).filter(is_of_one).collect();
+        let of_tet = |tet: &[VertexId; 4]| FACETS.map(|facet| facet.map(|i| tet[i]));
+        let mut facets: Vec<_> = tets.iter().flat_map(of_tet).filter(is_of_one).map(sorted_ids).collect();
         facets.sort_unstable();
         facets.dedup();
-        let ends = |tet: &[VertexId; 4]| EDGES.map(|edge| sorted_ids(edge.map(|i| tet[i])));
-        let mut edges: Vec<[VertexId; 2]> = tets.iter().flat_map(ends).collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let mut edges: Vec<[VertexId; 2]> = Vec::new();
+        for_each_edge(points.len(), tets.iter().copied(), |edge| edges.push(edge));
         let both_ways = || edges.iter().flat_map(|[a, b]| [(a.index(), b.0), (b.index(), a.0)]);
         let uses = || (0u32..).zip(&facets).flat_map(|(i, facet)| facet.map(|v| (v.index(), i)));
         Self {
@@ -139,11 +159,18 @@ impl<'a> Walls<'a> {
 
     /// The distance of each vertex that lies on no wall from the walls of some owners (Dijkstra 1959, with
     /// the distance from the nearest facet in place of the length of the way); infinite where every way there
-    /// crosses a wall, and where it is more than `max_distance` and a step.
-    fn distances(&self, is_source: impl Fn(u32) -> bool, max_distance: f64) -> Vec<WallDistance> {
+    /// crosses a wall or leaves the vertices that `are_within`, and where it is more than `max_distance` and
+    /// a step.
+    fn distances(
+        &self,
+        is_source: impl Fn(u32) -> bool,
+        are_within: impl Fn(usize) -> bool,
+        max_distance: f64,
+    ) -> Vec<WallDistance> {
         let mut known = vec![WallDistance { distance: f64::INFINITY, foot: None }; self.points.len()];
         let mut front = BinaryHeap::new();
-        for (v, _) in self.owner.iter().enumerate().filter(|(_, owner)| is_source(**owner)) {
+        let sources = self.owner.iter().enumerate().filter(|(_, owner)| is_source(**owner));
+        for (v, _) in sources.filter(|(v, _)| are_within(*v)) {
             known[v].distance = 0.0;
             front.push(FrontVertex { distance: 0.0, vertex: v as u32 });
         }
@@ -152,7 +179,8 @@ impl<'a> Walls<'a> {
             if distance > known[v].distance || distance > max_distance {
                 continue;
             }
-            for &u in self.beside.list(v).iter().filter(|&&u| self.owner[u as usize] == NOBODY) {
+            let is_free = |u: &&u32| self.owner[**u as usize] == NOBODY && are_within(**u as usize);
+            for &u in self.beside.list(v).iter().filter(is_free) {
                 let far = self.near_foot(u as usize, v, known[v].foot);
                 if far.distance < known[u as usize].distance {
                     known[u as usize] = far;
