@@ -582,7 +582,7 @@ fn what_is_improved_has_an_entry_for_each_point() {
         let options = motet::remesh::Options { improve: Some(improve), ..Default::default() };
         remesh_mesh(&mesh, &options, &Rules::default(), &threads()).unwrap_err().to_string()
     };
-    let sizes = Density { sizes: vec![1.0; 26], free_vertices: None };
+    let sizes = Density { sizes: vec![1.0; 26], lack: 0 };
     assert!(refusal(Some(sizes), None).contains("26 sizes for 27 points"));
     assert!(refusal(None, Some(vec![[0.0; 3]; 28])).contains("28 positions in the other pose for 27 points"));
 }

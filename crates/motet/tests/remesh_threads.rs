@@ -45,7 +45,7 @@ fn tasks(mesh: &Mesh, n: usize) -> Vec<Options> {
     let adapt = SurfaceRule::Adapt { distance: Some(0.05) };
     let sized = |sizes: Sizes| Options { sizes: Some(sizes), ..Options::default() };
     let ahead: Vec<Point> = mesh.points.iter().map(|p| [p[0] + 0.2 * cell * p[1], p[1], p[2]]).collect();
-    let density = Density { sizes: graded(mesh, cell), free_vertices: None };
+    let density = Density { sizes: graded(mesh, cell), lack: 0 };
     let improve = Improve {
         below: 0.75,
         raises_worst: true,

@@ -1,5 +1,7 @@
 //! Lists of lists in two flat arrays (compressed sparse rows).
 
+use std::ops::Range;
+
 use crate::base::Threads;
 
 /// `n` lists of `T`, end to end in one array.
@@ -80,6 +82,24 @@ impl<T> Csr<T> {
     /// Lists of the same lengths, with `new(item)` for each item.
     pub(crate) fn with_items<U>(&self, new: impl FnMut(&T) -> U) -> Csr<U> {
         Csr { offsets: self.offsets.clone(), items: self.items.iter().map(new).collect() }
+    }
+
+    /// The lists of some runs of this one, with `new(item)` for each item.
+    pub(crate) fn runs(
+        &self,
+        runs: impl Iterator<Item = Range<usize>>,
+        new: impl Fn(&T) -> T + Copy,
+    ) -> Self {
+        let mut offsets = Vec::with_capacity(self.offsets.len());
+        let mut items = Vec::with_capacity(self.items.len());
+        offsets.push(0);
+        for run in runs {
+            let [start, end] = [run.start, run.end].map(|i| self.offsets[i]);
+            let shift = start - items.len() as u32;
+            items.extend(self.items[start as usize..end as usize].iter().map(new));
+            offsets.extend(self.offsets[run.start + 1..=run.end].iter().map(|offset| offset - shift));
+        }
+        Self { offsets, items }
     }
 
     /// Adds a list at the end.

@@ -64,15 +64,16 @@ impl Complex {
             qualities: Qualities::new(rough),
             journal: Journal::default(),
         };
-        complex.constrain_walls(&mesh.fixed_vertices);
+        complex.constrain_walls(mesh);
         complex.constrain_lines(&loose);
-        complex.overlaps.is_tangled = complex.has_flat_or_inverted() || complex.has_disconnected_star();
+        complex.overlaps.is_tangled =
+            complex.has_flat_or_inverted() || complex.has_disconnected_star(&mesh.cut_vertices);
         Ok(complex)
     }
 
-    /// Constrains vertices of walls to the surface, and fixes vertices that are marked as fixed or have no
-    /// tet.
-    fn constrain_walls(&mut self, fixed_vertices: &[VertexId]) {
+    /// Constrains vertices of walls to the surface, and fixes vertices that are marked as fixed, are on the
+    /// cut or have no tet.
+    fn constrain_walls(&mut self, mesh: &TetMesh) {
         for (_, wall) in self.walls.iter() {
             let facet = self.tets.outward(wall.sides[0]);
             facet.into_iter().for_each(|v| self.vertices.set_hold(v, Hold::Surface));
@@ -80,7 +81,8 @@ impl Complex {
         for v in self.vertices.slots().filter(|&v| self.tets.tet_of(v) == NO_TET) {
             self.vertices.set_hold(v, Hold::Fixed);
         }
-        for &v in fixed_vertices.iter().chain(self.locks.edges().as_flattened()) {
+        let fixed = mesh.fixed_vertices.iter().chain(&mesh.cut_vertices);
+        for &v in fixed.chain(self.locks.edges().as_flattened()) {
             self.vertices.set_hold(v, Hold::Fixed);
         }
     }
@@ -92,11 +94,12 @@ impl Complex {
 
     /// Whether the tets of a vertex at a wall are connected only by the vertex, or by an edge. This is so
     /// where parts of a mesh touch, and where a tet has a wrong vertex: it may then be positive and overlap
-    /// others.
-    fn has_disconnected_star(&self) -> bool {
+    /// others. Vertices of the cut are left out.
+    fn has_disconnected_star(&self, cut: &[VertexId]) -> bool {
         let mut star = Star::default();
-        let mut vertices = self.vertices.slots();
-        vertices.any(|v| self.hold(v) != Hold::Free && self.is_used(v) && !self.is_one_star(v, &mut star))
+        let is_checked =
+            |v: &VertexId| self.hold(*v) != Hold::Free && self.is_used(*v) && cut.binary_search(v).is_err();
+        self.vertices.slots().filter(is_checked).any(|v| !self.is_one_star(v, &mut star))
     }
 }
 

@@ -82,6 +82,7 @@ impl Complex {
         self.extract_triangles(first, new_id, &mut extract);
         self.extract_lines(first, new_id, &mut extract);
         extract.mesh.fixed_vertices = first.fixed_vertices.iter().map(|&v| new_id(v)).collect();
+        extract.mesh.cut_vertices = first.cut_vertices.iter().map(|&v| new_id(v)).collect();
         extract.mesh.fixed_edges = first.fixed_edges.iter().map(|edge| edge.map(new_id)).collect();
         extract
     }

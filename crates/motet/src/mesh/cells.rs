@@ -2,6 +2,7 @@
 
 use crate::base::{CellId, Csr, Error, Result, Threads, VertexId};
 use crate::mesh::CellKind;
+use crate::mesh::cutout::runs_between;
 
 /// Cells of any kind, mixed as in the file: the kind of each cell, and the vertices of all cells, end to end.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -176,6 +177,20 @@ impl Cells {
             vertices: of_list(&self.vertices),
             polyhedron_faces: self.polyhedron_faces.iter().map(of_list).collect(),
         }
+    }
+
+    /// The cells without some, which rise, with each vertex `v` replaced by `new[v]`; if `new` is empty,
+    /// vertices keep their numbers. There must be no polyhedra.
+    pub(crate) fn without(&self, removed: &[CellId], new: &[VertexId]) -> Self {
+        debug_assert!(self.polyhedron_faces.is_empty());
+        let mut kinds = Vec::with_capacity(self.len());
+        runs_between(self.len(), removed).for_each(|run| kinds.extend_from_slice(&self.kinds[run]));
+        let runs = runs_between(self.len(), removed);
+        let vertices = match new.is_empty() {
+            true => self.vertices.runs(runs, |v| *v),
+            false => self.vertices.runs(runs, |v| new[v.index()]),
+        };
+        Self { kinds, vertices, polyhedron_faces: Vec::new() }
     }
 
     /// Checks that every vertex id is below `n_points`.

@@ -90,6 +90,11 @@ impl OrientedTets {
         Self { tets, cells, turned: Vec::new(), walls }
     }
 
+    /// The facets on the boundary, between two regions, or with a triangle.
+    pub(crate) fn walls(&self) -> &[[VertexId; 3]] {
+        &self.walls
+    }
+
     /// The corner points of a tet, with the vertices of the mesh at `points`.
     #[inline]
     pub fn corners(&self, tet: usize, points: &[Point]) -> [Point; 4] {

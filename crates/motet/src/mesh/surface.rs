@@ -33,7 +33,12 @@ impl Surface {
 
     /// The boundary of the volume cells of a mesh as triangles facing outward, all of patch 0.
     pub fn boundary_of(mesh: &Mesh) -> Self {
-        let mut boundary = Boundary::of(&mesh.cells);
+        Self::of_boundary(mesh, Boundary::of(&mesh.cells))
+    }
+
+    /// The boundary of the volume cells of a mesh, already found, as triangles facing outward, all of patch
+    /// 0.
+    pub(crate) fn of_boundary(mesh: &Mesh, mut boundary: Boundary) -> Self {
         boundary.turn_outward(&mesh.cells, &mesh.points);
         let facets = boundary.cells.iter().zip(&boundary.kinds).zip(boundary.facets.iter());
         Self::from_cells(mesh, None, facets.map(|((&cell, &kind), vertices)| (cell, kind, vertices)))

@@ -29,6 +29,9 @@ pub struct TetMesh {
     pub fixed_vertices: Vec<VertexId>,
     /// Edges that stay as they are, such as those of hexahedra beside the tets.
     pub fixed_edges: Vec<[VertexId; 2]>,
+    /// Where the mesh was cut out of a larger one: the vertices that tets outside have, too, in rising order.
+    /// They are fixed, and tets that share one need not be connected.
+    pub cut_vertices: Vec<VertexId>,
 }
 
 impl TetMesh {
@@ -60,6 +63,7 @@ impl TetMesh {
         self.check_ids("line", &self.lines)?;
         self.check_ids("fixed edge", &self.fixed_edges)?;
         self.check_ids("fixed vertex", self.fixed_vertices.as_chunks::<1>().0)?;
+        self.check_ids("vertex of the cut", self.cut_vertices.as_chunks::<1>().0)?;
         self.check_numbers()
     }
 

@@ -23,6 +23,8 @@ use crate::motion::smooth::Smoother;
 pub struct Mover {
     pub(crate) reference: Vec<Point>,
     pub(crate) nodes: Nodes,
+    /// The boundary of the mesh.
+    facets: Boundary,
     /// Vertices that follow the nodes.
     free: Vec<VertexId>,
     /// Middle nodes that stay between their corners.
@@ -121,6 +123,7 @@ impl Mover {
         Ok(Self {
             reference: mesh.points.clone(),
             nodes,
+            facets: boundary,
             free,
             middles,
             method,
@@ -138,6 +141,11 @@ impl Mover {
     /// [`Options::also_moved`].
     pub fn boundary(&self) -> &[VertexId] {
         &self.nodes.vertices[..self.nodes.n_driven]
+    }
+
+    /// The facets of the boundary of the mesh.
+    pub(crate) fn boundary_facets(&self) -> &Boundary {
+        &self.facets
     }
 
     /// The linear tets of the mesh, oriented as in the reference.

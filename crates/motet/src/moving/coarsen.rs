@@ -41,7 +41,8 @@ impl MovingMesh {
         let gaps = self.gaps_here(threads)?;
         let Self { now, options, wall, .. } = &*self;
         let mut part = TetPart::of(&now.mesh)?;
-        let mut sizes = self.sizes.first.at_vertices(now, &now.mesh.points, wall, options, threads);
+        let all: Vec<VertexId> = (0..now.mesh.points.len()).map(VertexId::new).collect();
+        let mut sizes = self.sizes.first.at_vertices(now, &now.mesh.points, &all, wall, options, threads);
         if let Some(gaps) = gaps {
             sizes.iter_mut().zip(gaps).for_each(|(size, gap)| *size = size.min(gap.max(smallest)));
         }

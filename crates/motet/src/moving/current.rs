@@ -213,6 +213,11 @@ impl Current {
         self.mover.boundary().iter().map(of).collect()
     }
 
+    /// How many vertices are free: inside the volume.
+    pub(super) fn n_free(&self, n_points: usize) -> usize {
+        self.tets.n_inside(n_points)
+    }
+
     /// Whether repair has left this tet, and it is about as bad as then.
     pub(super) fn is_left(&self, cell: CellId, eas: f64) -> bool {
         let found = self.left.binary_search_by_key(&cell, |left| left.cell);

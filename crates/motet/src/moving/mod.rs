@@ -5,6 +5,7 @@
 //! | `options` | options: how the inside follows, what is repaired, what is watched; patches by label, since ids do not last |
 //! | `moving_mesh` | [`MovingMesh`]: made once, then [`advance`](MovingMesh::advance), [`refine`](MovingMesh::refine), arrays, velocity, history |
 //! | `substeps` | a step, in as many parts as it takes: move while tets stay well shaped, repair, move on |
+//! | `repair` | the repair within a step: which tets are repaired and improved, in the part of the mesh around them |
 //! | `step_run` | the state of one step in progress, and its result |
 //! | `first_mesh` | the first mesh, and when to restore it: where walls return and the mesh does not settle by itself |
 //! | `restore` | the first mesh put back |
@@ -71,6 +72,7 @@ mod hold;
 mod moving_mesh;
 mod options;
 mod options_text;
+mod repair;
 mod restore;
 mod script;
 mod shapes;

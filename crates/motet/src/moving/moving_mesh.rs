@@ -68,7 +68,7 @@ impl MovingMesh {
     pub fn new(mesh: &Mesh, options: Options, threads: &Threads) -> Result<Self> {
         options.check()?;
         let mover = Mover::new(mesh, &options.motion.options(mesh)?, threads)?;
-        let wall = Wall::of(mesh, mover.boundary(), &options)?;
+        let wall = Wall::of(mesh, &mover, &options)?;
         let mut records = Records::at_first(mesh, mover.boundary());
         records.rest = options.returns.then(|| mesh.points.clone());
         let now = Current::of(mesh.clone(), mover, records, Vec::new(), &wall, threads)?;

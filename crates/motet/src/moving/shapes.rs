@@ -7,6 +7,7 @@ use crate::geometry::quality::{ROUGH_EAS_ERROR, eas, rough_eas};
 use crate::geometry::tet;
 use crate::mesh::{Mesh, OrientedTets, Qualities, is_inverted};
 use crate::motion::Mover;
+use crate::ops::defect;
 
 /// The tets of a mesh, oriented.
 #[derive(Clone, Debug)]
@@ -21,6 +22,8 @@ pub(super) struct Shape {
     pub(super) worst: Option<(CellId, f64, Point)>,
     /// How many tets are flat or inverted.
     pub(super) inverted: usize,
+    /// The sum of the [defects](defect) of all tets, by approximate EAS.
+    pub(super) defects: f64,
 }
 
 /// The number of tets that a thread evaluates at a time.
@@ -57,6 +60,21 @@ impl Tets {
         parts.into_iter().fold(Shape::default(), Shape::and)
     }
 
+    /// The tets of boundary layers among those of low quality, with the vertices at `points`.
+    pub(super) fn layers(&self, low: &Shape, points: &[Point], limit: f64) -> Vec<CellId> {
+        let place = |(cell, _): &(CellId, f64)| self.0.cells.binary_search(cell).ok();
+        let judged = self.0.judge(points, low.bad.iter().filter_map(place).collect(), limit);
+        judged.layers.into_iter().map(|tet| self.0.cells[tet]).collect()
+    }
+
+    /// How many of `n_points` vertices are inside the volume.
+    pub(super) fn n_inside(&self, n_points: usize) -> usize {
+        let mut is_inside = vec![false; n_points];
+        self.0.tets.as_flattened().iter().for_each(|v| is_inside[v.index()] = true);
+        self.0.walls().as_flattened().iter().for_each(|v| is_inside[v.index()] = false);
+        is_inside.into_iter().filter(|is| *is).count()
+    }
+
     /// The quality of all tets with the vertices at `points`.
     pub(super) fn qualities(&self, points: &[Point], threads: &Threads) -> Qualities {
         Qualities::of(points, &self.0.tets, threads)
@@ -91,7 +109,8 @@ impl Tets {
         let rough = rough_eas(points, corners);
         let lowest = rough.iter().copied().fold(f32::INFINITY, f32::min);
         let doubtful = (limit + ROUGH_EAS_ERROR).max(f64::from(lowest) + 2.0 * ROUGH_EAS_ERROR);
-        let mut shape = Shape::default();
+        let defects = rough.iter().map(|&q| defect(f64::from(q).max(0.0))).sum();
+        let mut shape = Shape { defects, ..Shape::default() };
         for (i, tet) in
             range.zip(corners).zip(&rough).filter(|(_, r)| f64::from(**r) <= doubtful).map(|(t, _)| t)
         {
@@ -113,6 +132,7 @@ impl Shape {
     fn and(mut self, other: Self) -> Self {
         self.bad.extend(other.bad);
         self.inverted += other.inverted;
+        self.defects += other.defects;
         self.worst = match (self.worst, other.worst) {
             (Some(a), Some(b)) if b.1 < a.1 => Some(b),
             (a, b) => a.or(b),

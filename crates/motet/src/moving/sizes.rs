@@ -130,33 +130,41 @@ impl SizeMap {
 
     /// The sizes of a mesh as it is, wherever its walls are.
     pub(super) fn anew(now: &Current, options: &Options, threads: &Threads) -> Self {
-        let places = pulled_back(now, &now.mesh.points, options, threads);
+        let vertices: Vec<VertexId> = (0..now.mesh.points.len()).map(VertexId::new).collect();
+        let places = pulled_back(now, &now.mesh.points, &vertices, options, threads);
         Self::new(places.into_iter().map(|(_, place)| place).collect(), lengths(&now.mesh))
     }
 
-    /// The size at each vertex of a mesh whose vertices are at `points`; 0 if no size is known anywhere.
+    /// The size at some vertices of a mesh whose vertices are at `points`; 0 if no size is known anywhere.
     pub(super) fn at_vertices(
         &self,
         now: &Current,
         points: &[Point],
+        vertices: &[VertexId],
         wall: &Wall,
         options: &Options,
         threads: &Threads,
     ) -> Vec<f64> {
         let parts = self.parts.get_or_init(|| Parts::of(self, wall, threads));
-        let places = pulled_back(now, points, options, threads);
+        let places = pulled_back(now, points, vertices, options, threads);
         threads.map(places.len(), |v| parts.at(places[v].0, places[v].1))
     }
 }
 
-/// Where each vertex of a mesh was when the walls were at their first position, as if it were fixed to the
-/// wall triangle nearest to it; with a node of the part of the walls it belongs to, or [`NO_NODE`].
-fn pulled_back(now: &Current, points: &[Point], options: &Options, threads: &Threads) -> Vec<(u32, Point)> {
+/// Where some vertices of a mesh were when the walls were at their first position, as if each were fixed
+/// to the wall triangle nearest to it; with a node of the part of the walls it belongs to, or [`NO_NODE`].
+fn pulled_back(
+    now: &Current,
+    points: &[Point],
+    vertices: &[VertexId],
+    options: &Options,
+    threads: &Threads,
+) -> Vec<(u32, Point)> {
     let first = &now.records.first;
     let mut is_driven = vec![false; points.len()];
     now.mover.boundary().iter().for_each(|v| is_driven[v.index()] = true);
     let has_area = |t: &[VertexId; 3]| area_vector(t.map(|v| points[v.index()])) != [0.0; 3];
-    let mut triangles = wall_triangles(&now.mesh, options);
+    let mut triangles = wall_triangles(&now.mesh, &now.mover, options);
     triangles.retain(|t| t.iter().all(|v| is_driven[v.index()]) && has_area(t));
     let mut sets = DisjointSets::new(points.len());
     sets.join_all(triangles.iter().map(|t| t.as_slice()));
@@ -168,10 +176,11 @@ fn pulled_back(now: &Current, points: &[Point], options: &Options, threads: &Thr
     let back = |t: &[VertexId; 3]| Rigid::fit(&t.map(|v| (points[v.index()], first[v.index()])));
     let back: Vec<Rigid> = triangles.iter().map(back).collect();
     let tree = NearestTriangle::new(points, &triangles, threads);
-    let nearest = tree.closest_all(points, None, threads);
-    threads.map(points.len(), |v| match nearest[v].map(|nearest| nearest.triangle) {
-        Some(t) => (node[roots[triangles[t][0].index()] as usize], back[t].apply(points[v])),
-        None => (NO_NODE, first[v]),
+    let places: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
+    let nearest = tree.closest_all(&places, None, threads);
+    threads.map(places.len(), |i| match nearest[i].map(|nearest| nearest.triangle) {
+        Some(t) => (node[roots[triangles[t][0].index()] as usize], back[t].apply(places[i])),
+        None => (NO_NODE, first[vertices[i].index()]),
     })
 }
 
@@ -188,7 +197,8 @@ mod tests {
         let moving = MovingMesh::new(&mesh, Options::default(), &Threads::single()).unwrap();
         let of = |points: &[Point]| {
             let MovingMesh { now, wall, options, sizes, .. } = &moving;
-            sizes.first.at_vertices(now, points, wall, options, &Threads::single())
+            let all: Vec<VertexId> = (0..points.len()).map(VertexId::new).collect();
+            sizes.first.at_vertices(now, points, &all, wall, options, &Threads::single())
         };
         let first = of(&mesh.points);
         let radius = mesh.points.iter().map(|p| norm(*p)).fold(f64::INFINITY, f64::min);
@@ -214,7 +224,8 @@ mod tests {
         let mesh = sphere_in_box(6, 6);
         let moving = MovingMesh::new(&mesh, Options::default(), &Threads::single()).unwrap();
         let MovingMesh { now, wall, options, sizes, .. } = &moving;
-        let at = sizes.now.at_vertices(now, &mesh.points, wall, options, &Threads::single());
+        let all: Vec<VertexId> = (0..mesh.points.len()).map(VertexId::new).collect();
+        let at = sizes.now.at_vertices(now, &mesh.points, &all, wall, options, &Threads::single());
         let ratios: Vec<f64> = at.iter().zip(lengths(&mesh)).map(|(size, length)| size / length).collect();
         assert!(ratios.iter().all(|ratio| (0.6..1.6).contains(ratio)), "{ratios:?}");
         let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;

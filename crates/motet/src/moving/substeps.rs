@@ -1,46 +1,18 @@
 //! A step, in as many parts as it takes: move while tets stay well shaped, repair, move on.
 
-use std::sync::Arc;
 use std::time::Instant;
 
-use crate::base::{CellId, Point, Result, VertexId};
-use crate::geometry::predicates::orient3d;
-use crate::geometry::vector::{add, norm, scale, sub};
-use crate::mesh::history::{Changed, Origin};
-use crate::moving::current::{Current, Derived, LeftBad, Records, positions_after, present_rules};
+use crate::base::{CellId, Point, Result};
+use crate::geometry::vector::{add, scale, sub};
+use crate::moving::current::{Current, LeftBad, Records};
+use crate::moving::repair::{Effort, Repaired};
 use crate::moving::shapes::Shape;
-use crate::moving::step::{Change, Why};
 use crate::moving::step_run::{StepResult, StepRun};
-use crate::remesh::{self, Density, Goal, Improve, Report, remesh_mesh};
 
 /// Parts are halved down to this if tets would become flat: repairing more often than that makes no progress.
 const MIN_PART_IF_FLAT: f64 = 1.0 / 32.0;
 /// Parts are halved down to this if tets would be inverted.
 const MIN_PART_IF_INVERTED: f64 = 1.0 / 4096.0;
-
-/// The largest number of times a repair is repeated with more tets held.
-const MAX_REPEATS: usize = 8;
-
-/// No vertex is extrapolated to the next step farther than this fraction of the mean length of its edges.
-const FARTHEST_AHEAD: f64 = 0.5;
-
-/// A tet of the first mesh counts as unchanged if its EAS has fallen by no more than this.
-const AS_AT_FIRST: f64 = 0.005;
-
-/// Tets within this many layers of a bad one are near it.
-const RINGS: usize = 2;
-
-/// How hard repair tries.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Effort {
-    Usual,
-    /// Before anything has moved: all tets within the margin.
-    Margin,
-    /// Bad tets were left: improve everything around them as far as possible.
-    AllAround,
-    /// No progress was possible: improve everything as far as possible.
-    All,
-}
 
 impl StepRun<'_> {
     /// Makes the step from `start`, which is not changed. If walls have come back, the first mesh may be put
@@ -176,126 +148,6 @@ impl StepRun<'_> {
         }
     }
 
-    /// The mesh with its bad tets repaired, with the vertices at [`Self::points`].
-    fn repaired(
-        &mut self,
-        now: &Current,
-        before: &[Point],
-        shape: &Shape,
-        time: f64,
-        effort: Effort,
-    ) -> Result<Repaired> {
-        let begin = Instant::now();
-        let options = self.options;
-        let is_needed = !shape.bad.is_empty() || effort == Effort::All;
-        let Some(usual) = options.repair.as_ref().filter(|_| is_needed) else {
-            return Ok(Repaired::Left(Vec::new()));
-        };
-        let mut repair = remesh::Options {
-            min_eas: (usual.min_eas + options.margin).min(1.0),
-            only: self.worth_repair(now, shape, effort),
-            improve: self.improve(now, before, usual, effort),
-            goal: if matches!(effort, Effort::Usual | Effort::Margin) { usual.goal } else { Goal::Best },
-            ..usual.clone()
-        };
-        let given = now.moved(&self.points, &options.contents);
-        let rules = present_rules(&options.rules, &given);
-        let mut tries_left = if options.valid_at_start { MAX_REPEATS } else { 0 };
-        let outcome = loop {
-            let outcome = remesh_mesh(&given, &repair, &rules, self.threads)?;
-            let replaced = if tries_left > 0 { replaced_by_inverted(&outcome, before)? } else { Vec::new() };
-            if replaced.is_empty() {
-                break outcome;
-            }
-            repair.held.cells.extend(replaced);
-            tries_left -= 1;
-        };
-        let (report, history) = (outcome.report, Arc::new(outcome.history));
-        self.n_free.get_or_insert(report.before.free_vertices);
-        let left = left_of(&report, options.limit());
-        self.seconds.repair += begin.elapsed().as_secs_f64();
-        if report.kept == now.tets.len() && outcome.mesh.points == given.points {
-            return Ok(Repaired::Left(left));
-        }
-        let begin = Instant::now();
-        let derived =
-            Derived { given: &given, mesh: outcome.mesh, history: history.clone(), before: before.to_vec() };
-        let next = now.next(derived, left, self.wall, options, self.threads)?;
-        let counts = [now.tets.len(), report.after.tets];
-        let change = Change::new(time, Why::Repair, counts, shape, history, self.points.clone());
-        self.changes.push(Change { operations: report.operations, ..change });
-        self.seconds.setup += begin.elapsed().as_secs_f64();
-        Ok(Repaired::Changed(Box::new(next)))
-    }
-
-    /// The tets to repair; `None`: all.
-    fn worth_repair(&self, now: &Current, shape: &Shape, effort: Effort) -> Option<Vec<CellId>> {
-        let limit = self.options.limit();
-        let low = || now.tets.shape(&self.points, limit + self.options.margin, self.threads).bad;
-        match effort {
-            Effort::All => None,
-            Effort::AllAround => Some(now.tets.around(&shape.bad, RINGS, self.points.len())),
-            Effort::Margin => Some(low().into_iter().map(|(cell, _)| cell).collect()),
-            Effort::Usual => {
-                let low = low();
-                let was = now.tets.eas_of(&low, now.mover.reference());
-                let fallen = low.iter().zip(was).filter(|((_, is), was)| is - (was - is).max(0.0) < limit);
-                Some(fallen.map(|((cell, _), _)| *cell).collect())
-            }
-        }
-    }
-
-    /// Which tets are improved besides the bad ones: those that have deteriorated since the start. If the
-    /// repair has sizes of its own, they replace the density.
-    ///
-    /// `before`: where the vertices were when the step began.
-    fn improve(
-        &self,
-        now: &Current,
-        before: &[Point],
-        usual: &remesh::Options,
-        effort: Effort,
-    ) -> Option<Improve> {
-        let below = self.options.improve_below;
-        if below == 0.0 || effort == Effort::Margin {
-            return None;
-        }
-        // If walls come back, tets are compared with the first mesh at rest. A mesh that is put back need not
-        // be good there.
-        let rest = now.records.rest.as_ref().filter(|_| !self.returns.count.is_unsettled);
-        let places = rest.unwrap_or(&self.points);
-        let low = now.tets.shape(places, below, self.threads).bad;
-        let first = &now.records.first_eas;
-        let is_as_at_first = |&(cell, eas): &(CellId, f64)| eas >= first[cell.index()] - AS_AT_FIRST;
-        let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
-        let sizes = self.sizes.at_vertices(now, &self.points, self.wall, self.options, self.threads);
-        // The mesh ahead is nearly the current one: a gain counts twice, and so must the cost.
-        let (pose, cost) = match rest {
-            Some(rest) => (rest.clone(), Improve::FEW_CHANGES),
-            None => (self.ahead(before, &sizes), 2.0 * Improve::FEW_CHANGES),
-        };
-        let density = Density { sizes, free_vertices: self.n_free };
-        Some(Improve {
-            below,
-            cells: Some(cells),
-            keeps_others: false,
-            raises_worst: false,
-            density: usual.sizes.is_none().then_some(density),
-            pose: Some(pose),
-            cost,
-        })
-    }
-
-    /// The positions of the vertices after the next step if they continue as in this one. All move less far
-    /// if one would exceed [`FARTHEST_AHEAD`], since walls turn.
-    fn ahead(&self, before: &[Point], sizes: &[f64]) -> Vec<Point> {
-        let ways: Vec<Point> = self.points.iter().zip(before).map(|(&to, &from)| sub(to, from)).collect();
-        let lengths = ways.iter().zip(sizes).filter(|(_, size)| **size > 0.0);
-        let farthest = lengths.map(|(&way, size)| norm(way) / size).fold(0.0, f64::max);
-        let part = (FARTHEST_AHEAD / farthest).min(1.0);
-        self.points.iter().zip(ways).map(|(&to, way)| add(to, scale(way, part))).collect()
-    }
-
     /// The mesh of the step, with the positions in [`Self::points`] as its new reference.
     fn rebased(&mut self, now: &Current, before: &[Point], left: Vec<LeftBad>) -> Result<Current> {
         let begin = Instant::now();
@@ -304,64 +156,5 @@ impl StepRun<'_> {
         let next = Current::new(mesh, records, left, self.wall, self.options, self.threads);
         self.seconds.setup += begin.elapsed().as_secs_f64();
         next
-    }
-}
-
-/// The result of a repair.
-enum Repaired {
-    Changed(Box<Current>),
-    /// Nothing changed; these tets could not be repaired.
-    Left(Vec<LeftBad>),
-}
-
-/// The tets of the old mesh that a repair has replaced by tets without volume at the positions that their
-/// vertices had when the step began, which were `before` for those of the old mesh.
-fn replaced_by_inverted(outcome: &Changed<Report>, before: &[Point]) -> Result<Vec<CellId>> {
-    let start = positions_after(before, &outcome.history)?;
-    let side = |tet: [VertexId; 4], points: &[Point]| {
-        let [a, b, c, d] = tet.map(|v| points[v.index()]);
-        orient3d(a, b, c, d)
-    };
-    let mut replaced = Vec::new();
-    for (cell, tet) in outcome.mesh.cells.tets() {
-        if let Origin::Changed(row) = outcome.history.cells.of(cell)
-            && side(tet, &start) * side(tet, &outcome.mesh.points) <= 0
-        {
-            replaced.extend_from_slice(row.from);
-        }
-    }
-    replaced.sort_unstable();
-    replaced.dedup();
-    Ok(replaced)
-}
-
-/// The bad tets that repair has left. Those between the limit and the target of the repair are not bad yet:
-/// they are tried once they fall below the limit.
-fn left_of(report: &remesh::Report, limit: f64) -> Vec<LeftBad> {
-    let of =
-        |left: &remesh::Left| LeftBad { cell: left.tet, eas: left.eas, is_forced: left.reason.is_forced() };
-    let mut all: Vec<LeftBad> = report.left.iter().filter(|left| left.eas < limit).map(of).collect();
-    all.sort_by_key(|left| left.cell);
-    all
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::remesh::{Left, Reason};
-
-    #[test]
-    fn what_repair_left_above_the_limit_is_not_left_bad() {
-        let of = |tet: u32, eas: f64| Left {
-            tet: CellId(tet),
-            eas,
-            place: [0.0; 3],
-            defect: "other",
-            reason: Reason::NothingHelps,
-        };
-        let report =
-            remesh::Report { left: vec![of(7, 0.1), of(3, 0.22), of(2, 0.19)], ..Default::default() };
-        let left: Vec<_> = left_of(&report, 0.2).into_iter().map(|left| (left.cell.0, left.eas)).collect();
-        assert_eq!(left, [(2, 0.19), (7, 0.1)]);
     }
 }

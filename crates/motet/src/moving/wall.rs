@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::base::{Error, Point, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::vector::norm;
 use crate::mesh::{Mesh, Surface, bounds, largest_extent};
-use crate::motion::{FacetSet, SurfaceCarrier};
+use crate::motion::{FacetSet, Mover, SurfaceCarrier};
 use crate::moving::options::Options;
 
 /// Walls are at rest if no node has moved by more than this fraction of their extent.
@@ -30,14 +30,15 @@ pub(super) struct Wall {
 }
 
 impl Wall {
-    /// The walls of the first mesh; `driven` lists the vertices that the caller moves, in rising order.
+    /// The walls of the first mesh, which a mover moves.
     ///
     /// # Errors
     /// If a patch that is to be kept apart does not exist, or is not driven.
-    pub(super) fn of(mesh: &Mesh, driven: &[VertexId], options: &Options) -> Result<Self> {
+    pub(super) fn of(mesh: &Mesh, mover: &Mover, options: &Options) -> Result<Self> {
+        let driven = mover.boundary();
         let node = |v: VertexId| driven.binary_search(&v).ok().map(VertexId::new);
         let nodes = |t: &[VertexId; 3]| Some([node(t[0])?, node(t[1])?, node(t[2])?]);
-        let triangles: Vec<_> = wall_triangles(mesh, options).iter().filter_map(nodes).collect();
+        let triangles: Vec<_> = wall_triangles(mesh, mover, options).iter().filter_map(nodes).collect();
         let held = options.watch.as_ref().filter(|watch| watch.hold.is_some());
         let mut body = vec![NO_BODY; if held.is_some() { triangles.len() } else { 0 }];
         let place: HashMap<_, _> = triangles.iter().map(|t| sorted_ids(*t)).zip(0..).collect();
@@ -82,9 +83,10 @@ impl Wall {
     }
 }
 
-/// The triangles of the boundary, and of those patches inside that move and that the mesh has.
-pub(super) fn wall_triangles(mesh: &Mesh, options: &Options) -> Vec<[VertexId; 3]> {
-    let mut triangles = Surface::boundary_of(mesh).triangles;
+/// The triangles of the boundary of a mesh, which a mover moves, and of those patches inside that move and
+/// that the mesh has.
+pub(super) fn wall_triangles(mesh: &Mesh, mover: &Mover, options: &Options) -> Vec<[VertexId; 3]> {
+    let mut triangles = Surface::of_boundary(mesh, mover.boundary_facets().clone()).triangles;
     let inside = options.motion.inside.iter().filter_map(|patch| FacetSet::find(mesh, patch).ok());
     inside.for_each(|patch| triangles.extend(patch.triangles()));
     triangles

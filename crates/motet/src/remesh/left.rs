@@ -29,9 +29,9 @@ pub struct Left<Tet = CellId> {
     pub reason: Reason,
 }
 
-impl Left<TetId> {
+impl<Tet> Left<Tet> {
     /// The bad tet as a cell of a whole mesh: `cell` gives that of a tet.
-    pub(super) fn in_cells(self, cell: impl Fn(TetId) -> CellId) -> Left {
+    pub(super) fn in_cells(self, cell: impl Fn(Tet) -> CellId) -> Left {
         let Self { tet, eas, place, defect, reason } = self;
         Left { tet: cell(tet), eas, place, defect, reason }
     }

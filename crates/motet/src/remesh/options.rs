@@ -34,8 +34,26 @@ pub struct Options {
     /// Which tets are improved besides the bad ones; `None`: those that [`Goal::Best`] improves under that
     /// goal, otherwise none. Default: `None`.
     pub improve: Option<Improve>,
+    /// The mesh that the given one is a part of, to be repaired as it would be within it. Default: `None`,
+    /// it is no part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part_of: Option<Whole>,
     /// The largest number of rounds over the bad tets. Default: 20.
     pub rounds: usize,
+}
+
+/// What a repair of a part depends on of the whole mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Whole {
+    /// Number of tets.
+    pub tets: usize,
+    /// Number of free vertices: inside the volume, and on no line.
+    pub free_vertices: usize,
+    /// The mean over all tets of (1 - EAS)^2, summed over the current pose and the
+    /// [other one](Improve::pose).
+    pub mean_defect: f64,
+    /// The largest extent.
+    pub extent: f64,
 }
 
 impl Default for Options {
@@ -50,6 +68,7 @@ impl Default for Options {
             held: Held::default(),
             sizes: None,
             improve: None,
+            part_of: None,
             rounds: 20,
         }
     }
@@ -172,8 +191,19 @@ pub struct Density {
     /// The desired edge length at each vertex of the mesh, interpolated linearly in the tets. Long edges are
     /// divided where vertices are lacking, short ones collapsed where there are too many.
     pub sizes: Vec<f64>,
-    /// How many free vertices the mesh is to have; `None`: as many as it has now.
-    pub free_vertices: Option<usize>,
+    /// How many free vertices the mesh lacks; it has too many if this is negative.
+    pub lack: isize,
+}
+
+/// If the surplus or lack exceeds this fraction of the vertices, edges are searched for in the whole mesh and
+/// not only near changes.
+const FAR_OFF: f64 = 0.005;
+
+impl Density {
+    /// Whether edges are searched for in the whole mesh, which is to have `n_free` free vertices.
+    pub(crate) fn is_far_off(lack: isize, n_free: usize) -> bool {
+        lack.unsigned_abs() as f64 > FAR_OFF * n_free as f64
+    }
 }
 
 /// What may happen to walls: the boundary, interfaces between regions, labelled facets.

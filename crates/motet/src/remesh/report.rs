@@ -105,14 +105,16 @@ pub struct State<Tet = CellId> {
     pub worst: Option<Worst<Tet>>,
 }
 
-impl State<TetId> {
+impl<Tet> State<Tet> {
     /// The state by cells of a whole mesh: `cell` gives that of a tet.
-    fn in_cells(self, cell: impl Fn(TetId) -> CellId) -> State {
+    fn in_cells(self, cell: impl Fn(Tet) -> CellId) -> State {
         let Self { vertices, free_vertices, tets, bad, layers, types, inverted, worst } = self;
         let worst = worst.map(|worst| Worst { tet: cell(worst.tet), eas: worst.eas, place: worst.place });
         State { vertices, free_vertices, tets, bad, layers, types, inverted, worst }
     }
+}
 
+impl State<TetId> {
     /// The state of a complex. `bad` lists all bad tets, including flat and inverted ones; `id` gives the id
     /// of a tet that is reported.
     pub(super) fn of(complex: &Complex, bad: &[TetId], layers: usize, id: impl Fn(TetId) -> TetId) -> Self {
@@ -184,14 +186,10 @@ pub struct Report<Tet = CellId> {
     pub seconds: Seconds,
 }
 
-impl Report<TetId> {
+impl<Tet> Report<Tet> {
     /// The report by cells of a whole mesh: `old` gives the cell of a tet of the input mesh, `new` that of a
     /// tet of the new mesh.
-    pub(crate) fn in_cells(
-        self,
-        old: impl Fn(TetId) -> CellId,
-        new: impl Fn(TetId) -> CellId + Copy,
-    ) -> Report {
+    pub(crate) fn in_cells(self, old: impl Fn(Tet) -> CellId, new: impl Fn(Tet) -> CellId + Copy) -> Report {
         Report {
             min_eas: self.min_eas,
             before: self.before.in_cells(old),

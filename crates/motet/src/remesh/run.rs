@@ -10,7 +10,7 @@ use crate::remesh::input_mesh::{InputMesh, Pose};
 use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
 use crate::remesh::options::{Goal, Improve, Options, SurfaceRule};
-use crate::remesh::repair::{Aim, Density, Repair, Sizing, is_among, treatments};
+use crate::remesh::repair::{Aim, Density, Outside, Repair, Sizing, is_among, treatments};
 use crate::remesh::report::{Operation, Report, SizesReport, State};
 use crate::remesh::sizes::{LONG, SizeField, Sizes};
 use crate::remesh::surface::{Crease, Surface};
@@ -72,6 +72,7 @@ pub(super) fn remesh_keeping(
     });
     let lengths_before = sizing.as_mut().map(|sizing| Lengths::of(&complex, &mut sizing.field, &input));
     let mut repair = Repair::new(complex, input, surface, others, min_eas, threads);
+    repair.outside = options.part_of.map(|whole| Outside::of(whole, &report.before));
     repair.operations.add_many(Operation::Peeling, n_peeled);
     let pose = options.improve.as_ref().and_then(|improve| improve.pose.clone());
     repair.pose = pose.map(Pose::new);
@@ -82,8 +83,7 @@ pub(super) fn remesh_keeping(
     left = finish_repair(&mut repair, left, options)?;
     if let Some(improve) = options.improve.as_ref().filter(|_| !repair.is_hopeless()) {
         let density = improve.density.as_ref().map(|density| {
-            let n_free = density.free_vertices.unwrap_or(report.before.free_vertices);
-            Density::new(&density.sizes, &repair.input, n_free)
+            Density::new(&density.sizes, &repair.input, report.before.free_vertices, density.lack)
         });
         let vertices_left = repair.vertices_of(&left);
         improve_near(&mut repair, improve, density, options, mesh.tets.len())?;
@@ -249,7 +249,11 @@ fn rejudge(
 
 /// The input surface, if it may change.
 fn adaptable(complex: &mut Complex, mesh: &TetMesh, options: &Options) -> Option<Surface> {
-    let distance = options.surface.distance(|| bounds(&mesh.points).map_or(0.0, largest_extent))?;
+    let extent = || match options.part_of {
+        Some(whole) => whole.extent,
+        None => bounds(&mesh.points).map_or(0.0, largest_extent),
+    };
+    let distance = options.surface.distance(extent)?;
     let mut surface = Surface::of(complex, distance);
     surface.constrain_features(complex, Crease::SHARP);
     complex.adapt_surface();

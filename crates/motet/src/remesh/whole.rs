@@ -3,16 +3,19 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::base::{CellId, Csr, MaybeId, Point, Result, Threads, VertexId};
+use crate::base::{CellId, Csr, MaybeId, Point, Result, Threads, VertexId, absent};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{dot, sub};
 use crate::kernel::Extract;
 use crate::mesh::history::{Changed, History, Origins, Rules, number_anew};
-use crate::mesh::{CellKind, Cells, Field, Mesh, TetPart};
+use crate::mesh::{CellKind, Cells, Cutout, Field, Mesh, TetPart};
 use crate::remesh::held::{Held, Required};
 use crate::remesh::run::{Outcome, remesh_keeping};
 use crate::remesh::{Options, Report};
 use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, quadratic_rows, trace};
+
+/// Tets of a part with a vertex within this many layers of its cut are near it.
+const NEAR_CUT: u8 = 2;
 
 /// Repairs the bad tets of a mesh of any cells, and carries its arrays across by `rules`. Whatever is
 /// unchanged stays to the bit: points, cells, rows of arrays.
@@ -50,16 +53,61 @@ pub fn remesh_part(
     let Repaired { mut report, extract, joined } = changed(mesh, part, options, threads)?;
     let begin = Instant::now();
     let history = history(mesh, part, &extract, &joined, threads)?;
+    let new_points = absent(&extract.vertex_to_old);
     let mut new = Mesh::new(extract.mesh.points, joined.cells);
-    history.transfer(mesh, &mut new, rules)?;
-    let is_new = |v: &VertexId| extract.vertex_to_old[v.index()].is_none();
-    let new_points: Vec<VertexId> = (0..new.points.len()).map(VertexId::new).filter(is_new).collect();
-    let is_new = |cell: &CellId| joined.cell_to_old[cell.index()].is_none();
-    let new_cells: Vec<CellId> = (0..new.cells.len()).map(CellId::new).filter(is_new).collect();
-    number_anew(&mut new, &new_points, &new_cells);
-    new.unmark(&new_points);
+    pass_arrays(mesh, &mut new, &history, &new_points, rules, threads)?;
     report.seconds.history = begin.elapsed().as_secs_f64();
     Ok(Changed { mesh: new, history, report })
+}
+
+/// Repairs the bad tets of a part of a mesh, and puts it back. The part has been cut out of `whole`, whose
+/// vertices are at `points`, and may have been moved since; the options are for it as a mesh of its own.
+/// `None` if tets near its cut were changed, so that tets beyond might have been, too. The tets of the report
+/// are those of the whole meshes, all counts are of the part.
+///
+/// # Errors
+/// The errors of [`remesh_mesh`].
+pub(crate) fn remesh_cutout(
+    whole: &Mesh,
+    points: &[Point],
+    cutout: &Cutout,
+    options: &Options,
+    rules: &Rules,
+    threads: &Threads,
+) -> Result<Option<Changed<Report>>> {
+    let (mut part, extract_seconds) = extract_tets(&cutout.mesh, options)?;
+    cutout.fix_cut(&mut part);
+    let Repaired { report, extract, joined } = changed(&cutout.mesh, &part, options, threads)?;
+    let is_near_cut = |&v: &VertexId| cutout.is_near_cut(v, NEAR_CUT);
+    if extract.removed_tets.iter().any(|t| part.mesh.tets[t.index()].iter().any(is_near_cut)) {
+        return Ok(None);
+    }
+    let begin = Instant::now();
+    let history = history(&cutout.mesh, &part, &extract, &joined, threads)?;
+    let changed_part = Mesh::new(extract.mesh.points, joined.cells);
+    let back = cutout.put_back(whole, points, &changed_part, &extract.vertex_to_old, &history)?;
+    let new_points = absent(&extract.vertex_to_old).into_iter().map(|v| back.vertices[v.index()]);
+    let mut new = back.mesh;
+    pass_arrays(whole, &mut new, &back.history, &new_points.collect::<Vec<_>>(), rules, threads)?;
+    let mut report = report.in_cells(|cell| cutout.cells[cell.index()], |cell| back.cells[cell.index()]);
+    report.seconds.join += extract_seconds;
+    report.seconds.history = begin.elapsed().as_secs_f64();
+    Ok(Some(Changed { mesh: new, history: back.history, report }))
+}
+
+/// Passes the arrays of a mesh to a changed one, in which `new_points` were inserted.
+fn pass_arrays(
+    old: &Mesh,
+    new: &mut Mesh,
+    history: &History,
+    new_points: &[VertexId],
+    rules: &Rules,
+    threads: &Threads,
+) -> Result<()> {
+    history.transfer_on(old, new, rules, threads)?;
+    number_anew(new, new_points, &absent(history.cells.kept()));
+    new.unmark(new_points);
+    Ok(())
 }
 
 /// Whether all arrays of a mesh are labels of its cells, so that [`remesh_labelled`] loses none.
@@ -338,4 +386,91 @@ fn history(
 
 fn labelled<const N: usize>(cells: impl Iterator<Item = (CellId, [VertexId; N], i32)>) -> Vec<Labelled<N>> {
     cells.map(|(cell, vertices, label)| Labelled { cell, vertices, label }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::Point;
+    use crate::geometry::quality::eas;
+    use crate::geometry::vector::{add, norm, sub};
+    use crate::mesh::shapes::box_grid;
+    use crate::ops::defect;
+    use crate::remesh::{Density, Improve, SurfaceRule, Whole};
+
+    const MIDDLE: Point = [8.0; 3];
+
+    /// A grid in which the vertices near the middle are shaken, with arrays, and its tets of low quality.
+    fn shaken(seed: f64) -> (Mesh, Vec<CellId>) {
+        let mut mesh = box_grid([16; 3], [[0.0; 3], [16.0; 3]]);
+        for (i, p) in mesh.points.iter_mut().enumerate().filter(|(_, p)| norm(sub(**p, MIDDLE)) < 2.2) {
+            let shake = [1.0, 2.3, 3.1].map(|k| 0.45 * (k * (i as f64 + seed)).sin());
+            *p = add(*p, shake);
+        }
+        mesh.set_point_field(Field::scalars(
+            "x",
+            mesh.points.iter().map(|p| p[0] * p[1]).collect::<Vec<_>>(),
+        ));
+        let numbers: Vec<i32> = (0..mesh.points.len() as i32).collect();
+        mesh.set_point_field(Field::scalars("GlobalNodeID", numbers));
+        mesh.set_cell_field(Field::scalars(
+            "of",
+            (0..mesh.cells.len()).map(|c| c as f64).collect::<Vec<_>>(),
+        ));
+        let quality = |tet: [VertexId; 4]| eas(tet.map(|v| mesh.points[v.index()]));
+        let low = mesh.cells.tets().filter(|(_, tet)| quality(*tet) < 0.25).map(|(cell, _)| cell).collect();
+        (mesh, low)
+    }
+
+    fn whole(mesh: &Mesh) -> Whole {
+        let quality = |tet: [VertexId; 4]| eas(tet.map(|v| mesh.points[v.index()]));
+        let sum: f64 =
+            mesh.cells.tets().map(|(_, tet)| defect(quality(tet)) + defect(quality(tet).max(0.0))).sum();
+        let n_inside = mesh.points.iter().filter(|p| p.iter().all(|x| (0.1..15.9).contains(x))).count();
+        let tets = mesh.cells.tets().count();
+        Whole { tets, free_vertices: n_inside, mean_defect: sum / tets as f64, extent: 16.0 }
+    }
+
+    #[test]
+    fn a_part_is_repaired_as_within_the_whole_mesh() {
+        let (threads, rules) = (Threads::single(), Rules::default());
+        let (mut n_changed, mut n_repaired) = (0, 0);
+        for seed in 0..12 {
+            let (mesh, low) = shaken(f64::from(seed));
+            let surface =
+                if seed % 2 == 0 { SurfaceRule::Keep } else { SurfaceRule::Adapt { distance: None } };
+            for improves in [false, true] {
+                let improve = |points: &[Point], cells: Vec<CellId>| Improve {
+                    cells: Some(cells),
+                    density: Some(Density { sizes: vec![1.3; points.len()], lack: seed as isize - 4 }),
+                    pose: Some(points.to_vec()),
+                    ..Improve::filled()
+                };
+                let options = Options {
+                    only: Some(low.clone()),
+                    improve: improves.then(|| improve(&mesh.points, low.clone())),
+                    surface,
+                    keep_layers: false,
+                    part_of: Some(whole(&mesh)),
+                    ..Options::default()
+                };
+                let of_whole = remesh_mesh(&mesh, &options, &rules, &threads).unwrap();
+                let part = Cutout::around(&mesh, &low, 6, mesh.cells.len() - 1, &threads).unwrap();
+                let options = Options {
+                    only: Some(part.inside(&low)),
+                    improve: improves.then(|| improve(&part.mesh.points, part.inside(&low))),
+                    ..options
+                };
+                let of_part = remesh_cutout(&mesh, &mesh.points, &part, &options, &rules, &threads).unwrap();
+                let Some(of_part) = of_part else { continue };
+                // A failed `assert_eq` would print both meshes.
+                assert!(of_part.mesh == of_whole.mesh, "seed {seed}, improves: {improves}");
+                assert!(of_part.history == of_whole.history, "seed {seed}, improves: {improves}");
+                assert_eq!(of_part.report.operations, of_whole.report.operations);
+                n_changed += usize::from(!of_part.history.cells.changed().is_empty());
+                n_repaired += 1;
+            }
+        }
+        assert!(n_repaired > 12 && n_changed > 12, "{n_repaired} parts, {n_changed} of them changed");
+    }
 }

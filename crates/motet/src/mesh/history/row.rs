@@ -152,6 +152,16 @@ impl<I: Id> Rows<I> {
         merged
     }
 
+    /// These rows with new ids by `new` and old ones by `old`, both of which keep their order.
+    pub(crate) fn renumbered(&self, new: impl Fn(I) -> I, old: impl Fn(I) -> I) -> Self {
+        Self {
+            ids: self.ids.iter().map(|&id| new(id)).collect(),
+            from: self.from.with_items(|&id| old(id)),
+            shares: self.shares.clone(),
+            main: self.main.iter().map(|&id| old(id)).collect(),
+        }
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.ids.len()

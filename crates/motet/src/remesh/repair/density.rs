@@ -11,6 +11,7 @@ use crate::geometry::vector::{add, scale};
 use crate::kernel::Hold;
 use crate::ops::{collapse, defect};
 use crate::remesh::input_mesh::InputMesh;
+use crate::remesh::options;
 use crate::remesh::repair::Repair;
 use crate::remesh::repair::search::{Search, Tools, has_edge};
 use crate::remesh::repair::trial::{Merit, Rules};
@@ -30,9 +31,6 @@ const LONG_IF_CROWDED: f64 = 3.0;
 /// Where there are too many vertices, edges shorter than this fraction of their size are collapsed, shortest
 /// first; those shorter than [`SHORT`] are collapsed anywhere.
 const SHORT_IF_CROWDED: f64 = 0.95;
-/// If the surplus or lack exceeds this fraction of the vertices, edges are searched for in the whole mesh and
-/// not only near changes.
-const FAR_OFF: f64 = 0.005;
 /// An insertion looks for a place where no tet is below this EAS.
 const GOOD: f64 = 0.5;
 
@@ -45,10 +43,10 @@ pub(in crate::remesh) struct Density {
 }
 
 impl Density {
-    /// The density with these sizes at the vertices of the given mesh.
-    pub(in crate::remesh) fn new(sizes: &[f64], input: &InputMesh, n_free: usize) -> Self {
+    /// The density with these sizes at the vertices of the given mesh, which has `n_free` free ones.
+    pub(in crate::remesh) fn new(sizes: &[f64], input: &InputMesh, n_free: usize, lack: isize) -> Self {
         let sizes = Sizes::Vertices(sizes.to_vec());
-        Self { field: SizeField::new(&sizes, input, LONG), n_free }
+        Self { field: SizeField::new(&sizes, input, LONG), n_free: n_free.saturating_add_signed(lack) }
     }
 }
 
@@ -71,8 +69,8 @@ impl Repair<'_> {
         let mut tools = self.toolbox.take();
         let field = &mut density.field;
         let mut lack = density.n_free as isize - self.complex.n_free_vertices() as isize;
-        let is_far_off = lack.unsigned_abs() as f64 > FAR_OFF * density.n_free as f64;
-        let edges = if is_far_off {
+        let n_outside = self.outside.map_or(0, |outside| outside.free_vertices);
+        let edges = if options::Density::is_far_off(lack, density.n_free + n_outside) {
             self.sorted_edges(self.complex.tets(), field)
         } else {
             self.sorted_edges(zone.iter().copied().filter(|&t| self.complex.is_alive(t)), field)

@@ -179,7 +179,11 @@ impl Repair<'_> {
         self.complex.tets().filter(touches).collect()
     }
 
+    /// The mean cost over the whole mesh.
     fn mean_cost(&self, aim: Aim) -> f64 {
+        if let Some(outside) = self.outside {
+            return outside.mean_defect;
+        }
         let model = CostModel::new(aim, 0.0, self.pose.as_ref());
         let cost = |t: TetId| if self.complex.is_alive(t) { model.of_tet(&self.complex, t) } else { 0.0 };
         let sum: f64 = self.threads.map(self.complex.n_slots(), |t| cost(TetId::new(t))).into_iter().sum();

@@ -21,14 +21,14 @@ use crate::base::{Result, TetId, Threads, VertexId};
 use crate::kernel::{Change, Complex, Shell, Star};
 use crate::remesh::input_mesh::{InputMesh, Pose};
 use crate::remesh::left::{forced, is_forced};
-use crate::remesh::options::SurfaceRule;
+use crate::remesh::options::{SurfaceRule, Whole};
 use crate::remesh::repair::ahead::Pass;
 use crate::remesh::repair::score::{Score, worth_more_bad};
 use crate::remesh::repair::search::{Search, Toolbox, Tools};
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
 use crate::remesh::repair::trial::Found;
 use crate::remesh::repair::tried::{Changes, Tried};
-use crate::remesh::report::{Counts, Operation};
+use crate::remesh::report::{Counts, Operation, State};
 use crate::remesh::sizes::SizesIn;
 use crate::remesh::surface::{Crease, Surface};
 
@@ -82,6 +82,26 @@ fn union(a: &[bool], b: &[bool]) -> Vec<bool> {
     (0..a.len().max(b.len())).map(TetId::new).map(|tet| is_among(a, tet) || is_among(b, tet)).collect()
 }
 
+/// The rest of a mesh of which a part is repaired.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outside {
+    tets: usize,
+    free_vertices: usize,
+    /// The mean over the whole mesh.
+    mean_defect: f64,
+}
+
+impl Outside {
+    /// What a whole mesh has besides a part in a state.
+    pub(super) fn of(whole: Whole, part: &State<TetId>) -> Self {
+        Self {
+            tets: whole.tets.saturating_sub(part.tets),
+            free_vertices: whole.free_vertices.saturating_sub(part.free_vertices),
+            mean_defect: whole.mean_defect,
+        }
+    }
+}
+
 /// The state of a repair.
 pub(super) struct Repair<'a> {
     pub(super) complex: Complex,
@@ -93,6 +113,8 @@ pub(super) struct Repair<'a> {
     pub(super) sizing: Option<Sizing>,
     /// The other pose in which tets are to be good, if there is one.
     pub(super) pose: Option<Pose>,
+    /// The rest of the mesh that the complex is a part of, if it is one.
+    pub(super) outside: Option<Outside>,
     /// Marks tets of the first mesh that never count as bad, by id; empty if there are none.
     never_bad: Vec<bool>,
     /// Marks tets of the first mesh that stay as they are, by id; empty if there are none.
@@ -126,6 +148,7 @@ impl<'a> Repair<'a> {
             surface,
             sizing: None,
             pose: None,
+            outside: None,
             never_bad,
             kept: Vec::new(),
             target,
@@ -200,7 +223,7 @@ impl<'a> Repair<'a> {
     /// `after`.
     fn is_hopeless_with(&self, [before, after]: [usize; 2]) -> bool {
         let (many, of_all, of_before) = HOPELESS;
-        let (n_tets, n_left) = (self.complex.n_tets() as f64, after as f64);
+        let (n_tets, n_left) = (self.n_tets() as f64, after as f64);
         after > many && n_left > of_all * n_tets && n_left > of_before * before as f64
     }
 
@@ -280,7 +303,12 @@ impl<'a> Repair<'a> {
 
     /// Whether `n` is more than this fraction of all tets.
     fn is_more(&self, n: usize, part: f64) -> bool {
-        n as f64 > part * self.complex.n_tets() as f64
+        n as f64 > part * self.n_tets() as f64
+    }
+
+    /// The number of tets, with those outside.
+    fn n_tets(&self) -> usize {
+        self.complex.n_tets() + self.outside.map_or(0, |outside| outside.tets)
     }
 
     /// Repairs up to a target that rises as long as no more than a fraction `max_left` of the tets is left
