@@ -205,7 +205,7 @@ struct Numbers {
     n_new: usize,
     /// Old vertices that no longer exist, in rising order.
     removed: Vec<VertexId>,
-    /// The new number of each old vertex; empty where none was removed.
+    /// The new number of each old vertex, 0 for removed ones; empty where none was removed.
     old_to_new: Vec<VertexId>,
     /// The new number of each vertex of the changed part.
     of_part: Vec<VertexId>,
@@ -230,13 +230,9 @@ impl Numbers {
             part.iter().zip(&is_used).filter(|(_, is)| !**is).map(|(v, _)| *v).collect();
         let mut old_to_new = Vec::new();
         if !removed.is_empty() {
-            let mut gone = removed.iter().peekable();
-            let mut shift = 0;
-            old_to_new.extend((0..n_old).map(|v| {
-                let new = VertexId::new(v - shift);
-                shift += usize::from(gone.next_if(|removed| removed.index() == v).is_some());
-                new
-            }));
+            old_to_new.resize(n_old, VertexId(0));
+            let kept = runs_between(n_old, &removed).flatten();
+            kept.enumerate().for_each(|(new, old)| old_to_new[old] = VertexId::new(new));
         }
         let mut n_new = n_old - removed.len();
         let new = |slot: usize| match part.get(slot) {
@@ -326,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_holds_all_tets_of_the_vertices_inside_its_rim() {
+    fn a_part_holds_all_tets_of_the_vertices_inside_its_cut() {
         let (mesh, part) = grid_and_part();
         assert!(part.cells.len() < mesh.cells.len());
         let inner = (0..part.vertices.len()).filter(|&v| !part.is_near_cut(VertexId::new(v), 0));

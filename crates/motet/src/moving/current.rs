@@ -214,8 +214,8 @@ impl Current {
     }
 
     /// How many vertices are free: inside the volume.
-    pub(super) fn n_free(&self, n_points: usize) -> usize {
-        self.tets.n_inside(n_points)
+    pub(super) fn n_free(&self) -> usize {
+        self.tets.n_inside(self.mesh.points.len())
     }
 
     /// Whether repair has left this tet, and it is about as bad as then.

@@ -122,7 +122,7 @@ impl StepRun<'_> {
         usual: &'a remesh::Options,
         effort: Effort,
     ) -> Wanted<'a> {
-        let n_free = now.n_free(self.points.len());
+        let n_free = now.n_free();
         let target = *self.n_free.get_or_insert(n_free);
         let below = self.options.improve_below;
         // If walls come back, tets are compared with the first mesh at rest. A mesh that is put back need not
