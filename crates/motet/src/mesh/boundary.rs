@@ -26,14 +26,15 @@ pub struct Boundary {
 impl Boundary {
     /// The boundary of the volume cells among `cells`; other cells are ignored.
     pub fn of(cells: &Cells) -> Self {
+        Self::of_facets(cells, &facets_used_once(cells))
+    }
+
+    /// The boundary of the volume cells among `cells`, given their facets that are used once, in rising
+    /// order.
+    pub(super) fn of_facets(cells: &Cells, used_once: &[FacetUse]) -> Self {
         let facets = Facets::of(cells);
-        let alone =
-            match cells.counts().iter().all(|(kind, _)| *kind == CellKind::TETRA || kind.dim() != Some(3)) {
-                true => unshared_facets(cells),
-                false => used_once(&facets),
-            };
         let mut boundary = Self { n_unknown: count_unknown(cells), ..Self::default() };
-        for facet in alone {
+        for &facet in used_once {
             let (kind, vertices) = facets.vertices(facet);
             boundary.facets.push(vertices);
             boundary.kinds.push(kind);
@@ -66,16 +67,19 @@ impl Boundary {
     }
 }
 
-/// The facets with a single use, in the order of the cells.
-fn used_once(facets: &Facets) -> Vec<FacetUse> {
-    let mut alone: Vec<FacetUse> = Vec::new();
-    facets.for_each_shared(|uses| {
+/// The facets of the volume cells among `cells` that a single one uses, in rising order.
+pub(super) fn facets_used_once(cells: &Cells) -> Vec<FacetUse> {
+    if cells.counts().iter().all(|(kind, _)| *kind == CellKind::TETRA || kind.dim() != Some(3)) {
+        return unshared_facets(cells);
+    }
+    let mut used_once: Vec<FacetUse> = Vec::new();
+    Facets::of(cells).for_each_shared(|uses| {
         if let [single] = uses {
-            alone.push(*single);
+            used_once.push(*single);
         }
     });
-    alone.sort_unstable();
-    alone
+    used_once.sort_unstable();
+    used_once
 }
 
 /// The corners among the vertices of a surface cell or facet. A malformed Lagrange cell may have too few.

@@ -8,21 +8,24 @@
 //! - *Bad*: the EAS is below a limit, and the tet is not a *layer* tet, which is thin on purpose (see
 //!   [`layers`](super::layers)).
 
-use crate::base::{CellId, MaybeId, Point, VertexId, id};
+use crate::base::{CellId, MaybeId, Point, TetId, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
-use crate::geometry::tet::FACETS;
 use crate::geometry::vector::in_range;
+use crate::mesh::connectivity::AroundChange;
 use crate::mesh::layers::are_layers;
 use crate::mesh::orientation::{facet, orient, see_from_opposite_sides};
-use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
-use crate::mesh::{CellKind, Field, Mesh, TetMesh};
+use crate::mesh::tet_facets::{Sharing, TetFacetId, for_each_tet_facet};
+use crate::mesh::{CellKind, Cells, Field, Labels, Mesh, TetMesh};
 
 /// Facets are numbered only below this number of tets and triangles; more tets keep the orientation of the
 /// file.
 const MAX_TETS_AND_TRIANGLES: usize = 1 << 29;
 
+/// Tets per chunk.
+const CHUNK: usize = 1 << 14;
+
 /// The tets of a mesh, oriented by their neighbours, and the facets that bound them.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct OrientedTets {
     /// The vertices of each tet; of a quadratic one, the corners.
     pub tets: Vec<[VertexId; 4]>,
@@ -30,8 +33,9 @@ pub struct OrientedTets {
     pub cells: Vec<CellId>,
     /// Indices of the tets that the file numbers the other way around, in rising order.
     pub turned: Vec<usize>,
-    /// Facets on the boundary, between two regions, or with a triangle.
-    walls: Vec<[VertexId; 3]>,
+    /// Facets on the boundary, between two regions, or with a triangle, in rising order; of two tets that
+    /// share one, the first.
+    walls: Vec<TetFacetId>,
 }
 
 /// The tets below a limit of EAS, as indices into [`OrientedTets::tets`], in rising order.
@@ -55,15 +59,20 @@ impl OrientedTets {
     }
 
     fn of_kinds(mesh: &Mesh, kinds: &[CellKind]) -> Self {
-        let labels = mesh.regions();
-        let region = |cell: CellId| labels.as_ref().map_or(0, |labels| labels.ids[cell.index()]);
-        let (mut oriented, mut regions, mut triangles) = (Self::default(), Vec::new(), Vec::new());
-        for (cell, kind, vertices) in mesh.cells.iter() {
+        let (mut oriented, triangles) = Self::as_numbered(&mesh.cells, kinds);
+        let regions = oriented.regions(mesh.regions().as_ref());
+        oriented.orient(&mesh.points, &regions, &triangles);
+        oriented
+    }
+
+    /// The tets of some kinds as the file numbers them, and the triangles beside them.
+    fn as_numbered(cells: &Cells, kinds: &[CellKind]) -> (Self, Vec<[VertexId; 3]>) {
+        let (mut numbered, mut triangles) = (Self::default(), Vec::new());
+        for (cell, kind, vertices) in cells.iter() {
             match (kind, vertices) {
                 (_, &[a, b, c, d, ..]) if kinds.contains(&kind) => {
-                    oriented.tets.push([a, b, c, d]);
-                    oriented.cells.push(cell);
-                    regions.push(region(cell));
+                    numbered.tets.push([a, b, c, d]);
+                    numbered.cells.push(cell);
                 }
                 (CellKind::TRIANGLE | CellKind::QUADRATIC_TRIANGLE, &[a, b, c, ..]) => {
                     triangles.push([a, b, c]);
@@ -71,8 +80,71 @@ impl OrientedTets {
                 _ => {}
             }
         }
-        oriented.orient(&mesh.points, &regions, &triangles);
-        oriented
+        (numbered, triangles)
+    }
+
+    /// The region of each tet; 0 without labels.
+    fn regions(&self, labels: Option<&Labels>) -> Vec<i32> {
+        self.cells.iter().map(|cell| labels.map_or(0, |labels| labels.ids[cell.index()])).collect()
+    }
+
+    /// The linear tets of a mesh that these were the tets of, before some cells were replaced: what
+    /// [`Self::of_linear`] returns for it, found from the changed cells and those around them. `labels` are
+    /// the regions of the mesh, from the same array as before.
+    ///
+    /// `None` if more has to be looked at: where the numbering of the file is not that of positive tets.
+    pub(crate) fn after(
+        &self,
+        mesh: &Mesh,
+        around: &AroundChange,
+        labels: Option<&Labels>,
+        threads: &Threads,
+    ) -> Option<Self> {
+        let (mut new, mut triangles) = Self::as_numbered(&mesh.cells, &[CellKind::TETRA]);
+        if is_too_large(new.tets.len(), triangles.len()) || !self.turned.is_empty() {
+            return None;
+        }
+        let is_marked = |v: &VertexId| around.is_marked[v.index()];
+        triangles.retain(|triangle| triangle.iter().all(is_marked));
+        let near: Vec<usize> = around.near.iter().filter_map(|cell| new.place(*cell)).collect();
+        let pick = |t: &usize| (new.tets[*t], new.cells[*t]);
+        let (tets, cells) = near.iter().map(pick).unzip::<_, _, Vec<_>, Vec<_>>();
+        let regions = Self { cells, ..Self::default() }.regions(labels);
+        let shared = Shared::of(&tets, &regions, &triangles, |facet| facet.iter().all(is_marked));
+        if shared.is_one_sided || !new.is_positive(&mesh.points, threads) {
+            return None;
+        }
+        let found = shared
+            .walls
+            .iter()
+            .map(|wall| TetFacetId::at(TetId::new(near[wall.tet().index()]), wall.local()));
+        let kept = self.walls.iter().filter_map(|wall| {
+            let cell = around.old_to_new[self.cells[wall.tet().index()].index()].get()?;
+            let tet = new.place(cell)?;
+            let is_far = !facet(&new.tets[tet], wall.local()).iter().all(is_marked);
+            is_far.then(|| TetFacetId::at(TetId::new(tet), wall.local()))
+        });
+        let mut walls: Vec<TetFacetId> = kept.chain(found).collect();
+        walls.sort_unstable();
+        new.walls = walls;
+        Some(new)
+    }
+
+    /// Whether all tets are positive, as they are numbered.
+    pub(crate) fn is_positive(&self, points: &[Point], threads: &Threads) -> bool {
+        let starts = (0..self.tets.len()).step_by(CHUNK).collect();
+        let is_negative =
+            |start: usize| (start..(start + CHUNK).min(self.tets.len())).any(|t| self.is_negative(t, points));
+        !threads.any(starts, is_negative)
+    }
+
+    /// The index of the tet that a cell is.
+    fn place(&self, cell: CellId) -> Option<usize> {
+        // Most often, all cells before it are tets.
+        match self.cells.get(cell.index()) {
+            Some(&at) if at == cell => Some(cell.index()),
+            _ => self.cells.binary_search(&cell).ok(),
+        }
     }
 
     /// The tets of plain arrays; the cell of a tet is its index.
@@ -85,14 +157,15 @@ impl OrientedTets {
 
     /// Tets that are already oriented, each with its index as its cell, and their walls: see
     /// [`Sharing::is_wall`].
-    pub(crate) fn given(tets: Vec<[VertexId; 4]>, walls: Vec<[VertexId; 3]>) -> Self {
+    pub(crate) fn given(tets: Vec<[VertexId; 4]>, mut walls: Vec<TetFacetId>) -> Self {
         let cells = (0..tets.len()).map(CellId::new).collect();
+        walls.sort_unstable();
         Self { tets, cells, turned: Vec::new(), walls }
     }
 
-    /// The facets on the boundary, between two regions, or with a triangle.
-    pub(crate) fn walls(&self) -> &[[VertexId; 3]] {
-        &self.walls
+    /// The facets on the boundary, between two regions, or with a triangle, in the order of the tets.
+    pub(crate) fn walls(&self) -> impl ExactSizeIterator<Item = [VertexId; 3]> + '_ {
+        self.walls.iter().map(|wall| facet(&self.tets[wall.tet().index()], wall.local()))
     }
 
     /// The corner points of a tet, with the vertices of the mesh at `points`.
@@ -124,7 +197,8 @@ impl OrientedTets {
 
     /// Divides `low`, the tets whose EAS is below `min_eas`, into bad tets and tets of boundary layers.
     pub fn judge(&self, points: &[Point], low: Vec<usize>, min_eas: f64) -> Judged {
-        let is_thin = are_layers(points, &self.tets, &self.walls, &low, min_eas);
+        let walls: Vec<_> = if low.is_empty() { Vec::new() } else { self.walls().collect() };
+        let is_thin = are_layers(points, &self.tets, &walls, &low, min_eas);
         let [bad, layers] = [false, true].map(|thin| {
             low.iter().zip(&is_thin).filter(|(_, is)| **is == thin).map(|(&tet, _)| tet).collect()
         });
@@ -132,34 +206,67 @@ impl OrientedTets {
     }
 
     fn orient(&mut self, points: &[Point], regions: &[i32], triangles: &[[VertexId; 3]]) {
-        if self.tets.len() + triangles.len() >= MAX_TETS_AND_TRIANGLES {
+        if is_too_large(self.tets.len(), triangles.len()) {
             return;
         }
-        let (tets, walls) = (&self.tets, &mut self.walls);
-        let mut is_one_sided = false;
-        for_each_tet_facet(tets, triangles, |sharing: Sharing| {
-            if let [(t, i), (u, j)] = *sharing.tets {
-                let [x, y] = [(t, i), (u, j)].map(|(t, i)| facet(&tets[t.index()], i));
-                is_one_sided |= !see_from_opposite_sides(x, y);
-            }
-            if sharing.is_wall(regions) {
-                let (t, i) = sharing.tets[0];
-                walls.push(FACETS[i].map(|corner| tets[t.index()][corner]));
-            }
-        });
-        let is_negative =
-            |t: usize| self.corners(t, points).into_iter().all(in_range) && self.is_inverted(t, points);
-        if is_one_sided || (0..self.tets.len()).any(is_negative) {
+        let Shared { mut walls, is_one_sided } = Shared::of(&self.tets, regions, triangles, |_| true);
+        walls.sort_unstable();
+        self.walls = walls;
+        if is_one_sided || (0..self.tets.len()).any(|t| self.is_negative(t, points)) {
             let across = across(&self.tets);
             let behind = |t: usize, i: usize| {
-                let half = across[t][i].get()?.0;
-                Some(((half >> 2) as usize, (half & 3) as usize))
+                let half = across[t][i].get()?;
+                Some((half.tet().index(), half.local()))
             };
             // A mesh that cannot be oriented keeps the numbering of the file.
             let is_reversed = orient(&mut self.tets, behind, points).unwrap_or_default();
             self.turned = (0..is_reversed.len()).filter(|&t| is_reversed[t]).collect();
         }
     }
+
+    /// Whether a tet, as it is numbered, is flat or inverted.
+    fn is_negative(&self, tet: usize, points: &[Point]) -> bool {
+        self.corners(tet, points).into_iter().all(in_range) && self.is_inverted(tet, points)
+    }
+}
+
+/// What the tets that share facets say of these.
+struct Shared {
+    /// Walls, in no order.
+    walls: Vec<TetFacetId>,
+    /// Whether two tets see the facet between them from the same side.
+    is_one_sided: bool,
+}
+
+impl Shared {
+    /// Of all facets of `tets` for which `counts` is true.
+    fn of(
+        tets: &[[VertexId; 4]],
+        regions: &[i32],
+        triangles: &[[VertexId; 3]],
+        counts: impl Fn([VertexId; 3]) -> bool,
+    ) -> Self {
+        let mut shared = Self { walls: Vec::new(), is_one_sided: false };
+        for_each_tet_facet(tets, triangles, |sharing: Sharing| {
+            let Some(&(t, i)) = sharing.tets.first() else { return };
+            if !counts(facet(&tets[t.index()], i)) {
+                return;
+            }
+            if let [(t, i), (u, j)] = *sharing.tets {
+                let [x, y] = [(t, i), (u, j)].map(|(t, i)| facet(&tets[t.index()], i));
+                shared.is_one_sided |= !see_from_opposite_sides(x, y);
+            }
+            if sharing.is_wall(regions) {
+                shared.walls.push(TetFacetId::at(t, i));
+            }
+        });
+        shared
+    }
+}
+
+/// Whether there are too many tets and triangles to number their facets.
+fn is_too_large(n_tets: usize, n_triangles: usize) -> bool {
+    n_tets + n_triangles >= MAX_TETS_AND_TRIANGLES
 }
 
 /// Whether an oriented tet is flat or inverted, by exact signs.
@@ -167,19 +274,14 @@ pub fn is_inverted([a, b, c, d]: [Point; 4]) -> bool {
     orient3d(a, b, c, d) <= 0
 }
 
-id!(
-    /// A facet of a tet: four times the tet, plus the index of the facet there.
-    TetFacetId
-);
-
 /// For each facet of each tet, the same facet of the neighbour; none on the boundary, and where more than two
 /// tets share the facet.
 fn across(tets: &[[VertexId; 4]]) -> Vec<[MaybeId<TetFacetId>; 4]> {
     let mut across = vec![[MaybeId::NONE; 4]; tets.len()];
     for_each_tet_facet(tets, &[], |sharing| {
         if let &[(t, i), (u, j)] = sharing.tets {
-            across[t.index()][i] = TetFacetId(u.0 << 2 | j as u32).into();
-            across[u.index()][j] = TetFacetId(t.0 << 2 | i as u32).into();
+            across[t.index()][i] = TetFacetId::at(u, j).into();
+            across[u.index()][j] = TetFacetId::at(t, i).into();
         }
     });
     across

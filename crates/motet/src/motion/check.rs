@@ -37,9 +37,8 @@ struct Inverted {
 const CHUNK: usize = 1 << 14;
 
 impl Check {
-    pub(crate) fn new(mesh: &Mesh, threads: &Threads) -> Self {
+    pub(crate) fn new(mesh: &Mesh, tets: Arc<OrientedTets>, threads: &Threads) -> Self {
         let (cells, points) = (&mesh.cells, &mesh.points);
-        let tets = Arc::new(OrientedTets::of_linear(mesh));
         let mut corners = CornerTets::of(cells, &tets);
         let signs = threads.map(corners.len(), |i| orientation(corners.tets[i], points));
         let mut before = corners.orient_upright(cells, &signs);

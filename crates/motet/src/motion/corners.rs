@@ -28,6 +28,12 @@ impl CornerTets {
     /// The corners of the volume cells of `cells`: linear tets as oriented in `tets`, others as they are
     /// numbered. [`Self::orient_upright`] has to follow.
     pub(crate) fn of(cells: &Cells, tets: &OrientedTets) -> Self {
+        let mut volumes = cells.kinds().iter().filter(|kind| kind.dim() == Some(3));
+        if volumes.all(|kind| *kind == CellKind::TETRA) {
+            let (tets, cells) = (tets.tets.clone(), tets.cells.clone());
+            let (is_cell, is_curved) = (vec![true; tets.len()], vec![false; tets.len()]);
+            return Self { tets, cells, is_cell, is_curved };
+        }
         let mut oriented = tets.tets.iter();
         let mut corners = Self::with_capacity(cells.len());
         let facets = Facets::of(cells);

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{in_range, sub};
-use crate::mesh::{Boundary, Mesh, OrientedTets};
+use crate::mesh::{Boundary, Connectivity, Mesh};
 use crate::motion::check::Check;
 use crate::motion::methods::{self, Follower, Prepare, Prepared, Reference, Scene};
 use crate::motion::middles::Middles;
@@ -23,8 +23,8 @@ use crate::motion::smooth::Smoother;
 pub struct Mover {
     pub(crate) reference: Vec<Point>,
     pub(crate) nodes: Nodes,
-    /// The boundary of the mesh.
-    facets: Boundary,
+    /// The boundary and the tets of the mesh.
+    connectivity: Arc<Connectivity>,
     /// Vertices that follow the nodes.
     free: Vec<VertexId>,
     /// Middle nodes that stay between their corners.
@@ -63,17 +63,31 @@ impl Mover {
     /// When the mesh has no volume cells, vertices without a finite position, or a boundary that does not
     /// span space; when options name something that does not exist.
     pub fn new(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<Self> {
+        Self::with(mesh, || Arc::new(Connectivity::of(mesh)), options, threads)
+    }
+
+    /// Sets up the motion of `mesh` as [`Self::new`] does, with its connectivity.
+    ///
+    /// # Errors
+    /// The errors of [`Self::new`].
+    pub(crate) fn with(
+        mesh: &Mesh,
+        connectivity: impl FnOnce() -> Arc<Connectivity>,
+        options: &Options,
+        threads: &Threads,
+    ) -> Result<Self> {
         let begin = Instant::now();
         let mut setup = Setup::default();
-        let boundary = Boundary::of(&mesh.cells);
         options.check()?;
-        check_input(mesh, &boundary, options)?;
+        let connectivity = connectivity();
+        let boundary = &connectivity.boundary;
+        check_input(mesh, boundary, options)?;
         let mut clock = Instant::now();
         setup.seconds.boundary = (clock - begin).as_secs_f64();
         let is_used = used_by_volume(mesh);
-        let mut nodes = Nodes::new(mesh, &boundary, options, &is_used, threads)?;
+        let mut nodes = Nodes::new(mesh, boundary, options, &is_used, threads)?;
         setup.seconds.layer = lap_seconds(&mut clock);
-        let check = Check::new(mesh, threads);
+        let check = Check::new(mesh, connectivity.tets.clone(), threads);
         setup.seconds.cells = lap_seconds(&mut clock);
         let mut is_node = vec![false; mesh.points.len()];
         nodes.vertices.iter().for_each(|v| is_node[v.index()] = true);
@@ -86,14 +100,8 @@ impl Mover {
         let follows = |v: &VertexId| !is_node[v.index()] && in_range(mesh.points[v.index()]);
         let mut free: Vec<VertexId> = (0..mesh.points.len()).map(VertexId::new).filter(follows).collect();
         let corners = &check.corners.tets;
-        let method = methods::of(&mut Reference {
-            mesh,
-            boundary: &boundary,
-            options,
-            corners,
-            free: &free,
-            nodes: &mut nodes,
-        })?;
+        let method =
+            methods::of(&mut Reference { mesh, boundary, options, corners, free: &free, nodes: &mut nodes })?;
         threads.watch().report_and_check("setting up a motion", 0, 0)?;
         let scene = Scene { nodes: &nodes, free: &free, corners, is_used: Some(&is_used) };
         let Prepared { follower, staying, graph_tets, setup: of_method } =
@@ -102,7 +110,7 @@ impl Mover {
         free.retain(|_| i.next().is_none_or(|i| staying.binary_search(&i).is_err()));
         clock = Instant::now();
         let smoother = (options.smoothing > 0)
-            .then(|| Smoother::new(&check, &free, mesh.points.len(), options.smoothing));
+            .then(|| Smoother::new(&check.corners, &free, mesh.points.len(), options.smoothing));
         let setup = Setup {
             driven: nodes.n_driven,
             sliding: nodes.n_sliding(),
@@ -123,7 +131,7 @@ impl Mover {
         Ok(Self {
             reference: mesh.points.clone(),
             nodes,
-            facets: boundary,
+            connectivity,
             free,
             middles,
             method,
@@ -143,14 +151,9 @@ impl Mover {
         &self.nodes.vertices[..self.nodes.n_driven]
     }
 
-    /// The facets of the boundary of the mesh.
-    pub(crate) fn boundary_facets(&self) -> &Boundary {
-        &self.facets
-    }
-
-    /// The linear tets of the mesh, oriented as in the reference.
-    pub(crate) fn oriented_tets(&self) -> Arc<OrientedTets> {
-        self.check.tets.clone()
+    /// The boundary of the mesh, and its linear tets, oriented as in the reference.
+    pub(crate) fn connectivity(&self) -> &Arc<Connectivity> {
+        &self.connectivity
     }
 
     /// The points of the mesh as it was given.
@@ -224,7 +227,10 @@ impl Mover {
     /// Finishes a step: smooths, where that is requested, and puts middle nodes in the middle. Returns the
     /// number of vertices smoothed.
     pub(crate) fn finish(&self, out: &mut [Point], threads: &Threads) -> usize {
-        let n_smoothed = self.smoother.as_ref().map_or(0, |smoother| smoother.apply(out, threads));
+        let n_smoothed = self
+            .smoother
+            .as_ref()
+            .map_or(0, |smoother| smoother.apply(&self.check.corners.tets, out, threads));
         self.middles.place(&self.reference, out, threads);
         n_smoothed
     }

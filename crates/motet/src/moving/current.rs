@@ -7,7 +7,7 @@ use crate::base::{CellId, Id, MaybeId, Point, Result, Threads, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{add, sub};
 use crate::mesh::history::{History, Rule, Rules};
-use crate::mesh::{Field, Mesh};
+use crate::mesh::{Connectivity, Field, Mesh};
 use crate::motion::Mover;
 use crate::moving::contents::{move_points, pass_contents};
 use crate::moving::options::Options;
@@ -149,15 +149,16 @@ fn first_eas(mesh: &Mesh) -> Vec<f64> {
 
 impl Current {
     /// Sets up the motion of a mesh from its current position.
-    pub(super) fn new(
+    fn new(
         mesh: Mesh,
+        connectivity: Arc<Connectivity>,
         records: Records,
         left: Vec<LeftBad>,
         wall: &Wall,
         options: &Options,
         threads: &Threads,
     ) -> Result<Self> {
-        let mover = Mover::new(&mesh, &options.motion.options(&mesh)?, threads)?;
+        let mover = Mover::with(&mesh, || connectivity, &options.motion.options(&mesh)?, threads)?;
         Self::of(mesh, mover, records, left, wall, threads)
     }
 
@@ -186,7 +187,26 @@ impl Current {
     ) -> Result<Self> {
         pass_contents(given, &mut mesh, &history, &options.contents);
         let records = self.records.after(&before, &history)?;
-        Self::new(mesh, records, left, wall, options, threads)
+        let connectivity = self.mover.connectivity().after(&self.mesh, &mesh, &history.cells, threads);
+        Self::new(mesh, Arc::new(connectivity), records, left, wall, options, threads)
+    }
+
+    /// Continues with the vertices at other positions, from which the mesh moves on.
+    ///
+    /// `before`: where they were when the step began.
+    pub(super) fn rebased(
+        &self,
+        points: &[Point],
+        before: &[Point],
+        left: Vec<LeftBad>,
+        wall: &Wall,
+        options: &Options,
+        threads: &Threads,
+    ) -> Result<Self> {
+        let mesh = self.moved(points, &options.contents);
+        let records = Records { before: before.to_vec(), ..self.records.clone() };
+        let connectivity = self.mover.connectivity().moved(&mesh, threads);
+        Self::new(mesh, connectivity, records, left, wall, options, threads)
     }
 
     /// Tets that are flat or inverted at the positions that their vertices had when the last step began.

@@ -61,6 +61,8 @@ struct Wanted<'a> {
     only: Option<Vec<CellId>>,
     /// The tets to improve besides; `None`: nothing is improved.
     improve: Option<Vec<CellId>>,
+    /// All tets below the target of the repair, and possibly some above it, with their EAS.
+    low: Vec<(CellId, f64)>,
     /// How many free vertices are lacking.
     lack: isize,
     /// What holds of the whole mesh.
@@ -124,25 +126,31 @@ impl StepRun<'_> {
     ) -> Wanted<'a> {
         let n_free = now.n_free();
         let target = *self.n_free.get_or_insert(n_free);
-        let below = self.options.improve_below;
         // If walls come back, tets are compared with the first mesh at rest. A mesh that is put back need not
         // be good there.
         let rest = self.rest(now);
-        let (mut improve, mut defects_in_pose) = (None, shape.defects);
-        if below > 0.0 && effort != Effort::Margin {
-            let low = now.tets.shape(rest.unwrap_or(&self.points), below, self.threads);
-            defects_in_pose = low.defects;
-            let first = &now.records.first_eas;
-            let is_as_at_first = |&(cell, eas): &(CellId, f64)| eas >= first[cell.index()] - AS_AT_FIRST;
-            let cells = low.bad.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell);
-            improve = Some(cells.collect());
-        }
+        let below = if effort == Effort::Margin { 0.0 } else { self.options.improve_below };
+        let in_pose = rest.filter(|_| below > 0.0).map(|rest| now.tets.shape(rest, below, self.threads));
+        let highest = if in_pose.is_some() { 0.0 } else { below };
+        let limit = (self.options.limit() + self.options.margin).max(highest);
+        let low = now.tets.shape(&self.points, limit, self.threads).bad;
+        let first = &now.records.first_eas;
+        let has_fallen = |&&(cell, eas): &&(CellId, f64)| {
+            let is_as_at_first = eas >= first[cell.index()] - AS_AT_FIRST;
+            eas < below && !is_as_at_first
+        };
+        let improve = (below > 0.0).then(|| {
+            let low = in_pose.as_ref().map_or(&low, |in_pose| &in_pose.bad);
+            low.iter().filter(has_fallen).map(|(cell, _)| *cell).collect()
+        });
+        let defects_in_pose = in_pose.as_ref().map_or(shape.defects, |in_pose| in_pose.defects);
         let n_tets = now.tets.len();
         Wanted {
             usual,
             effort,
-            only: self.worth_repair(now, shape, effort),
+            only: self.worth_repair(now, shape, &low, effort),
             improve,
+            low,
             lack: target as isize - n_free as isize,
             whole: Whole {
                 tets: n_tets,
@@ -231,8 +239,7 @@ impl StepRun<'_> {
         if part.is_some() && usual.keep_layers {
             // A part may have no more than the upper end of a layer.
             let limit = remesh::Options { min_eas, ..usual.clone() }.limit();
-            let low = now.tets.shape(&self.points, limit, self.threads);
-            held.cells.extend(cells_in(part, &now.tets.layers(&low, &self.points, limit)));
+            held.cells.extend(cells_in(part, &now.tets.layers(&wanted.low, &self.points, limit)));
         }
         remesh::Options {
             min_eas,
@@ -246,16 +253,22 @@ impl StepRun<'_> {
         }
     }
 
-    /// The tets to repair; `None`: all.
-    fn worth_repair(&self, now: &Current, shape: &Shape, effort: Effort) -> Option<Vec<CellId>> {
+    /// The tets to repair, among those of `low` quality; `None`: all.
+    fn worth_repair(
+        &self,
+        now: &Current,
+        shape: &Shape,
+        low: &[(CellId, f64)],
+        effort: Effort,
+    ) -> Option<Vec<CellId>> {
         let limit = self.options.limit();
-        let low = || now.tets.shape(&self.points, limit + self.options.margin, self.threads).bad;
+        let is_below_target = |low: &&(CellId, f64)| low.1 < limit + self.options.margin;
         match effort {
             Effort::All => None,
             Effort::AllAround => Some(now.tets.around(&shape.bad, RINGS, self.points.len())),
-            Effort::Margin => Some(low().into_iter().map(|(cell, _)| cell).collect()),
+            Effort::Margin => Some(low.iter().filter(is_below_target).map(|(cell, _)| *cell).collect()),
             Effort::Usual => {
-                let low = low();
+                let low: Vec<_> = low.iter().filter(is_below_target).copied().collect();
                 let was = now.tets.eas_of(&low, now.mover.reference());
                 let fallen = low.iter().zip(was).filter(|((_, is), was)| is - (was - is).max(0.0) < limit);
                 Some(fallen.map(|((cell, _), _)| *cell).collect())

@@ -36,7 +36,7 @@ impl Tets {
 
     /// The tets of the mesh that a mover moves.
     pub(super) fn of_mover(mover: &Mover) -> Self {
-        Self(mover.oriented_tets())
+        Self(mover.connectivity().tets.clone())
     }
 
     pub(super) fn len(&self) -> usize {
@@ -60,10 +60,12 @@ impl Tets {
         parts.into_iter().fold(Shape::default(), Shape::and)
     }
 
-    /// The tets of boundary layers among those of low quality, with the vertices at `points`.
-    pub(super) fn layers(&self, low: &Shape, points: &[Point], limit: f64) -> Vec<CellId> {
+    /// The tets of boundary layers among those below a limit, with the vertices at `points`; `low` has all
+    /// tets below it.
+    pub(super) fn layers(&self, low: &[(CellId, f64)], points: &[Point], limit: f64) -> Vec<CellId> {
+        let below = low.iter().filter(|(_, eas)| *eas < limit);
         let place = |(cell, _): &(CellId, f64)| self.0.cells.binary_search(cell).ok();
-        let judged = self.0.judge(points, low.bad.iter().filter_map(place).collect(), limit);
+        let judged = self.0.judge(points, below.filter_map(place).collect(), limit);
         judged.layers.into_iter().map(|tet| self.0.cells[tet]).collect()
     }
 
@@ -71,7 +73,7 @@ impl Tets {
     pub(super) fn n_inside(&self, n_points: usize) -> usize {
         let mut is_inside = vec![false; n_points];
         self.0.tets.as_flattened().iter().for_each(|v| is_inside[v.index()] = true);
-        self.0.walls().as_flattened().iter().for_each(|v| is_inside[v.index()] = false);
+        self.0.walls().flatten().for_each(|v| is_inside[v.index()] = false);
         is_inside.into_iter().filter(|is| *is).count()
     }
 

@@ -19,6 +19,9 @@ use crate::moving::options::Options;
 use crate::moving::wall::{NO_NODE, Wall, wall_triangles};
 use crate::spatial::{BoxTree, NearestTriangle};
 
+/// A thread fits rigid motions to at least this many triangles.
+const MIN_PART: usize = 256;
+
 /// The first edge lengths, and those that edges should have now: the same unless the mesh has been refined.
 #[derive(Clone, Debug)]
 pub(super) struct Sizes {
@@ -173,13 +176,19 @@ fn pulled_back(
     for (root, its) in roots.iter().zip(&now.records.node).filter(|(_, its)| **its != NO_NODE) {
         node[*root as usize] = *its;
     }
-    let back = |t: &[VertexId; 3]| Rigid::fit(&t.map(|v| (points[v.index()], first[v.index()])));
-    let back: Vec<Rigid> = triangles.iter().map(back).collect();
     let tree = NearestTriangle::new(points, &triangles, threads);
     let places: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
     let nearest = tree.closest_all(&places, None, threads);
+    let mut used: Vec<usize> = nearest.iter().flatten().map(|nearest| nearest.triangle).collect();
+    used.sort_unstable();
+    used.dedup();
+    let back = |i: usize| Rigid::fit(&triangles[used[i]].map(|v| (points[v.index()], first[v.index()])));
+    let back: Vec<Rigid> = threads.map_parts(used.len(), MIN_PART, back);
     threads.map(places.len(), |i| match nearest[i].map(|nearest| nearest.triangle) {
-        Some(t) => (node[roots[triangles[t][0].index()] as usize], back[t].apply(places[i])),
+        Some(t) => {
+            let back = &back[used.partition_point(|other| *other < t)];
+            (node[roots[triangles[t][0].index()] as usize], back.apply(places[i]))
+        }
         None => (NO_NODE, first[vertices[i].index()]),
     })
 }

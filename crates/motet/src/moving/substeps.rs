@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::base::{CellId, Point, Result};
 use crate::geometry::vector::{add, scale, sub};
-use crate::moving::current::{Current, LeftBad, Records};
+use crate::moving::current::{Current, LeftBad};
 use crate::moving::repair::{Effort, Repaired};
 use crate::moving::shapes::Shape;
 use crate::moving::step_run::{StepResult, StepRun};
@@ -151,9 +151,7 @@ impl StepRun<'_> {
     /// The mesh of the step, with the positions in [`Self::points`] as its new reference.
     fn rebased(&mut self, now: &Current, before: &[Point], left: Vec<LeftBad>) -> Result<Current> {
         let begin = Instant::now();
-        let mesh = now.moved(&self.points, &self.options.contents);
-        let records = Records { before: before.to_vec(), ..now.records.clone() };
-        let next = Current::new(mesh, records, left, self.wall, self.options, self.threads);
+        let next = now.rebased(&self.points, before, left, self.wall, self.options, self.threads);
         self.seconds.setup += begin.elapsed().as_secs_f64();
         next
     }

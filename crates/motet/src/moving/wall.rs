@@ -86,7 +86,7 @@ impl Wall {
 /// The triangles of the boundary of a mesh, which a mover moves, and of those patches inside that move and
 /// that the mesh has.
 pub(super) fn wall_triangles(mesh: &Mesh, mover: &Mover, options: &Options) -> Vec<[VertexId; 3]> {
-    let mut triangles = Surface::of_boundary(mesh, mover.boundary_facets().clone()).triangles;
+    let mut triangles = Surface::of_boundary(mesh, mover.connectivity().boundary.clone()).triangles;
     let inside = options.motion.inside.iter().filter_map(|patch| FacetSet::find(mesh, patch).ok());
     inside.for_each(|patch| triangles.extend(patch.triangles()));
     triangles

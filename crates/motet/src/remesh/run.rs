@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use crate::base::{CellId, Point, Result, TetId, Threads};
 use crate::kernel::{Complex, Extract};
+use crate::mesh::tet_facets::TetFacetId;
 use crate::mesh::{OrientedTets, TetMesh, bounds, largest_extent};
 use crate::remesh::held::{Required, hold};
 use crate::remesh::input_mesh::{InputMesh, Pose};
@@ -213,7 +214,8 @@ fn others(n_tets: usize, only: &[CellId]) -> Vec<bool> {
 /// Orients the tets of a complex that nothing has changed since it was made of `mesh`.
 fn oriented(complex: &Complex, mesh: &TetMesh) -> OrientedTets {
     let tets = (0..mesh.tets.len()).map(|t| complex.vertices(TetId::new(t))).collect();
-    OrientedTets::given(tets, complex.walls().map(|(_, wall)| complex.facet(wall.sides[0])).collect())
+    let walls = complex.walls().map(|(_, wall)| wall.sides[0]);
+    OrientedTets::given(tets, walls.map(|side| TetFacetId::at(side.tet(), side.facet())).collect())
 }
 
 /// Removes tets that belong to boundary layers from `low`, which keeps the bad ones, and returns them.

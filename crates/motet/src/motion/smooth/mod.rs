@@ -18,7 +18,7 @@ use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas, rough_eas};
 use crate::geometry::vector::{add, norm, scale};
 use crate::motion::certificate::BAD_EAS;
-use crate::motion::check::Check;
+use crate::motion::corners::CornerTets;
 use crate::motion::smooth::star::Star;
 
 /// Vertices move where the EAS of their worst tet is below this, and freely where it is below [`BAD_EAS`].
@@ -34,9 +34,7 @@ const BACKTRACK_FACTOR: f64 = 0.4;
 #[derive(Debug, Default)]
 pub(crate) struct Smoother {
     sweeps: usize,
-    tets: Vec<[VertexId; 4]>,
-    /// The tets of each vertex that may move; empty for all others.
-    tets_of: Csr<u32>,
+    may_move: Vec<bool>,
 }
 
 /// Tets per run.
@@ -44,64 +42,93 @@ const CHUNK: usize = 1 << 13;
 
 impl Smoother {
     /// Only those vertices of `follows` may move that are corners of nothing but tets.
-    pub(crate) fn new(check: &Check, follows: &[VertexId], n_points: usize, sweeps: usize) -> Self {
-        let corners = &check.corners;
+    pub(crate) fn new(corners: &CornerTets, follows: &[VertexId], n_points: usize, sweeps: usize) -> Self {
         let mut may_move = vec![false; n_points];
         follows.iter().for_each(|v| may_move[v.index()] = true);
         for (tet, _) in corners.tets.iter().zip(&corners.is_cell).filter(|(_, is_cell)| !**is_cell) {
             tet.iter().for_each(|v| may_move[v.index()] = false);
         }
-        let uses = || {
-            let uses = (0u32..).zip(&corners.tets).flat_map(|(t, tet)| tet.map(|v| (v.index(), t)));
-            uses.filter(|(v, _)| may_move[*v])
-        };
-        Self { sweeps, tets_of: Csr::from_pairs(n_points, uses), tets: corners.tets.clone() }
+        Self { sweeps, may_move }
     }
 
-    /// Moves vertices of bad tets; returns how many.
-    pub(crate) fn apply(&self, points: &mut [Point], threads: &Threads) -> usize {
-        let mut listed = self.vertices_to_move(points, threads);
-        let first: Vec<Point> = listed.iter().map(|(v, _)| points[v.index()]).collect();
-        self.sweep(&listed, points);
-        let mut first = first.into_iter();
-        listed.retain(|(v, _)| first.next() != Some(points[v.index()]));
-        listed.len()
+    /// Moves vertices of bad tets, where `tets` are all corner tets of the mesh; returns how many.
+    pub(crate) fn apply(&self, tets: &[[VertexId; 4]], points: &mut [Point], threads: &Threads) -> usize {
+        let listed = self.vertices_to_move(tets, points, threads);
+        if listed.is_empty() {
+            return 0;
+        }
+        let first: Vec<Point> = listed.iter().map(|to_move| points[to_move.vertex.index()]).collect();
+        let stars = Stars { tets, of_listed: self.stars(tets, &listed, threads) };
+        self.sweep(&listed, &stars, points);
+        let moved =
+            listed.iter().zip(first).filter(|(to_move, first)| points[to_move.vertex.index()] != *first);
+        moved.count()
     }
 
-    fn sweep(&self, listed: &[(VertexId, f64)], points: &mut [Point]) {
+    fn sweep(&self, listed: &[ToMove], stars: &Stars<'_>, points: &mut [Point]) {
+        let sweeps = self.sweeps;
         #[cfg(target_arch = "x86_64")]
         if let Some(machine) = pulp::x86::V3::try_new() {
-            return machine.vectorize(Sweeps::<Wide> { machine, smoother: self, listed, points });
+            return machine.vectorize(Sweeps::<Wide> { machine, sweeps, listed, stars, points });
         }
-        Sweeps::<Plain> { machine: (), smoother: self, listed, points }.call();
+        Sweeps::<Plain> { machine: (), sweeps, listed, stars, points }.call();
     }
 
-    /// The vertices to move, in rising order, and how freely each may: 1 beside a bad tet.
-    fn vertices_to_move(&self, points: &[Point], threads: &Threads) -> Vec<(VertexId, f64)> {
-        let of_tets = threads.in_runs(self.tets.len(), CHUNK, |_: &mut (), run| {
+    /// The vertices to move, in rising order.
+    fn vertices_to_move(&self, tets: &[[VertexId; 4]], points: &[Point], threads: &Threads) -> Vec<ToMove> {
+        let mut listed = threads.in_runs(tets.len(), CHUNK, |_: &mut (), run| {
             let mut found = Vec::new();
-            for (tet, rough) in self.tets[run.clone()].iter().zip(rough_eas(points, &self.tets[run])) {
+            for (tet, rough) in tets[run.clone()].iter().zip(rough_eas(points, &tets[run])) {
                 if f64::from(rough) < FADE_EAS + ROUGH_EAS_ERROR {
                     let corners = tet.map(|v| points[v.index()]);
                     let freedom = ((FADE_EAS - eas(corners)) / (FADE_EAS - BAD_EAS)).clamp(0.0, 1.0);
-                    found.extend(tet.iter().filter(|_| freedom > 0.0).map(|v| (*v, freedom)));
+                    let may_move = tet.iter().filter(|v| freedom > 0.0 && self.may_move[v.index()]);
+                    found.extend(may_move.map(|&vertex| ToMove { vertex, freedom }));
                 }
             }
             found
         });
-        let mut listed: Vec<(VertexId, f64)> =
-            of_tets.into_iter().filter(|(v, _)| !self.tets_of.list(v.index()).is_empty()).collect();
-        listed.sort_unstable_by(|x, y| x.0.cmp(&y.0).then(y.1.total_cmp(&x.1)));
-        listed.dedup_by_key(|x| x.0);
+        listed.sort_unstable_by(|x, y| x.vertex.cmp(&y.vertex).then(y.freedom.total_cmp(&x.freedom)));
+        listed.dedup_by_key(|x| x.vertex);
         listed
     }
+
+    /// The tets of each listed vertex, in rising order.
+    fn stars(&self, tets: &[[VertexId; 4]], listed: &[ToMove], threads: &Threads) -> Csr<u32> {
+        let mut is_listed = vec![false; self.may_move.len()];
+        listed.iter().for_each(|to_move| is_listed[to_move.vertex.index()] = true);
+        let uses = threads.in_runs(tets.len(), CHUNK, |_: &mut (), run| {
+            let mut found = Vec::new();
+            for (t, tet) in (run.start as u32..).zip(&tets[run]) {
+                found.extend(tet.iter().filter(|v| is_listed[v.index()]).map(|v| (*v, t)));
+            }
+            found
+        });
+        let place = |v: VertexId| listed.partition_point(|to_move| to_move.vertex < v);
+        Csr::from_pairs(listed.len(), || uses.iter().map(|&(v, t)| (place(v), t)))
+    }
+}
+
+/// A vertex to move.
+#[derive(Clone, Copy, Debug)]
+struct ToMove {
+    vertex: VertexId,
+    /// How freely it may move: 1 beside a bad tet.
+    freedom: f64,
+}
+
+/// The tets of the vertices of a list.
+struct Stars<'a> {
+    tets: &'a [[VertexId; 4]],
+    of_listed: Csr<u32>,
 }
 
 /// Sweeps over the vertices of a list.
 struct Sweeps<'a, F: FourLanes> {
     machine: F::Machine,
-    smoother: &'a Smoother,
-    listed: &'a [(VertexId, f64)],
+    sweeps: usize,
+    listed: &'a [ToMove],
+    stars: &'a Stars<'a>,
     points: &'a mut [Point],
 }
 
@@ -111,11 +138,12 @@ impl<F: FourLanes> NullaryFnOnce for Sweeps<'_, F> {
     #[inline(always)]
     fn call(self) {
         let mut star = Star::default();
-        for _ in 0..self.smoother.sweeps {
-            for &(v, freedom) in self.listed {
+        for _ in 0..self.sweeps {
+            for (&ToMove { vertex: v, freedom }, tets) in self.listed.iter().zip(self.stars.of_listed.iter())
+            {
                 star.clear();
-                for &t in self.smoother.tets_of.list(v.index()) {
-                    star.push(opposite(self.smoother.tets[t as usize], v, self.points));
+                for &t in tets {
+                    star.push(opposite(self.stars.tets[t as usize], v, self.points));
                 }
                 self.points[v.index()] =
                     newton_step::<F>(self.machine, &star, self.points[v.index()], freedom);

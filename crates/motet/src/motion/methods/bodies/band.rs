@@ -22,7 +22,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::base::{Csr, Point, VertexId, sorted_ids};
+use crate::base::{Csr, DisjointSets, Point, VertexId, sorted_ids};
 use crate::geometry::distance::point_triangle;
 use crate::geometry::tet::FACETS;
 use crate::geometry::vector::distance;
@@ -38,13 +38,12 @@ const GAP_FRACTIONS: [f64; 2] = [0.25, 0.85];
 /// Walls, and the edges that lead away from them.
 struct Walls<'a> {
     points: &'a [Point],
-    /// The vertices that share an edge with each vertex.
-    beside: Csr<u32>,
     /// The owner of the wall that each vertex is on.
     owner: Vec<u32>,
     /// Facets of tets whose corners are all on walls of one owner.
     facets: Vec<[VertexId; 3]>,
     facets_of: Csr<u32>,
+    rooms: Rooms,
 }
 
 /// The share of each vertex in the motion of each body, vertex by vertex.
@@ -61,28 +60,27 @@ pub(super) fn shares(
     let longest = lengths.iter().copied().fold(0.0, f64::max);
     let mut shares = vec![0.0; points.len() * bodies.len()];
     for (b, body) in bodies.iter().enumerate() {
-        let is_body = |owner| owner == BODIES + b as u32;
-        let is_other = |owner| owner != NOBODY && owner != BODIES + b as u32;
-        let of_body = walls.distances(is_body, |_| true, (CLEARANCE + WIDTH) * longest);
+        let owner = BODIES + b as u32;
+        let is_body = |other| other == owner;
+        let is_other = |other| other != NOBODY && other != owner;
+        let near = Neighborhood::new(Around::new(body, points, reach(longest)), tets, points);
+        let of_body = walls.distances(is_body, &near, |_| true, (CLEARANCE + WIDTH) * longest);
         let edge = |v: usize| {
             let foot = of_body[v].foot.map_or(v, |facet| walls.facets[facet as usize][0].index());
             0.5 * (lengths[v] + lengths[foot])
         };
         let is_near = |&v: &usize| of_body[v].distance < (CLEARANCE + WIDTH) * edge(v);
         let longest_near = (0..points.len()).filter(is_near).map(edge).fold(0.0, f64::max);
-        // A wall across a gap this wide does not change the ramp.
-        let widest =
-            ((CLEARANCE + WIDTH) / GAP_FRACTIONS[1]).max(CLEARANCE / GAP_FRACTIONS[0]) * longest_near;
-        let around = Around::new(body, points, widest + (CLEARANCE + WIDTH + 1.0) * longest_near);
-        let of_others = walls.distances(is_other, |v| around.holds(points[v]), widest);
-        let (along_body, along_others) = (walls.reached(is_body), walls.reached(is_other));
+        let around = Around::new(body, points, reach(longest_near));
+        let is_around = |v: usize| around.holds(points[v]);
+        let of_others = walls.distances(is_other, &near, is_around, widest_gap(longest_near));
         let share = |v: usize| {
             let gap = of_body[v].distance + of_others[v].distance;
-            match (along_body[v], along_others[v]) {
+            match walls.rooms.beside(v, owner) {
                 // A vertex that only the body encloses moves with it.
-                (true, false) => 1.0,
-                (true, true) => ramp(of_body[v].distance, gap, edge(v)),
-                (false, _) => 0.0,
+                [true, false] => 1.0,
+                [true, true] => ramp(of_body[v].distance, gap, edge(v)),
+                [false, _] => 0.0,
             }
         };
         (0..points.len()).for_each(|v| shares[v * bodies.len() + b] = share(v));
@@ -90,6 +88,16 @@ pub(super) fn shares(
         body.iter().for_each(|v| shares[v.index() * bodies.len() + b] = 1.0);
     }
     shares
+}
+
+/// A wall across a wider gap does not change the ramp, if edges are no longer than these.
+fn widest_gap(edge: f64) -> f64 {
+    ((CLEARANCE + WIDTH) / GAP_FRACTIONS[1]).max(CLEARANCE / GAP_FRACTIONS[0]) * edge
+}
+
+/// How far from a body distances matter, if edges are no longer than these.
+fn reach(edge: f64) -> f64 {
+    widest_gap(edge) + (CLEARANCE + WIDTH + 1.0) * edge
 }
 
 /// A box around a body.
@@ -106,6 +114,75 @@ impl Around {
     fn holds(&self, p: Point) -> bool {
         let Self([low, high]) = self;
         (0..3).all(|k| (low[k]..=high[k]).contains(&p[k]))
+    }
+}
+
+/// The vertices within a box, and those that share an edge with each.
+struct Neighborhood {
+    around: Around,
+    beside: Csr<u32>,
+}
+
+impl Neighborhood {
+    fn new(around: Around, tets: &[[VertexId; 4]], points: &[Point]) -> Self {
+        let is_within: Vec<bool> = points.iter().map(|p| around.holds(*p)).collect();
+        let is_near = |tet: &[VertexId; 4]| tet.iter().any(|v| is_within[v.index()]);
+        let mut edges: Vec<[VertexId; 2]> = Vec::new();
+        for_each_edge(points.len(), tets.iter().copied().filter(is_near), |edge| {
+            if edge.iter().all(|v| is_within[v.index()]) {
+                edges.push(edge);
+            }
+        });
+        let both_ways = || edges.iter().flat_map(|[a, b]| [(a.index(), b.0), (b.index(), a.0)]);
+        Self { around, beside: Csr::from_pairs(points.len(), both_ways) }
+    }
+}
+
+/// The rooms that walls divide a mesh into: vertices on no wall, connected by edges.
+struct Rooms {
+    /// The room of each vertex on no wall.
+    room_of: Vec<u32>,
+    /// The owners of the walls of each room, in rising order.
+    owners: Vec<Vec<u32>>,
+}
+
+/// The room of a vertex on a wall.
+const NO_ROOM: u32 = u32::MAX;
+
+impl Rooms {
+    fn new(owner: &[u32], tets: &[[VertexId; 4]]) -> Self {
+        let is_free = |v: &VertexId| owner[v.index()] == NOBODY;
+        let mut sets = DisjointSets::new(owner.len());
+        let mut at_walls = Vec::new();
+        for tet in tets {
+            let mut free = tet.iter().filter(|v| is_free(v));
+            let Some(first) = free.next() else { continue };
+            free.for_each(|v| sets.join(first.0, v.0));
+            let on_walls = tet.iter().filter(|v| !is_free(v));
+            at_walls.extend(on_walls.map(|v| (*first, owner[v.index()])));
+        }
+        let (roots, mut n_rooms) = (sets.roots(), 0);
+        let mut room_of = vec![NO_ROOM; owner.len()];
+        // A root is the smallest of its set.
+        for (v, &root) in roots.iter().enumerate().filter(|(v, _)| owner[*v] == NOBODY) {
+            room_of[v] = if root as usize == v { n_rooms } else { room_of[root as usize] };
+            n_rooms += u32::from(root as usize == v);
+        }
+        let mut owners: Vec<Vec<u32>> = vec![Vec::new(); n_rooms as usize];
+        for (v, owner) in at_walls {
+            let known = &mut owners[room_of[v.index()] as usize];
+            if let Err(place) = known.binary_search(&owner) {
+                known.insert(place, owner);
+            }
+        }
+        Self { room_of, owners }
+    }
+
+    /// Whether a vertex can be reached without crossing a wall from the walls of `owner`, and from those of
+    /// others; neither for a vertex on a wall.
+    fn beside(&self, v: usize, owner: u32) -> [bool; 2] {
+        let Some(owners) = self.owners.get(self.room_of[v] as usize) else { return [false; 2] };
+        [owners.contains(&owner), owners.iter().any(|other| *other != owner)]
     }
 }
 
@@ -141,17 +218,16 @@ impl<'a> Walls<'a> {
             a != NOBODY && a == b && b == c
         };
         let of_tet = |tet: &[VertexId; 4]| FACETS.map(|facet| facet.map(|i| tet[i]));
-        let mut facets: Vec<_> = tets.iter().flat_map(of_tet).filter(is_of_one).map(sorted_ids).collect();
+        let is_at_wall = |tet: &&[VertexId; 4]| tet.iter().filter(|v| owner[v.index()] != NOBODY).count() > 2;
+        let of_tets = tets.iter().filter(is_at_wall).flat_map(of_tet);
+        let mut facets: Vec<_> = of_tets.filter(is_of_one).map(sorted_ids).collect();
         facets.sort_unstable();
         facets.dedup();
-        let mut edges: Vec<[VertexId; 2]> = Vec::new();
-        for_each_edge(points.len(), tets.iter().copied(), |edge| edges.push(edge));
-        let both_ways = || edges.iter().flat_map(|[a, b]| [(a.index(), b.0), (b.index(), a.0)]);
         let uses = || (0u32..).zip(&facets).flat_map(|(i, facet)| facet.map(|v| (v.index(), i)));
         Self {
             points,
-            beside: Csr::from_pairs(points.len(), both_ways),
             facets_of: Csr::from_pairs(points.len(), uses),
+            rooms: Rooms::new(&owner, tets),
             owner,
             facets,
         }
@@ -159,18 +235,20 @@ impl<'a> Walls<'a> {
 
     /// The distance of each vertex that lies on no wall from the walls of some owners (Dijkstra 1959, with
     /// the distance from the nearest facet in place of the length of the way); infinite where every way there
-    /// crosses a wall or leaves the vertices that `are_within`, and where it is more than `max_distance` and
-    /// a step.
+    /// crosses a wall or leaves the vertices that are `near` and that `are_within`, and where it is more than
+    /// `max_distance` and a step.
     fn distances(
         &self,
         is_source: impl Fn(u32) -> bool,
+        near: &Neighborhood,
         are_within: impl Fn(usize) -> bool,
         max_distance: f64,
     ) -> Vec<WallDistance> {
         let mut known = vec![WallDistance { distance: f64::INFINITY, foot: None }; self.points.len()];
         let mut front = BinaryHeap::new();
         let sources = self.owner.iter().enumerate().filter(|(_, owner)| is_source(**owner));
-        for (v, _) in sources.filter(|(v, _)| are_within(*v)) {
+        let is_near = |v: usize| near.around.holds(self.points[v]) && are_within(v);
+        for (v, _) in sources.filter(|(v, _)| is_near(*v)) {
             known[v].distance = 0.0;
             front.push(FrontVertex { distance: 0.0, vertex: v as u32 });
         }
@@ -180,7 +258,7 @@ impl<'a> Walls<'a> {
                 continue;
             }
             let is_free = |u: &&u32| self.owner[**u as usize] == NOBODY && are_within(**u as usize);
-            for &u in self.beside.list(v).iter().filter(is_free) {
+            for &u in near.beside.list(v).iter().filter(is_free) {
                 let far = self.near_foot(u as usize, v, known[v].foot);
                 if far.distance < known[u as usize].distance {
                     known[u as usize] = far;
@@ -189,20 +267,6 @@ impl<'a> Walls<'a> {
             }
         }
         known
-    }
-
-    /// Whether each vertex can be reached from the walls of some owners without crossing a wall.
-    fn reached(&self, is_source: impl Fn(u32) -> bool) -> Vec<bool> {
-        let mut is_reached: Vec<bool> = self.owner.iter().map(|&owner| is_source(owner)).collect();
-        let mut front: Vec<usize> = (0..self.points.len()).filter(|&v| is_reached[v]).collect();
-        while let Some(v) = front.pop() {
-            for u in self.beside.list(v).iter().map(|&u| u as usize) {
-                if self.owner[u] == NOBODY && !std::mem::replace(&mut is_reached[u], true) {
-                    front.push(u);
-                }
-            }
-        }
-        is_reached
     }
 
     /// The distance of vertex `u` from the facets at the foot of its neighbour `v`; a vertex on the wall is
