@@ -1,5 +1,5 @@
-//! What follows from the cells of a mesh alone, carried across changes: only what lies beside changed cells is
-//! found anew.
+//! What follows from the cells of a mesh alone, carried across changes: only what lies beside changed cells
+//! is found anew.
 
 use std::ops::Range;
 use std::sync::Arc;
