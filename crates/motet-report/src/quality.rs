@@ -1,7 +1,7 @@
 //! Statistics of the quality of the tets of one frame.
 
 use motet::Mesh;
-use motet::base::{CellId, Point};
+use motet::base::{CellId, Point, Threads};
 use motet::geometry::quality::{dihedral, eas, mean_ratio};
 use motet::geometry::tet::centroid;
 use motet::geometry::vector::is_finite;
@@ -50,7 +50,7 @@ pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, ByCell) {
     let mut eas = vec![f32::NAN; mesh.cells.len()];
     let (mut quality, mut low) = (Quality::empty(), Vec::new());
     let (mut values, mut ratios) = (Vec::new(), 0.0);
-    let tets = OrientedTets::of(mesh);
+    let tets = OrientedTets::of(mesh, &Threads::single());
     for (i, cell) in tets.cells.iter().enumerate() {
         let tet = tets.corners(i, &mesh.points);
         if tet.iter().all(|p| is_finite(*p)) {

@@ -165,7 +165,7 @@ fn what_a_repair_reports_is_what_the_new_mesh_has() {
             let options = remesh::Options { min_eas, ..remesh::Options::default() };
             let outcome = remesh(&part.mesh, &options, &Threads::single()).unwrap();
             let (new, after) = (&outcome.extract.mesh, &outcome.report.after);
-            let tets = OrientedTets::of_tets(new);
+            let tets = OrientedTets::of_tets(new, &Threads::single());
             let low = (0..new.tets.len()).filter(|&t| eas(tets.corners(t, &new.points)) < min_eas).collect();
             let judged = tets.judge(&new.points, low, min_eas);
             assert_eq!(

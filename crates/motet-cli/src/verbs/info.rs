@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use motet::base::Point;
+use motet::base::{Point, Threads};
 use motet::geometry::quality::{dihedral, eas, edge_ratio, mean_ratio, volume};
 use motet::io::{self, WriteOptions};
 use motet::mesh::{OrientedTets, Summary};
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &InfoArgs, common: &Common, console: &Console) -> motet:
     console.report(&report);
     report.print(console);
     if let Some(output) = &args.output {
-        let lost = io::write_on(output, &measured(mesh), &WriteOptions::default(), &threads)?;
+        let lost = io::write_on(output, &measured(mesh, &threads), &WriteOptions::default(), &threads)?;
         lost.iter().for_each(|what| console.warn(what));
         console.print(format_args!("\nwrote {}", output.display()));
     }
@@ -76,8 +76,8 @@ pub(crate) fn run(args: &InfoArgs, common: &Common, console: &Console) -> motet:
 }
 
 /// Adds a cell array for each quality measure.
-fn measured(mut mesh: Mesh) -> Mesh {
-    let tets = OrientedTets::of_linear(&mesh);
+fn measured(mut mesh: Mesh, threads: &Threads) -> Mesh {
+    let tets = OrientedTets::of_linear(&mesh, threads);
     let field = |name: &str, measure: &dyn Fn([Point; 4]) -> f64| tets.field(&mesh, name, measure);
     let fields = [
         field("eas", &eas),

@@ -91,7 +91,7 @@ impl Carved {
     /// # Errors
     /// Names a place where two of [`Self::faces`] cross.
     pub(super) fn check_overlaps(&self, host: &TetMesh, threads: &Threads) -> Result<()> {
-        let tets = OrientedTets::of_tets(host);
+        let tets = OrientedTets::of_tets(host, threads);
         let n_inverted = (0..host.tets.len()).filter(|&t| tets.is_inverted(t, &host.points)).count();
         if n_inverted == 0 {
             return Ok(());

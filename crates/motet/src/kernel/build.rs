@@ -1,6 +1,6 @@
 //! The construction of a complex from plain arrays.
 
-use crate::base::{Error, Result, TetId, VertexId};
+use crate::base::{Error, Point, Result, TetId, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::{ROUGH_EAS_ERROR, rough_eas};
 use crate::geometry::tet::FACETS;
@@ -19,7 +19,7 @@ use crate::kernel::vertices::Vertices;
 use crate::kernel::walls::Walls;
 use crate::mesh::TetMesh;
 use crate::mesh::orientation::{self, orient, see_from_opposite_sides};
-use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
+use crate::mesh::tet_facets::{Sharing, tet_facets_in_parts};
 
 impl Complex {
     /// The complex of a mesh. All tets are oriented as most are; see [`crate::mesh::OrientedTets`].
@@ -28,6 +28,14 @@ impl Complex {
     /// If an array does not fit ([`TetMesh::validate`]), if there are too many tets, if more than two tets
     /// share a facet, and if the mesh is not orientable; the error names the first such tet.
     pub fn new(mesh: &TetMesh) -> Result<Self> {
+        Self::on_threads(mesh, &Threads::single())
+    }
+
+    /// The complex of a mesh as [`Self::new`] makes it, on several threads.
+    ///
+    /// # Errors
+    /// The errors of [`Self::new`].
+    pub fn on_threads(mesh: &TetMesh, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
         if mesh.tets.len() >= MAX_TETS as usize {
             return Err(Error::input(format!("{} tets exceed the limit of {MAX_TETS}", mesh.tets.len()))
@@ -35,8 +43,8 @@ impl Complex {
         }
         let TetMesh { points, regions, triangles, patches, .. } = mesh;
         let mut tets = mesh.tets.clone();
-        let mut joined = Joined::of(&tets, regions, triangles, patches)?;
-        let mut rough = rough_eas(points, &tets);
+        let mut joined = Joined::of(&tets, regions, triangles, patches, threads)?;
+        let mut rough = rough_qualities(points, &tets, threads);
         let (mut n_reversed, mut folded) = (0, Vec::new());
         if joined.has_same_side || rough.iter().any(|&q| q <= 0.0) {
             let across = joined.across();
@@ -44,8 +52,8 @@ impl Complex {
                 orient(&mut tets, behind(&across), points).map_err(|tet| not_orientable(tet.index()))?;
             n_reversed = is_reversed.iter().filter(|reversed| **reversed).count();
             if n_reversed > 0 {
-                joined = Joined::of(&tets, regions, triangles, patches)?;
-                rough = rough_eas(points, &tets);
+                joined = Joined::of(&tets, regions, triangles, patches, threads)?;
+                rough = rough_qualities(points, &tets, threads);
                 let across = joined.across();
                 folded = orientation::folded(&tets, points, &is_reversed, behind(&across));
             }
@@ -112,44 +120,71 @@ struct Joined {
     has_same_side: bool,
 }
 
+/// What the facets of a part of a mesh join.
+#[derive(Default)]
+struct Joints {
+    pairs: Vec<[HalfFacet; 2]>,
+    walls: Vec<Wall>,
+    has_same_side: bool,
+    /// The first facet that more than two tets share, by one of them, and how many there are.
+    fault: Option<((TetId, usize), usize)>,
+}
+
+/// The number of tets that a thread judges at a time.
+const CHUNK: usize = 1 << 13;
+
+fn rough_qualities(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Vec<f32> {
+    threads.in_runs(tets.len(), CHUNK, |(): &mut (), run| rough_eas(points, &tets[run]))
+}
+
 impl Joined {
     fn of(
         tets: &[[VertexId; 4]],
         regions: &[i32],
         triangles: &[[VertexId; 3]],
         patches: &[i32],
+        threads: &Threads,
     ) -> Result<Self> {
-        let links = vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()];
-        let mut joined = Self { links, walls: Vec::new(), has_same_side: false };
-        let mut fault = None;
         // Most meshes have only one, which saves two random memory reads per facet.
         let one_region = regions.windows(2).all(|pair| pair[0] == pair[1]);
-        for_each_tet_facet(tets, triangles, |Sharing { tets: uses, triangles }| {
+        let join = |part: &mut Joints, Sharing { tets: uses, triangles }: Sharing| {
             if let [(t, i), (u, j)] = *uses {
                 let [x, y] = [(t, i), (u, j)].map(|(t, i)| orientation::facet(&tets[t.index()], i));
-                joined.has_same_side |= !see_from_opposite_sides(x, y);
+                part.has_same_side |= !see_from_opposite_sides(x, y);
             }
             let half = |i: usize| HalfFacet::new(uses[i].0, uses[i].1);
             let same_region = |x: TetId, y: TetId| one_region || regions[x.index()] == regions[y.index()];
             match *uses {
-                [(t, i), (u, j)] if triangles.is_empty() && same_region(t, u) => {
-                    joined.links[t.index()][i] = Link::tet(half(1));
-                    joined.links[u.index()][j] = Link::tet(half(0));
+                [(t, _), (u, _)] if triangles.is_empty() && same_region(t, u) => {
+                    part.pairs.push([half(0), half(1)]);
                 }
                 [_] | [_, _] => {
                     let triangle = triangles.first().copied().unwrap_or(NO_TRIANGLE);
                     let sides = [half(0), if uses.len() == 2 { half(1) } else { HalfFacet::NONE }];
                     let patch = patches.get(triangle as usize).copied().unwrap_or(0);
-                    joined.add_wall(Wall { sides, patch, triangle, is_new: false });
+                    part.walls.push(Wall { sides, patch, triangle, is_new: false });
                 }
                 // A triangle that is not a facet, or not the first on its facet, is left as it is; the caller
                 // has to fix its vertices and edges.
                 [] => {}
                 _ => {
-                    fault.get_or_insert((uses[0], uses.len()));
+                    part.fault.get_or_insert((uses[0], uses.len()));
                 }
             }
-        });
+        };
+        let parts = tet_facets_in_parts(tets, triangles, threads, join);
+        let links = vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()];
+        let mut joined = Self { links, walls: Vec::new(), has_same_side: false };
+        let mut fault = None;
+        for part in parts {
+            for [x, y] in part.pairs {
+                joined.links[x.tet().index()][x.facet()] = Link::tet(y);
+                joined.links[y.tet().index()][y.facet()] = Link::tet(x);
+            }
+            part.walls.into_iter().for_each(|wall| joined.add_wall(wall));
+            joined.has_same_side |= part.has_same_side;
+            fault = fault.or(part.fault);
+        }
         match fault {
             None => Ok(joined),
             Some(((tet, i), n)) => Err(Error::input(format!(

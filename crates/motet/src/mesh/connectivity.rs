@@ -32,11 +32,11 @@ pub(crate) struct Connectivity {
 }
 
 impl Connectivity {
-    pub(crate) fn of(mesh: &Mesh) -> Self {
+    pub(crate) fn of(mesh: &Mesh, threads: &Threads) -> Self {
         let used_once = facets_used_once(&mesh.cells);
         Self {
             boundary: Boundary::of_facets(&mesh.cells, &used_once),
-            tets: Arc::new(OrientedTets::of_linear(mesh)),
+            tets: Arc::new(OrientedTets::of_linear(mesh, threads)),
             used_once,
             regions: mesh.regions(),
         }
@@ -46,7 +46,7 @@ impl Connectivity {
     pub(crate) fn moved(self: &Arc<Self>, mesh: &Mesh, threads: &Threads) -> Arc<Self> {
         match self.tets.turned.is_empty() && self.tets.is_positive(&mesh.points, threads) {
             true => self.clone(),
-            false => Arc::new(Self::of(mesh)),
+            false => Arc::new(Self::of(mesh, threads)),
         }
     }
 
@@ -59,8 +59,8 @@ impl Connectivity {
         threads: &Threads,
     ) -> Self {
         let changed = self.changed(before, mesh, cells, threads);
-        debug_assert!(changed.as_ref().is_none_or(|changed| *changed == Self::of(mesh)));
-        changed.unwrap_or_else(|| Self::of(mesh))
+        debug_assert!(changed.as_ref().is_none_or(|changed| *changed == Self::of(mesh, threads)));
+        changed.unwrap_or_else(|| Self::of(mesh, threads))
     }
 
     fn changed(
@@ -233,12 +233,12 @@ mod tests {
             let grid = if is_mixed { mixed(4) } else { box_grid([4; 3], [[0.0; 3], [1.0; 3]]) };
             let mesh = labelled(grid, seed);
             let (new, origins) = changed(&mesh, &removed, &divided);
-            let before = Connectivity::of(&mesh);
+            let before = Connectivity::of(&mesh, &Threads::single());
             for threads in [Threads::single(), Threads::exactly(3).unwrap()] {
                 let carried = before.changed(&mesh, &new, &origins, &threads);
                 prop_assert!(carried.is_some() || 4 * divided.len() * 4 > new.cells.len());
                 if let Some(carried) = carried {
-                    let anew = Connectivity::of(&new);
+                    let anew = Connectivity::of(&new, &Threads::single());
                     prop_assert_eq!(&carried.used_once, &anew.used_once);
                     prop_assert!(carried == anew);
                 }
@@ -249,10 +249,13 @@ mod tests {
     #[test]
     fn regions_that_the_caller_has_changed_are_seen() {
         let mesh = labelled(box_grid([4; 3], [[0.0; 3], [1.0; 3]]), 0);
-        let before = Connectivity::of(&mesh);
+        let before = Connectivity::of(&mesh, &Threads::single());
         let mut relabelled = mesh.clone();
         relabelled.set_cell_field(Field::scalars("region", vec![1; mesh.cells.len()]));
         let (new, origins) = changed(&relabelled, &[3], &[]);
-        assert!(before.after(&relabelled, &new, &origins, &Threads::single()) == Connectivity::of(&new));
+        assert!(
+            before.after(&relabelled, &new, &origins, &Threads::single())
+                == Connectivity::of(&new, &Threads::single())
+        );
     }
 }

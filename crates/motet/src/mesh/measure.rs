@@ -1,6 +1,6 @@
 //! Measures of tets as cell arrays, for display in ParaView.
 
-use crate::base::Point;
+use crate::base::{Point, Threads};
 use crate::geometry::tet::volume;
 use crate::mesh::{Field, Mesh, OrientedTets};
 
@@ -8,7 +8,7 @@ impl Mesh {
     /// A cell array `name` with `measure` of each linear tet as oriented by its neighbours, for example
     /// [`eas`](fn@crate::geometry::quality::eas); NaN for cells of other kinds.
     pub fn tet_field(&self, name: &str, measure: impl Fn([Point; 4]) -> f64) -> Field {
-        OrientedTets::of_linear(self).field(self, name, measure)
+        OrientedTets::of_linear(self, &Threads::single()).field(self, name, measure)
     }
 
     /// Whether most linear tets have a negative volume, since some writers number the vertices the other way

@@ -14,7 +14,7 @@ use crate::geometry::vector::in_range;
 use crate::mesh::connectivity::AroundChange;
 use crate::mesh::layers::are_layers;
 use crate::mesh::orientation::{facet, orient, see_from_opposite_sides};
-use crate::mesh::tet_facets::{Sharing, TetFacetId, for_each_tet_facet};
+use crate::mesh::tet_facets::{Sharing, TetFacetId, for_each_tet_facet, tet_facets_in_parts};
 use crate::mesh::{CellKind, Cells, Field, Labels, Mesh, TetMesh};
 
 /// Facets are numbered only below this number of tets and triangles; more tets keep the orientation of the
@@ -49,19 +49,19 @@ pub struct Judged {
 
 impl OrientedTets {
     /// The linear and quadratic tets of a mesh.
-    pub fn of(mesh: &Mesh) -> Self {
-        Self::of_kinds(mesh, &[CellKind::TETRA, CellKind::QUADRATIC_TETRA])
+    pub fn of(mesh: &Mesh, threads: &Threads) -> Self {
+        Self::of_kinds(mesh, &[CellKind::TETRA, CellKind::QUADRATIC_TETRA], threads)
     }
 
     /// The linear tets of a mesh.
-    pub fn of_linear(mesh: &Mesh) -> Self {
-        Self::of_kinds(mesh, &[CellKind::TETRA])
+    pub fn of_linear(mesh: &Mesh, threads: &Threads) -> Self {
+        Self::of_kinds(mesh, &[CellKind::TETRA], threads)
     }
 
-    fn of_kinds(mesh: &Mesh, kinds: &[CellKind]) -> Self {
+    fn of_kinds(mesh: &Mesh, kinds: &[CellKind], threads: &Threads) -> Self {
         let (mut oriented, triangles) = Self::as_numbered(&mesh.cells, kinds);
         let regions = oriented.regions(mesh.regions().as_ref());
-        oriented.orient(&mesh.points, &regions, &triangles);
+        oriented.orient(&mesh.points, &regions, &triangles, threads);
         oriented
     }
 
@@ -110,7 +110,7 @@ impl OrientedTets {
         let pick = |t: &usize| (new.tets[*t], new.cells[*t]);
         let (tets, cells) = near.iter().map(pick).unzip::<_, _, Vec<_>, Vec<_>>();
         let regions = Self { cells, ..Self::default() }.regions(labels);
-        let shared = Shared::of(&tets, &regions, &triangles, |facet| facet.iter().all(is_marked));
+        let shared = Shared::of(&tets, &regions, &triangles, |facet| facet.iter().all(is_marked), threads);
         if shared.is_one_sided || !new.is_positive(&mesh.points, threads) {
             return None;
         }
@@ -148,10 +148,10 @@ impl OrientedTets {
     }
 
     /// The tets of plain arrays; the cell of a tet is its index.
-    pub fn of_tets(mesh: &TetMesh) -> Self {
+    pub fn of_tets(mesh: &TetMesh, threads: &Threads) -> Self {
         let cells = (0..mesh.tets.len()).map(CellId::new).collect();
         let mut oriented = Self { tets: mesh.tets.clone(), cells, ..Self::default() };
-        oriented.orient(&mesh.points, &mesh.regions, &mesh.triangles);
+        oriented.orient(&mesh.points, &mesh.regions, &mesh.triangles, threads);
         oriented
     }
 
@@ -205,14 +205,15 @@ impl OrientedTets {
         Judged { bad, layers }
     }
 
-    fn orient(&mut self, points: &[Point], regions: &[i32], triangles: &[[VertexId; 3]]) {
+    fn orient(&mut self, points: &[Point], regions: &[i32], triangles: &[[VertexId; 3]], threads: &Threads) {
         if is_too_large(self.tets.len(), triangles.len()) {
             return;
         }
-        let Shared { mut walls, is_one_sided } = Shared::of(&self.tets, regions, triangles, |_| true);
+        let Shared { mut walls, is_one_sided } =
+            Shared::of(&self.tets, regions, triangles, |_| true, threads);
         walls.sort_unstable();
         self.walls = walls;
-        if is_one_sided || (0..self.tets.len()).any(|t| self.is_negative(t, points)) {
+        if is_one_sided || !self.is_positive(points, threads) {
             let across = across(&self.tets);
             let behind = |t: usize, i: usize| {
                 let half = across[t][i].get()?;
@@ -231,6 +232,7 @@ impl OrientedTets {
 }
 
 /// What the tets that share facets say of these.
+#[derive(Default)]
 struct Shared {
     /// Walls, in no order.
     walls: Vec<TetFacetId>,
@@ -244,10 +246,10 @@ impl Shared {
         tets: &[[VertexId; 4]],
         regions: &[i32],
         triangles: &[[VertexId; 3]],
-        counts: impl Fn([VertexId; 3]) -> bool,
+        counts: impl Fn([VertexId; 3]) -> bool + Sync,
+        threads: &Threads,
     ) -> Self {
-        let mut shared = Self { walls: Vec::new(), is_one_sided: false };
-        for_each_tet_facet(tets, triangles, |sharing: Sharing| {
+        let see = |shared: &mut Self, sharing: Sharing| {
             let Some(&(t, i)) = sharing.tets.first() else { return };
             if !counts(facet(&tets[t.index()], i)) {
                 return;
@@ -259,8 +261,10 @@ impl Shared {
             if sharing.is_wall(regions) {
                 shared.walls.push(TetFacetId::at(t, i));
             }
-        });
-        shared
+        };
+        let parts = tet_facets_in_parts(tets, triangles, threads, see);
+        let one_sided = parts.iter().any(|part| part.is_one_sided);
+        Self { walls: parts.into_iter().flat_map(|part| part.walls).collect(), is_one_sided: one_sided }
     }
 }
 

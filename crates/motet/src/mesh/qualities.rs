@@ -47,7 +47,7 @@ impl Qualities {
     /// oriented by their neighbours. Tets with a point that is not finite are left out; `None` if no tets
     /// remain.
     pub fn of_mesh(mesh: &Mesh, threads: &Threads) -> Option<Self> {
-        let OrientedTets { mut tets, .. } = OrientedTets::of(mesh);
+        let OrientedTets { mut tets, .. } = OrientedTets::of(mesh, threads);
         tets.retain(|tet| tet.iter().all(|v| in_range(mesh.points[v.index()])));
         (!tets.is_empty()).then(|| Self::of(&mesh.points, &tets, threads))
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::{CellId, Point, VertexId};
+use crate::base::{CellId, Point, Threads, VertexId};
 use crate::geometry::vector::{distance, in_range};
 use crate::geometry::{quality, triangle};
 use crate::mesh::adjacency::Facets;
@@ -177,7 +177,7 @@ impl Summary {
     /// Summarises a mesh; about two seconds for a million tets.
     pub fn of(mesh: &Mesh) -> Self {
         let boundary = Boundary::of(&mesh.cells);
-        let tets = OrientedTets::of(mesh);
+        let tets = OrientedTets::of(mesh, &Threads::single());
         let defects = check_with(mesh, &boundary, &tets);
         let volumes = finite_volumes(mesh, &tets);
         let count = |kind| defects.iter().find(|d| d.kind == kind).map_or(0, |d| d.count);

@@ -4,7 +4,9 @@
 //! hash table detects equal facets, in a third of the time of a linear search and a sixth of the time of
 //! sorting. Only a bucket too large for the table is sorted.
 
-use crate::base::{MaybeId, TetId, VertexId, id};
+use std::ops::Range;
+
+use crate::base::{MaybeId, TetId, Threads, VertexId, id};
 
 id!(
     /// A facet of a tet: four times the tet, plus the index of the facet there.
@@ -54,9 +56,62 @@ impl Sharing<'_> {
 ///
 /// Facets and triangles that name a vertex twice do not count. Panics if there are 2^29 tets and triangles or
 /// more.
-pub fn for_each_tet_facet(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]], mut see: impl FnMut(Sharing)) {
+pub fn for_each_tet_facet(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]], see: impl FnMut(Sharing)) {
+    for_each_of_part(tets, triangles, &(0..n_vertices(tets, triangles)), see);
+}
+
+/// Calls `see` once for every distinct facet as [`for_each_tet_facet`] does, on several threads: each takes
+/// the facets of a range of lowest vertices, and gathers what it sees. Returns what was gathered, in the order
+/// of the lowest vertices; into how many parts it is divided depends on the number of threads.
+///
+/// Panics as [`for_each_tet_facet`] does.
+pub(crate) fn tet_facets_in_parts<T: Default + Send>(
+    tets: &[[VertexId; 4]],
+    triangles: &[[VertexId; 3]],
+    threads: &Threads,
+    see: impl Fn(&mut T, Sharing) + Sync,
+) -> Vec<T> {
+    let n_vertices = n_vertices(tets, triangles);
+    let n_parts = if tets.len() < MIN_TETS { 1 } else { threads.count() };
+    let part = |range: Range<usize>| {
+        let mut gathered = T::default();
+        for_each_of_part(tets, triangles, &range, |sharing| see(&mut gathered, sharing));
+        gathered
+    };
+    threads.each(parts_of_vertices(tets, n_vertices, n_parts), part)
+}
+
+/// Fewer tets are not divided among threads.
+const MIN_TETS: usize = 1 << 13;
+/// One tet in so many tells how many facets each range of vertices has.
+const SAMPLE: usize = 64;
+
+/// Divides the vertices into ranges with about as many facets each.
+fn parts_of_vertices(tets: &[[VertexId; 4]], n_vertices: usize, n_parts: usize) -> Vec<Range<usize>> {
+    let lowest = |tet: &[VertexId; 4]| tet.iter().min().map_or(0, |v| v.index());
+    let mut sample: Vec<usize> = match n_parts {
+        1 => Vec::new(),
+        _ => tets.iter().step_by(SAMPLE).map(lowest).collect(),
+    };
+    sample.sort_unstable();
+    let end = |part: usize| sample.get(part * sample.len() / n_parts).map_or(n_vertices, |&v| v);
+    (0..n_parts).map(|i| if i == 0 { 0 } else { end(i) }..end(i + 1)).collect()
+}
+
+fn n_vertices(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]]) -> usize {
+    let all_ids = tets.as_flattened().iter().chain(triangles.as_flattened());
+    all_ids.map(|v| v.index() + 1).max().unwrap_or(0)
+}
+
+/// Calls `see` once for every distinct facet whose lowest vertex is in a range.
+fn for_each_of_part(
+    tets: &[[VertexId; 4]],
+    triangles: &[[VertexId; 3]],
+    range: &Range<usize>,
+    mut see: impl FnMut(Sharing),
+) {
     assert!(tets.len() + triangles.len() < 1 << 29, "too many tets to number their facets");
-    let buckets = Buckets::fill(tets, triangles);
+    let buckets = Buckets::fill(tets, triangles, range);
     let n_tets = tets.len() as u32;
     let (mut of_tets, mut of_triangles) = (Vec::new(), Vec::new());
     buckets.for_each_run(|run| {
@@ -98,19 +153,21 @@ struct Buckets {
 }
 
 impl Buckets {
-    fn fill(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]]) -> Self {
-        let all_ids = tets.as_flattened().iter().chain(triangles.as_flattened());
-        let n_vertices = all_ids.map(|v| v.index() + 1).max().unwrap_or(0);
-        let mut offsets = vec![0u32; n_vertices + 1];
-        for_each_keyed_facet(tets, triangles, |first, _, _| offsets[first as usize + 1] += 1);
-        for i in 0..n_vertices {
+    /// The facets whose lowest vertex is in a range.
+    fn fill(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]], range: &Range<usize>) -> Self {
+        let start = range.start as u32;
+        let mut offsets = vec![0u32; range.len() + 1];
+        for_each_keyed_facet(tets, triangles, range, |first, _, _| {
+            offsets[(first - start) as usize + 1] += 1
+        });
+        for i in 0..range.len() {
             offsets[i + 1] += offsets[i];
         }
-        let n = offsets[n_vertices] as usize;
+        let n = offsets[range.len()] as usize;
         let mut next = offsets.clone();
         let (mut keys, mut ids) = (vec![0u64; n], vec![0u32; n]);
-        for_each_keyed_facet(tets, triangles, |first, key, id| {
-            let place = &mut next[first as usize];
+        for_each_keyed_facet(tets, triangles, range, |first, key, id| {
+            let place = &mut next[(first - start) as usize];
             keys[*place as usize] = key;
             ids[*place as usize] = id;
             *place += 1;
@@ -210,30 +267,37 @@ fn hash(key: u64) -> usize {
     (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 56) as usize
 }
 
-/// Calls `see` with the lowest vertex, the key and the id of each facet, leaving out those that name a vertex
-/// twice.
+/// Calls `see` with the lowest vertex, the key and the id of each facet whose lowest vertex is in a range,
+/// leaving out those that name a vertex twice.
 #[inline(always)]
 fn for_each_keyed_facet(
     tets: &[[VertexId; 4]],
     triangles: &[[VertexId; 3]],
+    range: &Range<usize>,
     mut see: impl FnMut(u32, u64, u32),
 ) {
+    let (start, end) = (range.start as u32, range.end as u32);
+    let is_within = |v: u32| start <= v && v < end;
     for (t, tet) in (0u32..).zip(tets) {
         let [a, b, c, d] = sorted(*tet);
         let vertices = [a, b, c, d].map(|packed| (packed >> 2) as u32);
         let id = |left_out: u64| t << 2 | (left_out & 3) as u32;
         let [va, vb, vc, vd] = vertices;
         if va < vb && vb < vc && vc < vd {
-            see(va, pack(vb, vc), id(d));
-            see(va, pack(vb, vd), id(c));
-            see(va, pack(vc, vd), id(b));
-            see(vb, pack(vc, vd), id(a));
+            if is_within(va) {
+                see(va, pack(vb, vc), id(d));
+                see(va, pack(vb, vd), id(c));
+                see(va, pack(vc, vd), id(b));
+            }
+            if is_within(vb) {
+                see(vb, pack(vc, vd), id(a));
+            }
             continue;
         }
         for ([x, y, z], left_out) in
             [([va, vb, vc], d), ([va, vb, vd], c), ([va, vc, vd], b), ([vb, vc, vd], a)]
         {
-            if x < y && y < z {
+            if x < y && y < z && is_within(x) {
                 see(x, pack(y, z), id(left_out));
             }
         }
@@ -242,7 +306,7 @@ fn for_each_keyed_facet(
         let mut corners = triangle.map(|v| v.0);
         corners.sort_unstable();
         let [x, y, z] = corners;
-        if x < y && y < z {
+        if x < y && y < z && is_within(x) {
             see(x, pack(y, z), t << 2);
         }
     }

@@ -63,7 +63,7 @@ impl Mover {
     /// When the mesh has no volume cells, vertices without a finite position, or a boundary that does not
     /// span space; when options name something that does not exist.
     pub fn new(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<Self> {
-        Self::with(mesh, || Arc::new(Connectivity::of(mesh)), options, threads)
+        Self::with(mesh, || Arc::new(Connectivity::of(mesh, threads)), options, threads)
     }
 
     /// Sets up the motion of `mesh` as [`Self::new`] does, with its connectivity.

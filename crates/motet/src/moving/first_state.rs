@@ -86,7 +86,7 @@ impl Returns {
             cells: ids_of(arrays, CELL, mesh.cells.len(), first.cells.len())?,
         };
         let left = arrays.left(LEFT, first.cells.len())?;
-        let tets = Tets::of(&first);
+        let tets = Tets::of(&first, threads);
         let first = FirstMesh::from_parts(first, &tets, records, left, options, threads);
         Ok((Self { first: Some(Box::new(first)), count }, in_first))
     }

@@ -30,8 +30,8 @@ pub(super) struct Shape {
 const CHUNK: usize = 1 << 13;
 
 impl Tets {
-    pub(super) fn of(mesh: &Mesh) -> Self {
-        Self(Arc::new(OrientedTets::of_linear(mesh)))
+    pub(super) fn of(mesh: &Mesh, threads: &Threads) -> Self {
+        Self(Arc::new(OrientedTets::of_linear(mesh, threads)))
     }
 
     /// The tets of the mesh that a mover moves.
@@ -154,7 +154,7 @@ mod tests {
         for (i, p) in mesh.points.iter_mut().enumerate() {
             (0..3).for_each(|k| p[k] += 0.35 * ((7 * i + 3 * k) as f64).sin());
         }
-        let tets = Tets::of(&mesh);
+        let tets = Tets::of(&mesh, &Threads::single());
         for limit in [0.0, 0.2, 0.9] {
             let shape = tets.shape(&mesh.points, limit, &Threads::single());
             let all: Vec<(CellId, f64)> = (mesh.cells.tets())
@@ -174,8 +174,9 @@ mod tests {
         let mesh = sphere_in_box(2, 2);
         let mut mirrored = mesh.clone();
         mirrored.points.iter_mut().for_each(|p| p[0] = -p[0]);
+        let threads = Threads::single();
         let [a, b] =
-            [&mesh, &mirrored].map(|m| Tets::of(m).shape(&m.points, 0.2, &Threads::single()).worst.unwrap());
+            [&mesh, &mirrored].map(|m| Tets::of(m, &threads).shape(&m.points, 0.2, &threads).worst.unwrap());
         assert!(a.1 > 0.0 && (a.1 - b.1).abs() < 1e-12);
     }
 }

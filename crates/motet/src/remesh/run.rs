@@ -52,7 +52,7 @@ pub(super) fn remesh_keeping(
     let mut report = Report { min_eas, ..Report::default() };
     let max_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
     threads.watch().report_and_check("joining tets", 0, 0)?;
-    let mut complex = Complex::new(mesh)?;
+    let mut complex = Complex::on_threads(mesh, threads)?;
     hold(&mut complex, mesh, &options.held, required, options.surface != SurfaceRule::Keep);
     report.seconds.join = clock.lap();
 
@@ -100,7 +100,7 @@ pub(super) fn remesh_keeping(
 
     let extract = complex.extract(mesh);
     if options.keep_layers {
-        report.layers = rejudge(&complex, &extract, &mut left, &layers, min_eas);
+        report.layers = rejudge(&complex, &extract, &mut left, &layers, min_eas, threads);
     }
     report.after = State::of(&complex, &left, report.layers, |t| extract.tet(t));
     report.kept = mesh.tets.len() - extract.removed_tets.len();
@@ -235,6 +235,7 @@ fn rejudge(
     left: &mut Vec<TetId>,
     layers: &[TetId],
     min_eas: f64,
+    threads: &Threads,
 ) -> usize {
     left.extend_from_slice(layers);
     if left.is_empty() {
@@ -242,7 +243,7 @@ fn rejudge(
     }
     let mut low: Vec<TetId> = left.iter().map(|&tet| extract.tet(tet)).collect();
     low.sort_unstable();
-    let tets = OrientedTets::of_tets(&extract.mesh);
+    let tets = OrientedTets::of_tets(&extract.mesh, threads);
     let layers = split_off_layers(&tets, &extract.mesh.points, &mut low, min_eas);
     left.retain(|&tet| low.binary_search(&extract.tet(tet)).is_ok());
     left.sort_unstable_by(|&a, &b| complex.quality(a).total_cmp(&complex.quality(b)).then(a.cmp(&b)));

@@ -19,7 +19,7 @@ mod hanging;
 mod parts;
 mod points;
 
-use crate::base::{CellId, Csr, VertexId};
+use crate::base::{CellId, Csr, Threads, VertexId};
 use crate::mesh::boundary::corners;
 use crate::mesh::{Boundary, CellKind, Mesh, OrientedTets};
 
@@ -31,7 +31,7 @@ pub use hanging::{HangingVertex, hanging_vertices};
 ///
 /// Ids must have been checked by [`Mesh::validate`]. A million tets take about a second.
 pub fn check(mesh: &Mesh) -> Vec<Defect> {
-    check_with(mesh, &Boundary::of(&mesh.cells), &OrientedTets::of(mesh))
+    check_with(mesh, &Boundary::of(&mesh.cells), &OrientedTets::of(mesh, &Threads::single()))
 }
 
 /// Every defect of a mesh, as found by [`check`], for a caller that already has the boundary and the oriented
