@@ -8,12 +8,32 @@ pub(super) use serial::Pool;
 #[cfg(feature = "parallel")]
 mod parallel {
     use std::ops::Range;
+    use std::sync::atomic::{AtomicU64, Ordering};
 
     use rayon::prelude::*;
 
+    use crate::base::splitmix64;
+
     /// Two threads or more. Its methods run on these, and return when all work is done.
     #[derive(Debug)]
-    pub(in crate::base) struct Pool(rayon::ThreadPool);
+    pub(in crate::base) struct Pool {
+        threads: rayon::ThreadPool,
+        disorder: Option<Disorder>,
+    }
+
+    /// An order of tasks that differs from call to call.
+    #[derive(Debug)]
+    struct Disorder(AtomicU64);
+
+    impl Disorder {
+        /// Tasks in another order, each with its number.
+        fn shuffled<T>(&self, tasks: Vec<T>) -> Vec<(usize, T)> {
+            let call = self.0.fetch_add(1, Ordering::Relaxed);
+            let mut tasks: Vec<(usize, T)> = tasks.into_iter().enumerate().collect();
+            tasks.sort_by_key(|(number, _)| splitmix64(call ^ splitmix64(*number as u64)));
+            tasks
+        }
+    }
 
     impl Pool {
         /// Starts `n` threads; `None` if a pool has no use.
@@ -25,11 +45,16 @@ mod parallel {
                 return Ok(None);
             }
             let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
-            pool.map(|pool| Some(Self(pool))).map_err(|e| e.to_string())
+            pool.map(|threads| Some(Self { threads, disorder: None })).map_err(|e| e.to_string())
+        }
+
+        /// The pool with its tasks begun in an order that `seed` chooses, and another one in each call.
+        pub(in crate::base) fn shuffled(self, seed: u64) -> Self {
+            Self { disorder: Some(Disorder(AtomicU64::new(splitmix64(seed)))), ..self }
         }
 
         pub(in crate::base) fn count(&self) -> usize {
-            self.0.current_num_threads()
+            self.threads.current_num_threads()
         }
 
         /// `of(i)` for each `i` below `n`, in order; a thread takes at least `min_part` at a time.
@@ -39,7 +64,12 @@ mod parallel {
             min_part: usize,
             of: impl Fn(usize) -> T + Sync + Send,
         ) -> Vec<T> {
-            self.0.install(|| (0..n).into_par_iter().with_min_len(min_part).map(of).collect())
+            if self.disorder.is_some() {
+                let part = |start: usize| -> Vec<T> { (start..n.min(start + min_part)).map(&of).collect() };
+                let parts = self.each((0..n).step_by(min_part.max(1)).collect(), part);
+                return parts.into_iter().flatten().collect();
+            }
+            self.threads.install(|| (0..n).into_par_iter().with_min_len(min_part).map(of).collect())
         }
 
         /// Appends `of(i)` for each `i` below `n`, in order; a thread takes at least `min_part` at a time.
@@ -50,7 +80,10 @@ mod parallel {
             min_part: usize,
             of: impl Fn(usize) -> T + Sync + Send,
         ) {
-            self.0.install(|| list.par_extend((0..n).into_par_iter().with_min_len(min_part).map(of)));
+            if self.disorder.is_some() {
+                return list.extend(self.map(n, min_part, of));
+            }
+            self.threads.install(|| list.par_extend((0..n).into_par_iter().with_min_len(min_part).map(of)));
         }
 
         /// Applies `of` to each item, with its place; a thread takes at least `min_part` at a time.
@@ -60,8 +93,16 @@ mod parallel {
             min_part: usize,
             of: impl Fn(usize, &mut T) + Sync + Send,
         ) {
+            if self.disorder.is_some() {
+                let min_part = min_part.max(1);
+                let part = |(i, part): (usize, &mut [T])| {
+                    (i * min_part..).zip(part).for_each(|(i, item)| of(i, item));
+                };
+                self.each(list.chunks_mut(min_part).enumerate().collect(), part);
+                return;
+            }
             let items = list.par_iter_mut().with_min_len(min_part).enumerate();
-            self.0.install(|| items.for_each(|(i, item)| of(i, item)));
+            self.threads.install(|| items.for_each(|(i, item)| of(i, item)));
         }
 
         /// The results for each of some ranges, in order, with a state that ranges of one thread share.
@@ -70,7 +111,10 @@ mod parallel {
             ranges: Vec<Range<usize>>,
             of: impl Fn(&mut S, Range<usize>) -> T + Sync + Send,
         ) -> Vec<T> {
-            self.0.install(|| ranges.into_par_iter().map_init(S::default, of).collect())
+            if self.disorder.is_some() {
+                return self.each(ranges, |range| of(&mut S::default(), range));
+            }
+            self.threads.install(|| ranges.into_par_iter().map_init(S::default, of).collect())
         }
 
         pub(in crate::base) fn each<T: Send, U: Send>(
@@ -78,7 +122,15 @@ mod parallel {
             items: Vec<T>,
             of: impl Fn(T) -> U + Sync + Send,
         ) -> Vec<U> {
-            self.0.install(|| items.into_par_iter().map(of).collect())
+            let Some(disorder) = &self.disorder else {
+                return self.threads.install(|| items.into_par_iter().map(of).collect());
+            };
+            let tasks = disorder.shuffled(items);
+            let task = |(number, item)| (number, of(item));
+            let mut results: Vec<(usize, U)> =
+                self.threads.install(|| tasks.into_par_iter().map(task).collect());
+            results.sort_by_key(|(number, _)| *number);
+            results.into_iter().map(|(_, result)| result).collect()
         }
 
         pub(in crate::base) fn any<T: Send>(
@@ -86,7 +138,7 @@ mod parallel {
             items: Vec<T>,
             is_such: impl Fn(T) -> bool + Sync + Send,
         ) -> bool {
-            self.0.install(|| items.into_par_iter().any(is_such))
+            self.threads.install(|| items.into_par_iter().any(is_such))
         }
 
         pub(in crate::base) fn join<A: Send, B: Send>(
@@ -94,13 +146,29 @@ mod parallel {
             first: impl FnOnce() -> A + Send,
             second: impl FnOnce() -> B + Send,
         ) -> (A, B) {
-            self.0.join(first, second)
+            self.threads.join(first, second)
+        }
+
+        /// The parts of up to `length` items of a list, each with its number, in the order in which they are
+        /// to be begun.
+        pub(in crate::base) fn parts<'a, T>(
+            &self,
+            list: &'a mut [T],
+            length: usize,
+        ) -> Box<dyn Iterator<Item = (usize, &'a mut [T])> + Send + 'a>
+        where
+            T: Send,
+        {
+            match &self.disorder {
+                None => Box::new(list.chunks_mut(length).enumerate()),
+                Some(disorder) => Box::new(disorder.shuffled(list.chunks_mut(length).collect()).into_iter()),
+            }
         }
 
         /// Runs `work` once on the calling thread, and at the same time on all threads but one of the pool.
         pub(in crate::base) fn on_all(&self, work: impl Fn() + Sync) {
             let work = &work;
-            self.0.in_place_scope(|scope| {
+            self.threads.in_place_scope(|scope| {
                 (1..self.count()).for_each(|_| scope.spawn(|_| work()));
                 work();
             });
@@ -120,6 +188,10 @@ mod serial {
     impl Pool {
         pub(in crate::base) fn new(_: usize) -> Result<Option<Self>, String> {
             Ok(None)
+        }
+
+        pub(in crate::base) fn shuffled(self, _: u64) -> Self {
+            match self {}
         }
 
         pub(in crate::base) fn count(&self) -> usize {
@@ -155,6 +227,14 @@ mod serial {
         }
 
         pub(in crate::base) fn join<A, B>(&self, _: impl FnOnce() -> A, _: impl FnOnce() -> B) -> (A, B) {
+            match *self {}
+        }
+
+        pub(in crate::base) fn parts<'a, T>(
+            &self,
+            _: &'a mut [T],
+            _: usize,
+        ) -> std::iter::Empty<(usize, &'a mut [T])> {
             match *self {}
         }
 

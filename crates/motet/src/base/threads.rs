@@ -46,6 +46,13 @@ impl Threads {
         Ok(Self { pool, ..Self::default() })
     }
 
+    /// The same threads, which begin tasks in an order that `seed` chooses, and in another one in each call:
+    /// for tests that results do not depend on it.
+    #[must_use]
+    pub fn shuffled(self, seed: u64) -> Self {
+        Self { pool: self.pool.map(|pool| pool.shuffled(seed)), ..self }
+    }
+
     /// Attaches a watch: work on these threads reports its progress, and stops on request.
     #[must_use]
     pub fn watched(self, watch: &Watch) -> Self {
@@ -164,7 +171,7 @@ impl Threads {
         let Some(pool) = self.pool.as_ref().filter(|_| length < out.len()) else {
             return of(&state(), 0, out);
         };
-        let parts = Mutex::new(out.chunks_mut(length).enumerate());
+        let parts = Mutex::new(pool.parts(out, length));
         let next = || parts.lock().ok()?.next();
         pool.on_all(|| {
             let state = state();

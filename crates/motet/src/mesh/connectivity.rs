@@ -179,7 +179,8 @@ mod tests {
 
     /// A mesh in which a cell array numbers regions, and some facets of tets have triangles.
     fn labelled(mut mesh: Mesh, seed: usize) -> Mesh {
-        let facets: Vec<_> = mesh.cells.tets().filter(|(cell, _)| (cell.index() + seed) % 7 == 0).collect();
+        let facets: Vec<_> =
+            mesh.cells.tets().filter(|(cell, _)| (cell.index() + seed).is_multiple_of(7)).collect();
         facets.into_iter().for_each(|(_, [a, b, c, _])| mesh.cells.push(CellKind::TRIANGLE, [a, b, c]));
         let region = |cell: usize| 1 + ((cell * 31 + seed) / 97 % 3) as i32;
         mesh.set_cell_field(Field::scalars("region", (0..mesh.cells.len()).map(region).collect::<Vec<_>>()));
