@@ -71,7 +71,7 @@ fn gaps() {
     let (points, bodies) = surfaces::bodies(&shapes);
     let options = Measuring { own: true, ..Measuring::default() };
     same("contact", |threads| {
-        let mut contact = Contact::new(points.clone(), bodies.clone(), options.clone(), threads).unwrap();
+        let mut contact = Contact::new(points.clone(), bodies.clone(), options, threads).unwrap();
         let gaps = contact.measure(threads);
         let velocity: Vec<Point> = points.iter().map(|p| [p[1], -p[0], 0.3]).collect();
         (gaps, contact.look_ahead(&velocity, 1.0, threads).unwrap())
