@@ -61,8 +61,8 @@ pub fn for_each_tet_facet(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]], s
 }
 
 /// Calls `see` once for every distinct facet as [`for_each_tet_facet`] does, on several threads: each takes
-/// the facets of a range of lowest vertices, and gathers what it sees. Returns what was gathered, in the order
-/// of the lowest vertices; into how many parts it is divided depends on the number of threads.
+/// the facets of a range of lowest vertices, and gathers what it sees. Returns what was gathered, in the
+/// order of the lowest vertices; into how many parts it is divided depends on the number of threads.
 ///
 /// Panics as [`for_each_tet_facet`] does.
 pub(crate) fn tet_facets_in_parts<T: Default + Send>(
