@@ -108,6 +108,11 @@ pub(crate) fn folded(
     found.into_iter().map(TetId::new).collect()
 }
 
+/// The index of a facet of a tet once [`orient`] has reversed the tet.
+pub(crate) fn local_after_turning(facet: usize) -> usize {
+    [0, 1, 3, 2][facet]
+}
+
 pub(crate) fn facet(tet: &[VertexId; 4], i: usize) -> [VertexId; 3] {
     FACETS[i].map(|place| tet[place])
 }

@@ -13,7 +13,7 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::in_range;
 use crate::mesh::connectivity::AroundChange;
 use crate::mesh::layers::are_layers;
-use crate::mesh::orientation::{facet, orient, see_from_opposite_sides};
+use crate::mesh::orientation::{self, facet, orient, see_from_opposite_sides};
 use crate::mesh::tet_facets::{Sharing, TetFacetId, for_each_tet_facet, tet_facets_in_parts};
 use crate::mesh::{CellKind, Cells, Field, Labels, Mesh, TetMesh};
 
@@ -222,6 +222,12 @@ impl OrientedTets {
             // A mesh that cannot be oriented keeps the numbering of the file.
             let is_reversed = orient(&mut self.tets, behind, points).unwrap_or_default();
             self.turned = (0..is_reversed.len()).filter(|&t| is_reversed[t]).collect();
+            for wall in
+                self.walls.iter_mut().filter(|wall| is_reversed.get(wall.tet().index()) == Some(&true))
+            {
+                *wall = TetFacetId::at(wall.tet(), orientation::local_after_turning(wall.local()));
+            }
+            self.walls.sort_unstable();
         }
     }
 
