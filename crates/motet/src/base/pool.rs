@@ -48,7 +48,8 @@ mod parallel {
             pool.map(|threads| Some(Self { threads, disorder: None })).map_err(|e| e.to_string())
         }
 
-        /// The pool with its tasks begun in an order that `seed` chooses, and another one in each call.
+        /// A pool that begins the tasks of a call in an order chosen by `seed`, another one in each call.
+        /// Items that one function is applied to are not tasks.
         pub(in crate::base) fn shuffled(self, seed: u64) -> Self {
             Self { disorder: Some(Disorder(AtomicU64::new(splitmix64(seed)))), ..self }
         }
@@ -64,11 +65,6 @@ mod parallel {
             min_part: usize,
             of: impl Fn(usize) -> T + Sync + Send,
         ) -> Vec<T> {
-            if self.disorder.is_some() {
-                let part = |start: usize| -> Vec<T> { (start..n.min(start + min_part)).map(&of).collect() };
-                let parts = self.each((0..n).step_by(min_part.max(1)).collect(), part);
-                return parts.into_iter().flatten().collect();
-            }
             self.threads.install(|| (0..n).into_par_iter().with_min_len(min_part).map(of).collect())
         }
 
@@ -80,9 +76,6 @@ mod parallel {
             min_part: usize,
             of: impl Fn(usize) -> T + Sync + Send,
         ) {
-            if self.disorder.is_some() {
-                return list.extend(self.map(n, min_part, of));
-            }
             self.threads.install(|| list.par_extend((0..n).into_par_iter().with_min_len(min_part).map(of)));
         }
 
@@ -93,14 +86,6 @@ mod parallel {
             min_part: usize,
             of: impl Fn(usize, &mut T) + Sync + Send,
         ) {
-            if self.disorder.is_some() {
-                let min_part = min_part.max(1);
-                let part = |(i, part): (usize, &mut [T])| {
-                    (i * min_part..).zip(part).for_each(|(i, item)| of(i, item));
-                };
-                self.each(list.chunks_mut(min_part).enumerate().collect(), part);
-                return;
-            }
             let items = list.par_iter_mut().with_min_len(min_part).enumerate();
             self.threads.install(|| items.for_each(|(i, item)| of(i, item)));
         }

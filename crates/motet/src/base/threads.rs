@@ -46,8 +46,9 @@ impl Threads {
         Ok(Self { pool, ..Self::default() })
     }
 
-    /// The same threads, which begin tasks in an order that `seed` chooses, and in another one in each call:
-    /// for tests that results do not depend on it.
+    /// Threads that begin the tasks of [`Self::each`], [`Self::in_runs`] and `fill` in an order chosen by
+    /// `seed`, another one in each call: for tests that no result depends on it. A single thread keeps its
+    /// order.
     #[must_use]
     pub fn shuffled(self, seed: u64) -> Self {
         Self { pool: self.pool.map(|pool| pool.shuffled(seed)), ..self }

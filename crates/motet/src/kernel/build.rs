@@ -8,7 +8,7 @@ use crate::kernel::complex::Complex;
 use crate::kernel::hold::Hold;
 use crate::kernel::journal::Journal;
 use crate::kernel::lines::Lines;
-use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
+use crate::kernel::link::{Behind, HalfFacet, Link, NO_TRIANGLE, Wall, WallId};
 use crate::kernel::locks::Locks;
 use crate::kernel::overlaps::Overlaps;
 use crate::kernel::provenance::Provenance;
@@ -17,9 +17,9 @@ use crate::kernel::star::Star;
 use crate::kernel::tets::{NO_TET, Tets};
 use crate::kernel::vertices::Vertices;
 use crate::kernel::walls::Walls;
-use crate::mesh::TetMesh;
 use crate::mesh::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::tet_facets::{Sharing, tet_facets_in_parts};
+use crate::mesh::{MAX_TETS, TetMesh};
 
 impl Complex {
     /// The complex of a mesh. All tets are oriented as most are; see [`crate::mesh::OrientedTets`].
@@ -28,14 +28,15 @@ impl Complex {
     /// If an array does not fit ([`TetMesh::validate`]), if there are too many tets, if more than two tets
     /// share a facet, and if the mesh is not orientable; the error names the first such tet.
     pub fn new(mesh: &TetMesh) -> Result<Self> {
-        Self::on_threads(mesh, &Threads::single())
+        Self::new_on(mesh, &Threads::single())
     }
 
-    /// The complex of a mesh as [`Self::new`] makes it, on several threads.
+    /// The complex of a mesh, joined on several threads. All tets are oriented as most are; see
+    /// [`crate::mesh::OrientedTets`].
     ///
     /// # Errors
     /// The errors of [`Self::new`].
-    pub fn on_threads(mesh: &TetMesh, threads: &Threads) -> Result<Self> {
+    pub fn new_on(mesh: &TetMesh, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
         if mesh.tets.len() >= MAX_TETS as usize {
             return Err(Error::input(format!("{} tets exceed the limit of {MAX_TETS}", mesh.tets.len()))

@@ -8,41 +8,7 @@
 //! ```
 //! Nearly all facets of a mesh are plain and need no more than this; walls are stored in a list of their own.
 
-use crate::base::TetId;
-
-/// One facet of one tet: facet `i` lies opposite vertex `i`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct HalfFacet(pub(super) u32);
-
-impl HalfFacet {
-    /// No facet: what lies beyond the boundary.
-    pub const NONE: Self = Self(u32::MAX >> 1);
-
-    /// Facet `i` of a tet.
-    #[inline(always)]
-    pub fn new(tet: TetId, i: usize) -> Self {
-        debug_assert!(tet.0 < MAX_TETS && i < 4);
-        Self(tet.0 << 2 | i as u32)
-    }
-
-    /// The tet.
-    #[inline(always)]
-    pub fn tet(self) -> TetId {
-        TetId(self.0 >> 2)
-    }
-
-    /// The number of the facet in its tet.
-    #[inline(always)]
-    pub fn facet(self) -> usize {
-        (self.0 & 3) as usize
-    }
-
-    /// Whether this is [`Self::NONE`].
-    #[inline(always)]
-    pub fn is_none(self) -> bool {
-        self == Self::NONE
-    }
-}
+pub use crate::mesh::HalfFacet;
 
 /// A wall, by its index in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -96,9 +62,6 @@ pub enum Behind {
 pub(super) struct Link(pub(super) u32);
 
 const WALL: u32 = 1 << 31;
-
-/// Tet ids are below this.
-pub(super) const MAX_TETS: u32 = (1 << 29) - 1;
 
 impl Link {
     #[inline(always)]

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::base::{CellId, MaybeId, Threads};
 use crate::mesh::adjacency::{FacetUse, Facets};
 use crate::mesh::boundary::facets_used_once;
+use crate::mesh::cutout::cells_such_that;
 use crate::mesh::history::Origins;
 use crate::mesh::{Boundary, Cells, Labels, Mesh, OrientedTets};
 
@@ -156,12 +157,11 @@ impl AroundChange {
         let marked = threads.in_runs(new.len(), CHUNK, |_: &mut (), run| marked_vertices(run));
         let mut is_marked = vec![false; mesh.points.len()];
         marked.into_iter().for_each(|v| is_marked[v.index()] = true);
-        let is_near = |cell: &CellId| {
-            let n_marked = new.vertices(*cell).iter().filter(|v| is_marked[v.index()]).count();
-            n_marked >= FEWEST_SHARED && new.kind(*cell).dim() == Some(3)
+        let is_near = |cell: CellId| {
+            let n_marked = new.vertices(cell).iter().filter(|v| is_marked[v.index()]).count();
+            n_marked >= FEWEST_SHARED && new.kind(cell).dim() == Some(3)
         };
-        let near_cells = |run: Range<usize>| run.map(CellId::new).filter(is_near).collect();
-        let near = threads.in_runs(new.len(), CHUNK, |_: &mut (), run| near_cells(run));
+        let near = cells_such_that(new.len(), is_near, threads);
         Some(Self { old_to_new, is_marked, near })
     }
 }

@@ -272,7 +272,11 @@ pub(super) fn runs_between<I: Id>(n: usize, removed: &[I]) -> impl Iterator<Item
 }
 
 /// The cells below `n` that a test finds, in rising order.
-fn cells_such_that(n: usize, is_such: impl Fn(CellId) -> bool + Sync, threads: &Threads) -> Vec<CellId> {
+pub(super) fn cells_such_that(
+    n: usize,
+    is_such: impl Fn(CellId) -> bool + Sync,
+    threads: &Threads,
+) -> Vec<CellId> {
     let chunk = |start: usize| -> Vec<CellId> {
         (start..(start + CHUNK).min(n)).map(CellId::new).filter(|&cell| is_such(cell)).collect()
     };

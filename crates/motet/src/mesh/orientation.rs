@@ -109,7 +109,7 @@ pub(crate) fn folded(
 }
 
 /// The index of a facet of a tet once [`orient`] has reversed the tet.
-pub(crate) fn local_after_turning(facet: usize) -> usize {
+pub(crate) fn facet_after_turning(facet: usize) -> usize {
     [0, 1, 3, 2][facet]
 }
 

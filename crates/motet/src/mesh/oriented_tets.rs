@@ -8,14 +8,14 @@
 //! - *Bad*: the EAS is below a limit, and the tet is not a *layer* tet, which is thin on purpose (see
 //!   [`layers`](super::layers)).
 
-use crate::base::{CellId, MaybeId, Point, TetId, Threads, VertexId};
+use crate::base::{CellId, Point, TetId, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::in_range;
 use crate::mesh::connectivity::AroundChange;
 use crate::mesh::layers::are_layers;
 use crate::mesh::orientation::{self, facet, orient, see_from_opposite_sides};
-use crate::mesh::tet_facets::{Sharing, TetFacetId, for_each_tet_facet, tet_facets_in_parts};
-use crate::mesh::{CellKind, Cells, Field, Labels, Mesh, TetMesh};
+use crate::mesh::tet_facets::{Sharing, for_each_tet_facet, tet_facets_in_parts};
+use crate::mesh::{CellKind, Cells, Field, HalfFacet, Labels, Mesh, TetMesh};
 
 /// Facets are numbered only below this number of tets and triangles; more tets keep the orientation of the
 /// file.
@@ -35,7 +35,7 @@ pub struct OrientedTets {
     pub turned: Vec<usize>,
     /// Facets on the boundary, between two regions, or with a triangle, in rising order; of two tets that
     /// share one, the first.
-    walls: Vec<TetFacetId>,
+    walls: Vec<HalfFacet>,
 }
 
 /// The tets below a limit of EAS, as indices into [`OrientedTets::tets`], in rising order.
@@ -117,14 +117,14 @@ impl OrientedTets {
         let found = shared
             .walls
             .iter()
-            .map(|wall| TetFacetId::at(TetId::new(near[wall.tet().index()]), wall.local()));
+            .map(|wall| HalfFacet::new(TetId::new(near[wall.tet().index()]), wall.facet()));
         let kept = self.walls.iter().filter_map(|wall| {
             let cell = around.old_to_new[self.cells[wall.tet().index()].index()].get()?;
             let tet = new.place(cell)?;
-            let is_far = !facet(&new.tets[tet], wall.local()).iter().all(is_marked);
-            is_far.then(|| TetFacetId::at(TetId::new(tet), wall.local()))
+            let is_far = !facet(&new.tets[tet], wall.facet()).iter().all(is_marked);
+            is_far.then(|| HalfFacet::new(TetId::new(tet), wall.facet()))
         });
-        let mut walls: Vec<TetFacetId> = kept.chain(found).collect();
+        let mut walls: Vec<HalfFacet> = kept.chain(found).collect();
         walls.sort_unstable();
         new.walls = walls;
         Some(new)
@@ -157,7 +157,7 @@ impl OrientedTets {
 
     /// Tets that are already oriented, each with its index as its cell, and their walls: see
     /// [`Sharing::is_wall`].
-    pub(crate) fn given(tets: Vec<[VertexId; 4]>, mut walls: Vec<TetFacetId>) -> Self {
+    pub(crate) fn given(tets: Vec<[VertexId; 4]>, mut walls: Vec<HalfFacet>) -> Self {
         let cells = (0..tets.len()).map(CellId::new).collect();
         walls.sort_unstable();
         Self { tets, cells, turned: Vec::new(), walls }
@@ -165,7 +165,7 @@ impl OrientedTets {
 
     /// The facets on the boundary, between two regions, or with a triangle, in the order of the tets.
     pub(crate) fn walls(&self) -> impl ExactSizeIterator<Item = [VertexId; 3]> + '_ {
-        self.walls.iter().map(|wall| facet(&self.tets[wall.tet().index()], wall.local()))
+        self.walls.iter().map(|wall| facet(&self.tets[wall.tet().index()], wall.facet()))
     }
 
     /// The corner points of a tet, with the vertices of the mesh at `points`.
@@ -209,26 +209,24 @@ impl OrientedTets {
         if is_too_large(self.tets.len(), triangles.len()) {
             return;
         }
-        let Shared { mut walls, is_one_sided } =
-            Shared::of(&self.tets, regions, triangles, |_| true, threads);
-        walls.sort_unstable();
+        let Shared { walls, is_one_sided } = Shared::of(&self.tets, regions, triangles, |_| true, threads);
         self.walls = walls;
         if is_one_sided || !self.is_positive(points, threads) {
             let across = across(&self.tets);
             let behind = |t: usize, i: usize| {
-                let half = across[t][i].get()?;
-                Some((half.tet().index(), half.local()))
+                let half = across[t][i];
+                (!half.is_none()).then(|| (half.tet().index(), half.facet()))
             };
             // A mesh that cannot be oriented keeps the numbering of the file.
             let is_reversed = orient(&mut self.tets, behind, points).unwrap_or_default();
             self.turned = (0..is_reversed.len()).filter(|&t| is_reversed[t]).collect();
-            for wall in
-                self.walls.iter_mut().filter(|wall| is_reversed.get(wall.tet().index()) == Some(&true))
-            {
-                *wall = TetFacetId::at(wall.tet(), orientation::local_after_turning(wall.local()));
+            for wall in self.walls.iter_mut() {
+                if is_reversed.get(wall.tet().index()) == Some(&true) {
+                    *wall = HalfFacet::new(wall.tet(), orientation::facet_after_turning(wall.facet()));
+                }
             }
-            self.walls.sort_unstable();
         }
+        self.walls.sort_unstable();
     }
 
     /// Whether a tet, as it is numbered, is flat or inverted.
@@ -241,7 +239,7 @@ impl OrientedTets {
 #[derive(Default)]
 struct Shared {
     /// Walls, in no order.
-    walls: Vec<TetFacetId>,
+    walls: Vec<HalfFacet>,
     /// Whether two tets see the facet between them from the same side.
     is_one_sided: bool,
 }
@@ -265,7 +263,7 @@ impl Shared {
                 shared.is_one_sided |= !see_from_opposite_sides(x, y);
             }
             if sharing.is_wall(regions) {
-                shared.walls.push(TetFacetId::at(t, i));
+                shared.walls.push(HalfFacet::new(t, i));
             }
         };
         let parts = tet_facets_in_parts(tets, triangles, threads, see);
@@ -286,12 +284,12 @@ pub fn is_inverted([a, b, c, d]: [Point; 4]) -> bool {
 
 /// For each facet of each tet, the same facet of the neighbour; none on the boundary, and where more than two
 /// tets share the facet.
-fn across(tets: &[[VertexId; 4]]) -> Vec<[MaybeId<TetFacetId>; 4]> {
-    let mut across = vec![[MaybeId::NONE; 4]; tets.len()];
+fn across(tets: &[[VertexId; 4]]) -> Vec<[HalfFacet; 4]> {
+    let mut across = vec![[HalfFacet::NONE; 4]; tets.len()];
     for_each_tet_facet(tets, &[], |sharing| {
         if let &[(t, i), (u, j)] = sharing.tets {
-            across[t.index()][i] = TetFacetId::at(u, j).into();
-            across[u.index()][j] = TetFacetId::at(t, i).into();
+            across[t.index()][i] = HalfFacet::new(u, j);
+            across[u.index()][j] = HalfFacet::new(t, i);
         }
     });
     across

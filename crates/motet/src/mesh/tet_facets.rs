@@ -6,28 +6,7 @@
 
 use std::ops::Range;
 
-use crate::base::{MaybeId, TetId, Threads, VertexId, id};
-
-id!(
-    /// A facet of a tet: four times the tet, plus the index of the facet there.
-    pub(crate) TetFacetId
-);
-
-impl TetFacetId {
-    /// Facet `local` of a tet.
-    pub(crate) fn at(tet: TetId, local: usize) -> Self {
-        Self(tet.0 << 2 | local as u32)
-    }
-
-    pub(crate) fn tet(self) -> TetId {
-        TetId(self.0 >> 2)
-    }
-
-    /// The index of the facet in its tet.
-    pub(crate) fn local(self) -> usize {
-        (self.0 & 3) as usize
-    }
-}
+use crate::base::{MaybeId, TetId, Threads, VertexId};
 
 /// The cells that share a facet: at most two tets in a sound mesh, and the triangles with the same three
 /// vertices.

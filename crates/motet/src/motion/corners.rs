@@ -28,24 +28,21 @@ impl CornerTets {
     /// The corners of the volume cells of `cells`: linear tets as oriented in `tets`, others as they are
     /// numbered. [`Self::orient_upright`] has to follow.
     pub(crate) fn of(cells: &Cells, tets: &OrientedTets) -> Self {
-        let mut volumes = cells.kinds().iter().filter(|kind| kind.dim() == Some(3));
-        if volumes.all(|kind| *kind == CellKind::TETRA) {
-            let (tets, cells) = (tets.tets.clone(), tets.cells.clone());
-            let (is_cell, is_curved) = (vec![true; tets.len()], vec![false; tets.len()]);
-            return Self { tets, cells, is_cell, is_curved };
-        }
         let mut oriented = tets.tets.iter();
         let mut corners = Self::with_capacity(cells.len());
         let facets = Facets::of(cells);
         for (cell, kind, _) in cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)) {
             if kind == CellKind::TETRA {
                 corners.tets.extend(oriented.next());
+                corners.cells.push(cell);
+                corners.is_cell.push(true);
+                corners.is_curved.push(false);
             } else {
                 corner_tets(&facets, cell, &mut corners.tets);
+                corners.cells.resize(corners.tets.len(), cell);
+                corners.is_cell.resize(corners.tets.len(), false);
+                corners.is_curved.resize(corners.tets.len(), is_curved_kind(kind));
             }
-            corners.cells.resize(corners.tets.len(), cell);
-            corners.is_cell.resize(corners.tets.len(), kind == CellKind::TETRA);
-            corners.is_curved.resize(corners.tets.len(), is_curved_kind(kind));
         }
         corners
     }

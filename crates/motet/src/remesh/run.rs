@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use crate::base::{CellId, Point, Result, TetId, Threads};
 use crate::kernel::{Complex, Extract};
-use crate::mesh::tet_facets::TetFacetId;
 use crate::mesh::{OrientedTets, TetMesh, bounds, largest_extent};
 use crate::remesh::held::{Required, hold};
 use crate::remesh::input_mesh::{InputMesh, Pose};
@@ -52,7 +51,7 @@ pub(super) fn remesh_keeping(
     let mut report = Report { min_eas, ..Report::default() };
     let max_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
     threads.watch().report_and_check("joining tets", 0, 0)?;
-    let mut complex = Complex::on_threads(mesh, threads)?;
+    let mut complex = Complex::new_on(mesh, threads)?;
     hold(&mut complex, mesh, &options.held, required, options.surface != SurfaceRule::Keep);
     report.seconds.join = clock.lap();
 
@@ -214,8 +213,7 @@ fn others(n_tets: usize, only: &[CellId]) -> Vec<bool> {
 /// Orients the tets of a complex that nothing has changed since it was made of `mesh`.
 fn oriented(complex: &Complex, mesh: &TetMesh) -> OrientedTets {
     let tets = (0..mesh.tets.len()).map(|t| complex.vertices(TetId::new(t))).collect();
-    let walls = complex.walls().map(|(_, wall)| wall.sides[0]);
-    OrientedTets::given(tets, walls.map(|side| TetFacetId::at(side.tet(), side.facet())).collect())
+    OrientedTets::given(tets, complex.walls().map(|(_, wall)| wall.sides[0]).collect())
 }
 
 /// Removes tets that belong to boundary layers from `low`, which keeps the bad ones, and returns them.
