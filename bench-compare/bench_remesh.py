@@ -36,7 +36,7 @@ def contenders(case, large):
         commands[name] = [sys.executable, HERE / "rivals" / "remesh_python.py", keyword, source, places[name]]
     for name, arguments in HXT.items():
         places[name] = out(name)
-        commands[name] = [TARGET / "remesh_hxt", *raw, *arguments, places[name]]
+        commands[name] = [TARGET / "remesh_hxt", *raw, *arguments, 1, places[name]]
     if large:
         commands = {name: command for name, command in commands.items() if name in (*OURS, *QUICK)}
     else:

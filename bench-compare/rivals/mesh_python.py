@@ -1,6 +1,6 @@
-"""Meshes a closed surface by TetGen, Gmsh or fTetWild with one thread; prints times as JSON.
+"""Meshes a closed surface by TetGen, Gmsh or fTetWild; prints times as JSON.
 
-usage: mesh_python.py PROGRAM SIZE RUNS IN.npz OUT.npz      IN: points, triangles; OUT: points, tets
+usage: mesh_python.py PROGRAM SIZE RUNS IN.npz OUT.npz [THREADS]      IN: points, triangles; OUT: points, tets
 
 SIZE is the requested edge length; for TetGen the volume of the regular tet with such edges is the limit.
 Times are measured between the program's own data structures in memory, with fewer repeats than RUNS if they
@@ -18,7 +18,7 @@ from in_memory import clocked, gmsh_tets
 BUDGET = 3.0  # no repeat is started after this number of seconds
 
 
-def tetgen(points, triangles, size, switches):
+def tetgen(points, triangles, size, threads, switches):
     import tetgen as program
 
     surface = program.TetGen(points, triangles.astype(np.int32))
@@ -27,11 +27,11 @@ def tetgen(points, triangles, size, switches):
     return seconds, surface.node, surface.elem, version("tetgen")
 
 
-def gmsh(points, triangles, size, algorithm):
+def gmsh(points, triangles, size, threads, algorithm):
     import gmsh as program
 
     program.initialize()
-    options = {"General.Terminal": 0, "General.NumThreads": 1, "Mesh.Algorithm3D": algorithm,
+    options = {"General.Terminal": 0, "General.NumThreads": threads, "Mesh.Algorithm3D": algorithm,
                # A uniform interior size, as in the other programs.
                "Mesh.MeshSizeMin": size, "Mesh.MeshSizeMax": size, "Mesh.MeshSizeExtendFromBoundary": 0}
     for name, value in options.items():
@@ -48,10 +48,10 @@ def gmsh(points, triangles, size, algorithm):
     return seconds, points, tets, program.__version__
 
 
-def ftetwild(points, triangles, size):
+def ftetwild(points, triangles, size, threads):
     import pytetwild as program
 
-    work = lambda: program.tetrahedralize(points, triangles.astype(np.int32), edge_length_abs=size, num_threads=1)
+    work = lambda: program.tetrahedralize(points, triangles.astype(np.int32), edge_length_abs=size, num_threads=threads)
     seconds, (points, tets) = clocked(work)
     return seconds, points, tets, version("pytetwild")
 
@@ -66,13 +66,13 @@ PROGRAMS = {
 }
 
 
-def main(name, size, runs, source, target):
+def main(name, size, runs, source, target, threads="1"):
     given = np.load(source)
     os.chdir(os.path.dirname(target))  # fTetWild writes a file to its working directory
     program, *options = PROGRAMS[name]
     seconds = []
     while len(seconds) < int(runs) and sum(seconds) < BUDGET:
-        duration, points, tets, release = program(given["points"], given["triangles"], float(size), *options)
+        duration, points, tets, release = program(given["points"], given["triangles"], float(size), int(threads), *options)
         if len(tets) == 0:
             raise ValueError("no tets")
         seconds.append(duration)

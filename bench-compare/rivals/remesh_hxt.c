@@ -1,6 +1,6 @@
-/* HXT's optimiser of tets on a mesh that is there already, one thread, boundary kept.
+/* HXT's optimiser of tets on a mesh that is there already, boundary kept.
  *
- * usage: remesh_hxt POINTS TETS TRIANGLES OUTER QUALITY LEAST OUT      raw little-endian f64 x 3, u32 x 4, u32 x 3
+ * usage: remesh_hxt POINTS TETS TRIANGLES OUTER QUALITY LEAST THREADS OUT      raw little-endian f64 x 3, u32 x 4, u32 x 3
  *
  * The first OUTER points are those of the boundary, TRIANGLES its facets. QUALITY is `aspect`, HXT's own measure,
  * or `eas`; the optimiser works on tets below LEAST. Writes OUT.points and OUT.tets, prints JSON.
@@ -135,7 +135,7 @@ static Mesh *mesh_of(char **words) {
   return mesh;
 }
 
-static void optimise(Mesh *mesh, uint32_t n_fixed, Quality *quality, double least) {
+static void optimise(Mesh *mesh, uint32_t n_fixed, Quality *quality, double least, int threads) {
   double box[8] __attribute__((aligned(32))) = {DBL_MAX, DBL_MAX, DBL_MAX, 0, -DBL_MAX, -DBL_MAX, -DBL_MAX, 0};
   hxtBboxAdd(box, mesh->points, mesh->n_points);
   check(hxtTetAdjacencies(mesh), "hxtTetAdjacencies");
@@ -145,7 +145,7 @@ static void optimise(Mesh *mesh, uint32_t n_fixed, Quality *quality, double leas
   check(missing ? -1 : 0, "the search for boundary facets");
   check(hxtConstrainTriangles(mesh, tet_of_triangle), "hxtConstrainTriangles");
   free(tet_of_triangle);
-  Options options = {box, quality, NULL, least, 1, n_fixed, 0, 1};
+  Options options = {box, quality, NULL, least, threads, n_fixed, 0, 1};
   check(hxtOptimizeTetrahedra(mesh, &options), "hxtOptimizeTetrahedra");
 }
 
@@ -163,15 +163,16 @@ static void save(const Mesh *mesh, const char *out) {
 }
 
 int main(int count, char **words) {
-  if (count != 8) return 2;
-  omp_set_num_threads(1);
+  if (count != 9) return 2;
+  const int threads = atoi(words[7]);
+  omp_set_num_threads(threads);
   double seconds[RUNS];
   for (int run = 0; run < RUNS; run++) {
     Mesh *mesh = mesh_of(words);
     const double start = now();
-    optimise(mesh, atoi(words[4]), strcmp(words[5], "eas") ? NULL : eas, atof(words[6]));
+    optimise(mesh, atoi(words[4]), strcmp(words[5], "eas") ? NULL : eas, atof(words[6]), threads);
     seconds[run] = now() - start;
-    if (run == RUNS - 1) save(mesh, words[7]);
+    if (run == RUNS - 1) save(mesh, words[8]);
     hxtMeshDelete(&mesh);
   }
   printf("{\"seconds\": [%.6f, %.6f, %.6f], \"version\": \"4.8.4\"}\n", seconds[0], seconds[1], seconds[2]);

@@ -7,7 +7,7 @@ use std::io::{self, ErrorKind, Write};
 use std::rc::Rc;
 
 use motet::Error;
-use motet::base::printable;
+use motet::base::{Simulation, printable};
 use serde::Serialize;
 
 use crate::common::Common;
@@ -151,6 +151,12 @@ impl Console {
         if self.verbose {
             let _ = writeln!(io::stderr(), "{}", lines(&text));
         }
+    }
+
+    /// Prints what simulated threads would have saved, on standard error, even with `--quiet`.
+    pub(crate) fn saved_by(&self, simulation: &Simulation) {
+        let (n, saved) = (simulation.count(), simulation.saved().as_secs_f64());
+        let _ = writeln!(io::stderr(), "{n} threads would have saved {saved:.3} s");
     }
 
     /// Prints an error on standard error.

@@ -50,5 +50,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Report(args) => verbs::report::run(&args, &console),
         Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
     };
+    if let Some(simulation) = call.common.simulation() {
+        console.saved_by(simulation);
+    }
     exit::status(outcome, &console)
 }

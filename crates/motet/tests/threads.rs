@@ -3,20 +3,24 @@
 mod common;
 mod surfaces;
 
+use std::sync::Arc;
+
 use common::devices::{coil, room};
+use common::random::Random;
 use motet::Mesh;
 use motet::base::{Point, Threads};
 use motet::contact::{Contact, Options as Measuring};
 use motet::geometry::vector::{norm, sub};
 use motet::implant::{Device, Inside, Options as Implanting, implant};
-use motet::mesh::history::Rules;
+use motet::mesh::history::{History, Rules};
 use motet::mesh::shapes::{ball, sphere_in_box};
 use motet::mesh::{CellKind, Cells, Field, OrientedTets, Surface};
 use motet::meshing::layers::{Layers, Stack};
 use motet::meshing::{Options as Filling, Sizes, Surfaces, fill};
 use motet::motion::{MethodName, Motion, Mover, Strain};
-use motet::moving::{MovingMesh, Options as Moving};
+use motet::moving::{Change, MovingMesh, Options as Moving, Step};
 use motet::preflight::Role;
+use motet::refine::{Criterion, Wanted};
 
 /// Compares what some work returns on one thread with what it returns on many, and on threads that take tasks
 /// in other orders.
@@ -124,4 +128,118 @@ fn moving_meshes() {
         assert!(n_changes > 0);
         (moving.mesh().clone(), n_changes)
     });
+}
+
+/// A part of a script for a moving mesh.
+#[derive(Clone, Debug)]
+enum Act {
+    /// The sphere turns by an angle, is stretched along z, and shifts.
+    Move(f64, f64, Point),
+    /// Tets near a place are divided.
+    Divide(Point),
+    /// Divisions are undone.
+    Undo,
+    /// Short edges are collapsed.
+    Coarsen,
+    Repair,
+    /// The state is saved, and the script goes on with what is loaded.
+    Resume,
+}
+
+fn acts(random: &mut Random) -> Vec<Act> {
+    let act = |random: &mut Random| {
+        let place = random.point().map(|x| 3.0 * x - 1.5);
+        match (random.next() * 9.0) as usize {
+            0 => Act::Divide(place),
+            1 => Act::Undo,
+            2 => Act::Coarsen,
+            3 => Act::Repair,
+            4 => Act::Resume,
+            _ => Act::Move(random.between(-1.5, 1.5), random.between(0.7, 1.3), place.map(|x| 0.2 * x)),
+        }
+    };
+    (0..6).map(|_| act(random)).collect()
+}
+
+/// What a script leaves: the mesh, and what its steps and changes say.
+#[derive(Default, PartialEq)]
+struct Left {
+    mesh: Mesh,
+    fractions: Vec<f64>,
+    worst: Vec<f64>,
+    histories: Vec<Arc<History>>,
+}
+
+impl Left {
+    fn step(&mut self, step: Step) {
+        self.fractions.push(step.fraction);
+        self.worst.push(step.quality.worst);
+        self.changes(step.changes);
+    }
+
+    fn changes(&mut self, changes: impl IntoIterator<Item = Change>) {
+        self.histories.extend(changes.into_iter().map(|change| change.history));
+    }
+}
+
+fn played(mesh: &Mesh, options: &Moving, acts: &[Act], threads: &Threads) -> Left {
+    let mut moving = MovingMesh::new(mesh, options.clone(), threads).unwrap();
+    let mut left = Left::default();
+    for (k, act) in acts.iter().enumerate() {
+        match *act {
+            Act::Move(angle, stretch, by) => {
+                let (sin, cos) = angle.sin_cos();
+                let to = |[x, y, z]: Point| {
+                    [cos * x - sin * y + by[0], sin * x + cos * y + by[1], stretch * z + by[2]]
+                };
+                let of = |p: &Point| if norm(*p) < 1.001 { sub(to(*p), *p) } else { [0.0; 3] };
+                let displacement: Vec<Point> = moving.driven_places().iter().map(of).collect();
+                left.step(moving.advance(1.0 + k as f64, &displacement, threads).unwrap());
+            }
+            Act::Divide(centre) => {
+                let criteria = vec![Criterion::Ball { centre, radius: 0.7 }];
+                let wanted = Wanted { criteria, generations: Some(1), ..Wanted::default() };
+                left.changes(moving.refine(&wanted, threads).unwrap());
+            }
+            Act::Undo => {
+                let wanted = Wanted { coarsen: true, ..Wanted::default() };
+                left.changes(moving.refine(&wanted, threads).unwrap());
+            }
+            Act::Coarsen => left.changes(moving.coarsen(0.0, threads).unwrap()),
+            Act::Repair => left.changes(moving.repair(threads).unwrap()),
+            Act::Resume => {
+                let folder = tempfile::tempdir().unwrap();
+                let file = folder.path().join("state.vtu");
+                moving.save(&file).unwrap();
+                moving = MovingMesh::load(&file, options.clone(), threads).unwrap();
+            }
+        }
+    }
+    left.step(moving.certify(threads).unwrap());
+    left.mesh = moving.mesh().clone();
+    left
+}
+
+/// Scripts of a moving mesh: motions of any size, divisions and what undoes them, repairs, states saved and
+/// loaded, in any order.
+#[test]
+fn random_scripts() {
+    let mut mesh = sphere_in_box(5, 4);
+    mesh.set_point_field(Field::vectors("place", &mesh.points.clone()));
+    let mut random = Random(41);
+    let mut n_changes = 0;
+    for number in 0..5 {
+        let method = [MethodName::Delaunay, MethodName::Bodies, MethodName::Guided][number % 3];
+        let motion = Motion { method, smooth: number / 3, ..Motion::default() };
+        let options = Moving { motion, ..Moving::default() };
+        let acts = acts(&mut random);
+        let changes = std::cell::Cell::new(0);
+        same(&format!("{method:?}, {acts:?}"), |threads| {
+            let left = played(&mesh, &options, &acts, threads);
+            changes.set(left.histories.len());
+            left
+        });
+        n_changes += changes.get();
+    }
+    assert!(n_changes > 12, "{n_changes} changes test little");
 }

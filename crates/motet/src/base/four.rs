@@ -12,6 +12,8 @@ pub(crate) trait FourLanes:
     fn load(machine: Self::Machine, numbers: &[f64; 4]) -> Self;
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
+    /// `self * factor + term`, rounded once. Slow where the machine has no such instruction.
+    fn mul_add(self, factor: Self, term: Self) -> Self;
     /// The smaller of each pair; that of `self` where either is not a number. Of 0 and -0 either.
     fn min(self, other: Self) -> Self;
     /// The larger of each pair, with the same rules as [`Self::min`].
@@ -129,6 +131,14 @@ impl FourLanes for Plain {
     }
 
     #[inline(always)]
+    fn mul_add(mut self, factor: Self, term: Self) -> Self {
+        for i in 0..4 {
+            self.0[i] = self.0[i].mul_add(factor.0[i], term.0[i]);
+        }
+        self
+    }
+
+    #[inline(always)]
     fn min(mut self, other: Self) -> Self {
         for i in 0..4 {
             self.0[i] = smaller(other.0[i], self.0[i]);
@@ -184,6 +194,11 @@ impl FourLanes for Wide {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0, self.0.abs_f64x4(self.1))
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        Self(self.0, self.0.mul_add_f64x4(self.1, factor.1, term.1))
     }
 
     #[inline(always)]

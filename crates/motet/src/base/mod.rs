@@ -5,7 +5,6 @@ mod error;
 pub(crate) mod four;
 mod ids;
 mod lanewise;
-mod lazy_number;
 #[cfg(feature = "suite")]
 mod names;
 mod percent;
@@ -13,6 +12,7 @@ mod pool;
 mod reasons;
 mod sets;
 mod shared;
+mod simulation;
 mod splitmix;
 mod threads;
 mod watch;
@@ -24,7 +24,6 @@ pub use error::{Error, ErrorKind, Result, printable};
 pub use ids::{BodyId, CellId, Id, MaybeId, TetId, TriangleId, VertexId, rising_list};
 pub(crate) use ids::{EdgeId, ForestVertexId, LineId, NodeId, absent, id, same_orientation, sorted_ids};
 pub(crate) use lanewise::lanewise;
-pub(crate) use lazy_number::LazyNumber;
 #[cfg(feature = "suite")]
 #[doc(hidden)]
 pub use names::read_text;
@@ -34,6 +33,7 @@ pub use percent::percent;
 pub use reasons::reasons;
 pub(crate) use sets::DisjointSets;
 pub(crate) use shared::Shared;
+pub use simulation::Simulation;
 pub(crate) use splitmix::splitmix64;
 pub use threads::Threads;
 pub use watch::{Progress, Watch};

@@ -8,18 +8,29 @@ pub(super) use serial::Pool;
 #[cfg(feature = "parallel")]
 mod parallel {
     use std::ops::Range;
+    use std::sync::Mutex;
     use std::sync::atomic::{AtomicU64, Ordering};
 
     use rayon::prelude::*;
 
-    use crate::base::splitmix64;
+    use crate::base::{Simulation, splitmix64};
+
+    /// Simulated threads take this many parts each of what threads divide as they go.
+    const SIMULATED_PARTS: usize = 8;
 
     /// Two threads or more. Its methods run on these, and return when all work is done.
     #[derive(Debug)]
     pub(in crate::base) struct Pool {
-        threads: rayon::ThreadPool,
+        workers: Workers,
         disorder: Option<Disorder>,
     }
+
+    #[derive(Debug)]
+    enum Workers {
+        Threads(rayon::ThreadPool),
+        Simulated(Simulation),
+    }
+    use Workers::{Simulated, Threads};
 
     /// An order of tasks that differs from call to call.
     #[derive(Debug)]
@@ -45,7 +56,12 @@ mod parallel {
                 return Ok(None);
             }
             let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
-            pool.map(|threads| Some(Self { threads, disorder: None })).map_err(|e| e.to_string())
+            pool.map(|threads| Some(Self { workers: Threads(threads), disorder: None }))
+                .map_err(|e| e.to_string())
+        }
+
+        pub(in crate::base) fn simulated(simulation: &Simulation) -> Option<Self> {
+            (simulation.count() > 1).then(|| Self { workers: Simulated(simulation.clone()), disorder: None })
         }
 
         /// A pool that begins the tasks of a call in an order chosen by `seed`, another one in each call.
@@ -55,7 +71,10 @@ mod parallel {
         }
 
         pub(in crate::base) fn count(&self) -> usize {
-            self.threads.current_num_threads()
+            match &self.workers {
+                Threads(threads) => threads.current_num_threads(),
+                Simulated(simulation) => simulation.count(),
+            }
         }
 
         /// `of(i)` for each `i` below `n`, in order; a thread takes at least `min_part` at a time.
@@ -65,7 +84,9 @@ mod parallel {
             min_part: usize,
             of: impl Fn(usize) -> T + Sync + Send,
         ) -> Vec<T> {
-            self.threads.install(|| (0..n).into_par_iter().with_min_len(min_part).map(of).collect())
+            let mut list = Vec::new();
+            self.append(&mut list, n, min_part, of);
+            list
         }
 
         /// Appends `of(i)` for each `i` below `n`, in order; a thread takes at least `min_part` at a time.
@@ -76,7 +97,23 @@ mod parallel {
             min_part: usize,
             of: impl Fn(usize) -> T + Sync + Send,
         ) {
-            self.threads.install(|| list.par_extend((0..n).into_par_iter().with_min_len(min_part).map(of)));
+            match &self.workers {
+                Threads(threads) => {
+                    let items = (0..n).into_par_iter().with_min_len(min_part).map(of);
+                    threads.install(|| list.par_extend(items));
+                }
+                Simulated(simulation) => {
+                    list.reserve(n);
+                    let (length, mut tasks) = (self.simulated_part(n, min_part), simulation.call());
+                    for start in (0..n).step_by(length) {
+                        tasks.take(|| list.extend((start..n.min(start + length)).map(&of)));
+                    }
+                }
+            }
+        }
+
+        fn simulated_part(&self, n: usize, min_part: usize) -> usize {
+            n.div_ceil(SIMULATED_PARTS * self.count()).max(min_part).max(1)
         }
 
         /// Applies `of` to each item, with its place; a thread takes at least `min_part` at a time.
@@ -86,8 +123,18 @@ mod parallel {
             min_part: usize,
             of: impl Fn(usize, &mut T) + Sync + Send,
         ) {
-            let items = list.par_iter_mut().with_min_len(min_part).enumerate();
-            self.threads.install(|| items.for_each(|(i, item)| of(i, item)));
+            match &self.workers {
+                Threads(threads) => {
+                    let items = list.par_iter_mut().with_min_len(min_part).enumerate();
+                    threads.install(|| items.for_each(|(i, item)| of(i, item)));
+                }
+                Simulated(simulation) => {
+                    let (length, mut tasks) = (self.simulated_part(list.len(), min_part), simulation.call());
+                    for (k, part) in list.chunks_mut(length).enumerate() {
+                        tasks.take(|| part.iter_mut().zip(k * length..).for_each(|(item, i)| of(i, item)));
+                    }
+                }
+            }
         }
 
         /// The results for each of some ranges, in order, with a state that ranges of one thread share.
@@ -96,10 +143,16 @@ mod parallel {
             ranges: Vec<Range<usize>>,
             of: impl Fn(&mut S, Range<usize>) -> T + Sync + Send,
         ) -> Vec<T> {
-            if self.disorder.is_some() {
-                return self.each(ranges, |range| of(&mut S::default(), range));
+            match &self.workers {
+                _ if self.disorder.is_some() => self.each(ranges, |range| of(&mut S::default(), range)),
+                Threads(threads) => {
+                    threads.install(|| ranges.into_par_iter().map_init(S::default, of).collect())
+                }
+                Simulated(simulation) => {
+                    let (mut state, mut tasks) = (S::default(), simulation.call());
+                    ranges.into_iter().map(|range| tasks.take(|| of(&mut state, range))).collect()
+                }
             }
-            self.threads.install(|| ranges.into_par_iter().map_init(S::default, of).collect())
         }
 
         pub(in crate::base) fn each<T: Send, U: Send>(
@@ -108,14 +161,22 @@ mod parallel {
             of: impl Fn(T) -> U + Sync + Send,
         ) -> Vec<U> {
             let Some(disorder) = &self.disorder else {
-                return self.threads.install(|| items.into_par_iter().map(of).collect());
+                return self.in_order(items, of);
             };
             let tasks = disorder.shuffled(items);
-            let task = |(number, item)| (number, of(item));
-            let mut results: Vec<(usize, U)> =
-                self.threads.install(|| tasks.into_par_iter().map(task).collect());
+            let mut results = self.in_order(tasks, |(number, item)| (number, of(item)));
             results.sort_by_key(|(number, _)| *number);
             results.into_iter().map(|(_, result)| result).collect()
+        }
+
+        fn in_order<T: Send, U: Send>(&self, items: Vec<T>, of: impl Fn(T) -> U + Sync + Send) -> Vec<U> {
+            match &self.workers {
+                Threads(threads) => threads.install(|| items.into_par_iter().map(of).collect()),
+                Simulated(simulation) => {
+                    let mut tasks = simulation.call();
+                    items.into_iter().map(|item| tasks.take(|| of(item))).collect()
+                }
+            }
         }
 
         pub(in crate::base) fn any<T: Send>(
@@ -123,7 +184,13 @@ mod parallel {
             items: Vec<T>,
             is_such: impl Fn(T) -> bool + Sync + Send,
         ) -> bool {
-            self.threads.install(|| items.into_par_iter().any(is_such))
+            match &self.workers {
+                Threads(threads) => threads.install(|| items.into_par_iter().any(is_such)),
+                Simulated(simulation) => {
+                    let mut tasks = simulation.call();
+                    items.into_iter().any(|item| tasks.take(|| is_such(item)))
+                }
+            }
         }
 
         pub(in crate::base) fn join<A: Send, B: Send>(
@@ -131,32 +198,49 @@ mod parallel {
             first: impl FnOnce() -> A + Send,
             second: impl FnOnce() -> B + Send,
         ) -> (A, B) {
-            self.threads.join(first, second)
-        }
-
-        /// The parts of up to `length` items of a list, each with its number, in the order in which they are
-        /// to be begun.
-        pub(in crate::base) fn parts<'a, T>(
-            &self,
-            list: &'a mut [T],
-            length: usize,
-        ) -> Box<dyn Iterator<Item = (usize, &'a mut [T])> + Send + 'a>
-        where
-            T: Send,
-        {
-            match &self.disorder {
-                None => Box::new(list.chunks_mut(length).enumerate()),
-                Some(disorder) => Box::new(disorder.shuffled(list.chunks_mut(length).collect()).into_iter()),
+            match &self.workers {
+                Threads(threads) => threads.join(first, second),
+                Simulated(simulation) => {
+                    let mut tasks = simulation.call();
+                    (tasks.take(first), tasks.take(second))
+                }
             }
         }
 
-        /// Runs `work` once on the calling thread, and at the same time on all threads but one of the pool.
-        pub(in crate::base) fn on_all(&self, work: impl Fn() + Sync) {
-            let work = &work;
-            self.threads.in_place_scope(|scope| {
-                (1..self.count()).for_each(|_| scope.spawn(|_| work()));
-                work();
-            });
+        /// Applies `of` to parts of up to `length` items of a list, with the place of the first and the state
+        /// of its thread. The calling thread and all but one of the pool take part after part.
+        pub(in crate::base) fn in_parts<S, T: Send>(
+            &self,
+            list: &mut [T],
+            length: usize,
+            state: impl Fn() -> S + Sync,
+            of: impl Fn(&S, usize, &mut [T]) + Sync,
+        ) {
+            let parts = list.chunks_mut(length);
+            let parts: Box<dyn Iterator<Item = (usize, &mut [T])> + Send> = match &self.disorder {
+                None => Box::new(parts.enumerate()),
+                Some(disorder) => Box::new(disorder.shuffled(parts.collect()).into_iter()),
+            };
+            match &self.workers {
+                Threads(threads) => {
+                    let parts = Mutex::new(parts);
+                    let next = || parts.lock().ok()?.next();
+                    let work = &|| {
+                        let state = state();
+                        while let Some((k, part)) = next() {
+                            of(&state, k * length, part);
+                        }
+                    };
+                    threads.in_place_scope(|scope| {
+                        (1..self.count()).for_each(|_| scope.spawn(|_| work()));
+                        work();
+                    });
+                }
+                Simulated(simulation) => {
+                    let (state, mut tasks) = (state(), simulation.call());
+                    parts.for_each(|(k, part)| tasks.take(|| of(&state, k * length, part)));
+                }
+            }
         }
     }
 }
@@ -173,6 +257,10 @@ mod serial {
     impl Pool {
         pub(in crate::base) fn new(_: usize) -> Result<Option<Self>, String> {
             Ok(None)
+        }
+
+        pub(in crate::base) fn simulated(_: &crate::base::Simulation) -> Option<Self> {
+            None
         }
 
         pub(in crate::base) fn shuffled(self, _: u64) -> Self {
@@ -215,15 +303,13 @@ mod serial {
             match *self {}
         }
 
-        pub(in crate::base) fn parts<'a, T>(
+        pub(in crate::base) fn in_parts<S, T>(
             &self,
-            _: &'a mut [T],
+            _: &mut [T],
             _: usize,
-        ) -> std::iter::Empty<(usize, &'a mut [T])> {
-            match *self {}
-        }
-
-        pub(in crate::base) fn on_all(&self, _: impl Fn()) {
+            _: impl Fn() -> S,
+            _: impl Fn(&S, usize, &mut [T]),
+        ) {
             match *self {}
         }
     }

@@ -2,10 +2,9 @@
 //! call.
 
 use std::ops::Range;
-use std::sync::Mutex;
 
 use crate::base::pool::Pool;
-use crate::base::{Error, Result, Watch};
+use crate::base::{Error, Result, Simulation, Watch};
 
 /// The least number of items per thread: fewer are done sooner than they are distributed.
 const MIN_PART: usize = 4096;
@@ -44,6 +43,12 @@ impl Threads {
                 .remedy("request fewer threads")
         })?;
         Ok(Self { pool, ..Self::default() })
+    }
+
+    /// Threads whose work the calling thread does, part after part, while the clock of a simulation shows when
+    /// they would have ended. Without the feature `parallel`, a single thread.
+    pub fn simulated(simulation: &Simulation) -> Self {
+        Self { pool: Pool::simulated(simulation), ..Self::default() }
     }
 
     /// Threads that begin the tasks of [`Self::each`], [`Self::in_runs`] and `fill` in an order chosen by
@@ -172,13 +177,6 @@ impl Threads {
         let Some(pool) = self.pool.as_ref().filter(|_| length < out.len()) else {
             return of(&state(), 0, out);
         };
-        let parts = Mutex::new(pool.parts(out, length));
-        let next = || parts.lock().ok()?.next();
-        pool.on_all(|| {
-            let state = state();
-            while let Some((i, out)) = next() {
-                of(&state, i * length, out);
-            }
-        });
+        pool.in_parts(out, length, state, of);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::base::{Error, Point, Result, TetId, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
-use crate::geometry::quality::{ROUGH_EAS_ERROR, rough_eas};
+use crate::geometry::quality::{POSITIVE_EAS, eas_of_each};
 use crate::geometry::tet::FACETS;
 use crate::kernel::complex::Complex;
 use crate::kernel::hold::Hold;
@@ -45,16 +45,16 @@ impl Complex {
         let TetMesh { points, regions, triangles, patches, .. } = mesh;
         let mut tets = mesh.tets.clone();
         let mut joined = Joined::of(&tets, regions, triangles, patches, threads)?;
-        let mut rough = rough_qualities(points, &tets, threads);
+        let mut qualities = measured(points, &tets, threads);
         let (mut n_reversed, mut folded) = (0, Vec::new());
-        if joined.has_same_side || rough.iter().any(|&q| q <= 0.0) {
+        if joined.has_same_side || qualities.iter().any(|&q| q <= 0.0) {
             let across = joined.across();
             let is_reversed =
                 orient(&mut tets, behind(&across), points).map_err(|tet| not_orientable(tet.index()))?;
             n_reversed = is_reversed.iter().filter(|reversed| **reversed).count();
             if n_reversed > 0 {
                 joined = Joined::of(&tets, regions, triangles, patches, threads)?;
-                rough = rough_qualities(points, &tets, threads);
+                qualities = measured(points, &tets, threads);
                 let across = joined.across();
                 folded = orientation::folded(&tets, points, &is_reversed, behind(&across));
             }
@@ -70,7 +70,7 @@ impl Complex {
             walls: Walls::new(joined.walls),
             lines,
             locks: Locks::new(&mesh.fixed_edges),
-            qualities: Qualities::new(rough),
+            qualities: Qualities::new(qualities),
             journal: Journal::default(),
         };
         complex.constrain_walls(mesh);
@@ -97,7 +97,7 @@ impl Complex {
     }
 
     fn has_flat_or_inverted(&self) -> bool {
-        let near_flat = self.tets().filter(|t| self.qualities.rough(*t) <= ROUGH_EAS_ERROR);
+        let near_flat = self.tets().filter(|t| self.quality(*t) < POSITIVE_EAS);
         near_flat.map(|t| self.corners(t)).any(|[a, b, c, d]| orient3d(a, b, c, d) <= 0)
     }
 
@@ -134,8 +134,8 @@ struct Joints {
 /// The number of tets that a thread judges at a time.
 const CHUNK: usize = 1 << 13;
 
-fn rough_qualities(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Vec<f32> {
-    threads.in_runs(tets.len(), CHUNK, |(): &mut (), run| rough_eas(points, &tets[run]))
+fn measured(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Vec<f64> {
+    threads.in_runs(tets.len(), CHUNK, |(): &mut (), run| eas_of_each(points, &tets[run]))
 }
 
 impl Joined {

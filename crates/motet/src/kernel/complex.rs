@@ -2,7 +2,7 @@
 //! what has changed since the first mesh.
 
 use crate::base::{Point, TetId, Threads, VertexId};
-use crate::geometry::quality::{ROUGH_EAS_ERROR, eas};
+use crate::geometry::quality::eas;
 use crate::kernel::hold::Hold;
 use crate::kernel::journal::Journal;
 use crate::kernel::lines::Lines;
@@ -127,29 +127,19 @@ impl Complex {
     /// The quality of a tet: see [`Self::measure`], and [`Self::exempt`] for exempt tets.
     #[inline]
     pub fn quality(&self, tet: TetId) -> f64 {
-        self.qualities.get(tet, || self.measure(self.corners(tet)))
+        self.qualities.get(tet).unwrap_or_else(|| self.measure(self.corners(tet)))
     }
 
-    /// The tets with quality below `bar`, in rising order of id. For tets of the first mesh, the exact
-    /// quality is computed only if the approximate one leaves a doubt.
+    /// The tets with quality below `bar`, in rising order of id.
     pub fn below(&self, bar: f64, threads: &Threads) -> Vec<TetId> {
-        let limit = bar + ROUGH_EAS_ERROR;
-        let is_doubtful = |&t: &TetId| !self.is_original(t) || self.qualities.rough(t) <= limit;
         threads.in_runs(self.tets.n_slots(), SWEEP, |(): &mut (), range| {
-            let all = range.map(TetId::new).filter(is_doubtful);
-            all.filter(|&t| self.is_alive(t) && self.quality(t) < bar).collect()
+            range.map(TetId::new).filter(|&t| self.is_alive(t) && self.quality(t) < bar).collect()
         })
     }
 
     /// The tet with the lowest quality, the first among equals; `None` if there are no tets.
     pub fn worst(&self) -> Option<(TetId, f64)> {
-        let rough = |t: TetId| match self.is_original(t) {
-            true => self.qualities.rough(t),
-            false => self.quality(t),
-        };
-        let lowest = self.tets().map(rough).fold(f64::INFINITY, f64::min);
-        let nearly = self.tets().filter(|&t| rough(t) <= lowest + 2.0 * ROUGH_EAS_ERROR);
-        nearly.map(|t| (t, self.quality(t))).min_by(|x, y| x.1.total_cmp(&y.1))
+        self.tets().map(|t| (t, self.quality(t))).min_by(|x, y| x.1.total_cmp(&y.1))
     }
 
     /// The quality measure: EAS.

@@ -1,12 +1,10 @@
-//! The qualities of tets: measured when they are first requested, and kept.
-//!
-//! Threads that share a complex may measure the same tet at the same time; both then store the same bits.
+//! The qualities of tets.
 
 use std::ops::Range;
 
-use crate::base::{LazyNumber, TetId};
+use crate::base::TetId;
 
-/// The quality of a tet that has not been measured.
+/// The recorded quality of a tet that counted as exempt when it was made.
 const UNMEASURED: f64 = f64::NAN;
 
 /// What an exempt tet counts as: better than any tet.
@@ -15,13 +13,11 @@ pub(super) const EXEMPT: f64 = f64::INFINITY;
 /// The range of qualities of new tets that may be exempt when none may: empty.
 const NONE_EXEMPT: Range<f64> = f64::INFINITY..f64::INFINITY;
 
-/// The quality of each tet as far as it has been measured, and approximate ones of the first mesh.
+/// The quality of each tet.
 #[derive(Clone, Debug)]
 pub(super) struct Qualities {
-    /// [`UNMEASURED`] until the quality is first requested.
-    known: Vec<LazyNumber>,
-    /// Approximate qualities of the tets of the first mesh.
-    rough: Vec<f32>,
+    /// [`UNMEASURED`] for tets that were exempt when they were made.
+    measured: Vec<f64>,
     /// Marks exempt tets; empty if there are none.
     is_exempt: Vec<bool>,
     /// New tets of these qualities are exempt if walls force them.
@@ -31,50 +27,39 @@ pub(super) struct Qualities {
 /// What is recorded of the quality of a tet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct QualityRecord {
-    /// The quality, [`UNMEASURED`] if it has not been requested.
-    known: f64,
+    measured: f64,
     is_exempt: bool,
 }
 
 impl Qualities {
-    /// No quality of these tets is known, but for the approximate ones.
-    pub(super) fn new(rough: Vec<f32>) -> Self {
-        Self {
-            known: vec![LazyNumber::new(UNMEASURED); rough.len()],
-            rough,
-            is_exempt: Vec::new(),
-            exempt_range: NONE_EXEMPT,
-        }
+    /// The qualities of the tets of a mesh; none is exempt.
+    pub(super) fn new(measured: Vec<f64>) -> Self {
+        Self { measured, is_exempt: Vec::new(), exempt_range: NONE_EXEMPT }
     }
 
-    /// What a tet counts as: [`EXEMPT`] if it is exempt, otherwise its quality, from `measure` if it is not
-    /// known yet.
+    /// What a tet counts as: [`EXEMPT`] if it is exempt, otherwise its quality; `None` if that has not been
+    /// measured.
     #[inline]
-    pub(super) fn get(&self, tet: TetId, measure: impl FnOnce() -> f64) -> f64 {
+    pub(super) fn get(&self, tet: TetId) -> Option<f64> {
         if self.is_exempt(tet) {
-            return EXEMPT;
+            return Some(EXEMPT);
         }
-        let known = &self.known[tet.index()];
-        let mut quality = known.get();
-        if quality.is_nan() {
-            quality = measure();
-            known.set(quality);
-        }
-        quality
+        let quality = self.measured[tet.index()];
+        (!quality.is_nan()).then_some(quality)
     }
 
     /// What is recorded of a tet.
     #[inline]
     pub(super) fn record(&self, tet: TetId) -> QualityRecord {
-        QualityRecord { known: self.known[tet.index()].get(), is_exempt: self.is_exempt(tet) }
+        QualityRecord { measured: self.measured[tet.index()], is_exempt: self.is_exempt(tet) }
     }
 
     /// Sets what is recorded of a tet; a slot beyond the last one is added.
     #[inline]
-    pub(super) fn restore(&mut self, tet: TetId, QualityRecord { known, is_exempt }: QualityRecord) {
-        match self.known.get_mut(tet.index()) {
-            Some(slot) => slot.set(known),
-            None => self.known.push(LazyNumber::new(known)),
+    pub(super) fn restore(&mut self, tet: TetId, QualityRecord { measured, is_exempt }: QualityRecord) {
+        match self.measured.get_mut(tet.index()) {
+            Some(slot) => *slot = measured,
+            None => self.measured.push(measured),
         }
         if is_exempt || !self.is_exempt.is_empty() {
             self.mark(tet, is_exempt);
@@ -85,8 +70,8 @@ impl Qualities {
     #[inline]
     pub(super) fn set(&mut self, tet: TetId, counts_as: f64) {
         let is_exempt = counts_as == EXEMPT;
-        let known = if is_exempt { UNMEASURED } else { counts_as };
-        self.restore(tet, QualityRecord { known, is_exempt });
+        let measured = if is_exempt { UNMEASURED } else { counts_as };
+        self.restore(tet, QualityRecord { measured, is_exempt });
     }
 
     /// Notes that a tet is removed: its slot is not exempt.
@@ -99,16 +84,10 @@ impl Qualities {
 
     /// Marks a tet as exempt or not.
     fn mark(&mut self, tet: TetId, is_exempt: bool) {
-        if self.is_exempt.len() < self.known.len() {
-            self.is_exempt.resize(self.known.len(), false);
+        if self.is_exempt.len() < self.measured.len() {
+            self.is_exempt.resize(self.measured.len(), false);
         }
         self.is_exempt[tet.index()] = is_exempt;
-    }
-
-    /// The approximate quality of a tet of the first mesh.
-    #[inline]
-    pub(super) fn rough(&self, tet: TetId) -> f64 {
-        f64::from(self.rough[tet.index()])
     }
 
     /// Exempts `tets`, and allows new tets of qualities in `range` to be exempt.
@@ -142,7 +121,7 @@ impl Qualities {
 
     /// Drops all tets from the `n`-th.
     pub(super) fn truncate(&mut self, n: usize) {
-        self.known.truncate(n);
+        self.measured.truncate(n);
         self.is_exempt.truncate(n);
     }
 }

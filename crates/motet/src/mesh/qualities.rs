@@ -1,7 +1,7 @@
 //! Quality statistics over all tets of a mesh: what the worst tet alone does not show.
 
 use crate::base::{Point, Threads, VertexId};
-use crate::geometry::quality::{eas, mean_ratio};
+use crate::geometry::quality::for_each_quality;
 use crate::geometry::vector::in_range;
 use crate::mesh::{Mesh, OrientedTets};
 
@@ -26,6 +26,9 @@ pub struct Qualities {
     pub mean_ratio: f64,
 }
 
+/// The number of tets that a thread judges at a time.
+const CHUNK: usize = 1 << 13;
+
 impl Default for Qualities {
     fn default() -> Self {
         Self { worst: 1.0, p1: 1.0, p5: 1.0, median: 1.0, mean: 1.0, mean_ratio: 1.0 }
@@ -35,11 +38,17 @@ impl Default for Qualities {
 impl Qualities {
     /// The statistics of `tets` with vertices at `points`.
     pub fn of(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Self {
-        let of_tet = |i: usize| {
-            let corners = tets[i].map(|v| points[v.index()]);
-            (eas(corners), mean_ratio(corners))
-        };
-        let (mut eas, ratios): (Vec<f64>, Vec<f64>) = threads.map(tets.len(), of_tet).into_iter().unzip();
+        let mut eas = vec![0.0; tets.len()];
+        let ratios = threads.each(eas.chunks_mut(CHUNK).zip(tets.chunks(CHUNK)).collect(), |(eas, tets)| {
+            let (mut places, mut ratios) = (eas.iter_mut(), 0.0);
+            for_each_quality(points, tets, |eas, ratio| {
+                if let Some(place) = places.next() {
+                    *place = eas;
+                }
+                ratios += ratio;
+            });
+            ratios
+        });
         Self::of_values(&mut eas, ratios.iter().sum()).unwrap_or_default()
     }
 
@@ -74,6 +83,7 @@ impl Qualities {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::quality::eas;
     use crate::mesh::shapes::sphere_in_box;
     use crate::mesh::{CellKind, Cells};
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::base::{CellId, Point, Threads};
-use crate::geometry::quality::{ROUGH_EAS_ERROR, eas, rough_eas};
+use crate::geometry::quality::{POSITIVE_EAS, eas, eas_of_each};
 use crate::geometry::tet;
 use crate::mesh::{Mesh, OrientedTets, Qualities, is_inverted};
 use crate::motion::Mover;
@@ -22,7 +22,7 @@ pub(super) struct Shape {
     pub(super) worst: Option<(CellId, f64, Point)>,
     /// How many tets are flat or inverted.
     pub(super) inverted: usize,
-    /// The sum of the [defects](defect) of all tets, by approximate EAS.
+    /// The sum of the [defects](defect) of all tets.
     pub(super) defects: f64,
 }
 
@@ -51,8 +51,7 @@ impl Tets {
         Shape { bad: shape.bad.iter().copied().filter(is_bad).collect(), ..*shape }
     }
 
-    /// The shape with the vertices at `points`. The exact EAS is computed only if an approximate one leaves a
-    /// doubt.
+    /// The shape with the vertices at `points`.
     pub(super) fn shape(&self, points: &[Point], limit: f64, threads: &Threads) -> Shape {
         let chunks: Vec<usize> = (0..self.len()).step_by(CHUNK).collect();
         let look = |start: usize| self.look(start..(start + CHUNK).min(self.len()), points, limit);
@@ -108,21 +107,19 @@ impl Tets {
 
     fn look(&self, range: std::ops::Range<usize>, points: &[Point], limit: f64) -> Shape {
         let corners = &self.0.tets[range.clone()];
-        let rough = rough_eas(points, corners);
-        let lowest = rough.iter().copied().fold(f32::INFINITY, f32::min);
-        let doubtful = (limit + ROUGH_EAS_ERROR).max(f64::from(lowest) + 2.0 * ROUGH_EAS_ERROR);
-        let defects = rough.iter().map(|&q| defect(f64::from(q).max(0.0))).sum();
-        let mut shape = Shape { defects, ..Shape::default() };
-        for (i, tet) in
-            range.zip(corners).zip(&rough).filter(|(_, r)| f64::from(**r) <= doubtful).map(|(t, _)| t)
-        {
-            let place = tet.map(|v| points[v.index()]);
-            let (cell, quality) = (self.0.cells[i], eas(place));
+        let mut shape = Shape::default();
+        for ((i, tet), quality) in range.zip(corners).zip(eas_of_each(points, corners)) {
+            shape.defects += defect(quality.max(0.0));
+            let is_worst = shape.worst.is_none_or(|(_, worst, _)| quality < worst);
+            if !is_worst && quality >= limit.max(POSITIVE_EAS) {
+                continue;
+            }
+            let (cell, place) = (self.0.cells[i], tet.map(|v| points[v.index()]));
             if quality < limit {
                 shape.bad.push((cell, quality));
             }
-            shape.inverted += usize::from(is_inverted(place));
-            if shape.worst.is_none_or(|(_, worst, _)| quality < worst) {
+            shape.inverted += usize::from(quality < POSITIVE_EAS && is_inverted(place));
+            if is_worst {
                 shape.worst = Some((cell, quality, tet::centroid(place)));
             }
         }
@@ -149,7 +146,7 @@ mod tests {
     use crate::mesh::shapes::sphere_in_box;
 
     #[test]
-    fn a_rough_look_finds_what_a_close_one_does() {
+    fn the_shape_is_that_of_each_tet() {
         let mut mesh = sphere_in_box(4, 4);
         for (i, p) in mesh.points.iter_mut().enumerate() {
             (0..3).for_each(|k| p[k] += 0.35 * ((7 * i + 3 * k) as f64).sin());

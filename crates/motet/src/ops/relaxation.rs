@@ -1,7 +1,7 @@
 //! Relaxation: a vertex is moved to where its tets are better as a whole, with none bad.
 
 use crate::base::{Point, TetId, VertexId};
-use crate::geometry::quality::{ROUGH_EAS_ERROR, RoughStar};
+use crate::geometry::quality::EasStar;
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
 use crate::kernel::{Change, Complex, VertexChange};
 use crate::ops::Track;
@@ -49,7 +49,7 @@ pub struct Relaxation {
 /// The tets of a star in one pose.
 #[derive(Clone, Debug, Default)]
 struct View {
-    star: RoughStar,
+    star: EasStar,
     qualities: Vec<f64>,
     tried: Vec<f64>,
 }
@@ -96,8 +96,7 @@ impl Relaxation {
     /// position of each vertex in another pose, the sum of the defects there counts as much. Returns `false`
     /// if no position was found.
     ///
-    /// Steps down the gradient; only the final qualities are exact, and those in the other pose not even
-    /// then.
+    /// Steps down the gradient; qualities in the other pose are approximate.
     pub fn propose(
         &mut self,
         (complex, pose): (&Complex, Option<impl Fn(VertexId) -> Point>),
@@ -122,12 +121,11 @@ impl Relaxation {
             }
         }
         let floor = reach.floor;
-        let rough = Reach { floor: floor - ROUGH_EAS_ERROR, ..reach };
-        if self.descend(complex, star, vertex, rough, track) < reach.gain {
+        if self.descend(complex, star, vertex, reach, track) < reach.gain {
             return false;
         }
         let before: f64 = star.iter().map(|&t| defect(complex.quality(t))).sum();
-        // If an exact quality is not above the floor, tries the previous position.
+        // If a quality is not above the floor after all, by rounding, tries the previous position.
         while let Some(place) = self.places.pop() {
             change.vertex = VertexChange::Move(vertex, place);
             change.fill.clear();

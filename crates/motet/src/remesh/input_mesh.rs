@@ -1,7 +1,7 @@
 //! The mesh as it was given: finds the tet that held a point, and interpolates values at its vertices.
 
-use crate::base::{LazyNumber, Point, TetId, Threads, VertexId};
-use crate::geometry::quality::eas;
+use crate::base::{Point, TetId, Threads, VertexId};
+use crate::geometry::quality::{eas, eas_of_each};
 use crate::geometry::vector::{add, dot, scale, sub};
 use crate::geometry::weights;
 use crate::kernel::{Complex, VertexChange};
@@ -83,9 +83,12 @@ pub(super) struct Pose {
     input_points: Vec<Point>,
     /// Position in this pose of each vertex of the mesh as it is now.
     points: Vec<Point>,
-    /// EAS of each tet; NaN until it is first requested.
-    qualities: Vec<LazyNumber>,
+    /// EAS of each tet.
+    qualities: Vec<f64>,
 }
+
+/// The number of tets that a thread judges at a time.
+const CHUNK: usize = 1 << 13;
 
 impl Pose {
     /// A pose in which each vertex of the given mesh is at `input_points`.
@@ -96,8 +99,12 @@ impl Pose {
     /// Updates the pose after any number of changes.
     pub(super) fn update(&mut self, complex: &Complex, input: &InputMesh, threads: &Threads) {
         self.points = threads.map(complex.n_vertex_slots(), |v| self.place(complex, input, VertexId::new(v)));
-        self.qualities.clear();
-        self.qualities.resize(complex.n_slots(), LazyNumber::new(f64::NAN));
+        self.qualities = threads.in_runs(complex.n_slots(), CHUNK, |(): &mut (), run| {
+            // Free slots hold no tet.
+            let vertices =
+                |tet: TetId| if complex.is_alive(tet) { complex.vertices(tet) } else { [VertexId(0); 4] };
+            eas_of_each(&self.points, &run.map(TetId::new).map(vertices).collect::<Vec<_>>())
+        });
     }
 
     /// Updates the pose after one change that inserted these tets.
@@ -111,8 +118,10 @@ impl Pose {
         if let VertexChange::Move(vertex, _) = vertex {
             self.points[vertex.index()] = self.place(complex, input, vertex);
         }
-        self.qualities.resize(complex.n_slots(), LazyNumber::new(f64::NAN));
-        inserted.iter().for_each(|tet| self.qualities[tet.index()].set(f64::NAN));
+        self.qualities.resize(complex.n_slots(), 0.0);
+        for &tet in inserted {
+            self.qualities[tet.index()] = eas(complex.vertices(tet).map(|v| self.point(v)));
+        }
     }
 
     /// The position of a vertex in this pose.
@@ -123,12 +132,8 @@ impl Pose {
 
     /// EAS of a tet in this pose.
     #[inline]
-    pub(super) fn quality(&self, complex: &Complex, tet: TetId) -> f64 {
-        let known = &self.qualities[tet.index()];
-        if known.get().is_nan() {
-            known.set(eas(complex.vertices(tet).map(|v| self.point(v))));
-        }
-        known.get()
+    pub(super) fn quality(&self, tet: TetId) -> f64 {
+        self.qualities[tet.index()]
     }
 
     /// The position of a vertex in this pose: one that was inserted or moved is interpolated in the tet of

@@ -4,6 +4,10 @@ use crate::base::Point;
 use crate::geometry::quality::equiangle_skew::skew;
 use crate::geometry::quality::scaled::Scaled;
 
+/// A tet with this EAS or more is positive by exact signs. Its angles and those of its facets exceed 1e-3, so
+/// six times its volume exceeds 1e-9 times the product of three edges, whose rounding error is about 1e-15.
+pub const POSITIVE_EAS: f64 = 1e-3;
+
 /// `sign(volume) (1 - skew)` with [`equiangle_skew`](super::equiangle_skew):
 /// 1 regular, 0 degenerate, negative inverted. A tet is *bad* below 0.2.
 pub fn eas(tet: [Point; 4]) -> f64 {

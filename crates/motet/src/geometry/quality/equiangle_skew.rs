@@ -10,7 +10,7 @@
 //!    3     a c b      ac         ab         bc
 //! ```
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_PI_3, PI};
 
 use pulp::NullaryFnOnce;
 
@@ -18,7 +18,7 @@ use crate::base::Point;
 use crate::base::four::{FourLanes, FourVectors, Plain, cross, dot, sub};
 #[cfg(target_arch = "x86_64")]
 use crate::base::four::{Wide, wide_machine};
-use crate::geometry::quality::cotangents::angle;
+use crate::geometry::quality::angles::angles;
 use crate::geometry::quality::dihedral::REGULAR;
 use crate::geometry::quality::scaled::Scaled;
 
@@ -130,79 +130,38 @@ fn ratio<F: FourLanes>(machine: F::Machine, cosine: F, sine: F) -> F {
     (cosine / sine).or_if_nan(F::splat(machine, f64::INFINITY))
 }
 
+/// Skew per angle above and below the regular one, of a dihedral angle and a face angle.
+pub(super) const ABOVE: [f64; 2] = [1.0 / (PI - REGULAR), 1.0 / (PI - FRAC_PI_3)];
+pub(super) const BELOW: [f64; 2] = [-1.0 / REGULAR, -1.0 / FRAC_PI_3];
+
 /// The largest skew, from the extreme values of `cot |cot|`: the least and largest of the dihedral angles
 /// (times the square of `size`, six times the volume), then those of the face angles.
 #[inline(always)]
 fn worst<F: FourLanes>(machine: F::Machine, squares: [f64; 4], size: f64) -> f64 {
     const REGULARS: [f64; 4] = [REGULAR, REGULAR, FRAC_PI_3, FRAC_PI_3];
-    const REACHES: [f64; 4] = [PI - REGULAR, 0.0 - REGULAR, PI - FRAC_PI_3, 0.0 - FRAC_PI_3];
-    const PER_REACH: [f64; 4] = [1.0 / REACHES[0], 1.0 / REACHES[1], 1.0 / REACHES[2], 1.0 / REACHES[3]];
+    const PER_REACH: [f64; 4] = [ABOVE[0], BELOW[0], ABOVE[1], BELOW[1]];
     let squares = F::load(machine, &squares);
     let cotangents = signed_root(machine, squares) / F::load(machine, &[size, size, 1.0, 1.0]);
-    let nearly =
-        (rough_angle::<F>(machine, cotangents) - F::load(machine, &REGULARS)) * F::load(machine, &PER_REACH);
-    let (nearly, cotangents) = (nearly.stored(), cotangents.stored());
-    // Exact angles take most of the time, and only one of the four decides.
-    let mut largest = 0.0;
-    for term in nearly {
-        largest = if term > largest { term } else { largest };
-    }
-    let mut skew = 0.0f64;
-    for i in 0..4 {
-        if nearly[i] >= largest - 2.0 * ROUGHNESS {
-            skew = skew.max((angle(cotangents[i]) - REGULARS[i]) / REACHES[i]);
-        }
-    }
-    skew
+    let off = angles::<F>(machine, cotangents) - F::load(machine, &REGULARS);
+    (off * F::load(machine, &PER_REACH)).max(F::splat(machine, 0.0)).max_lane()
 }
 
 /// `x |x|`: has the order of x, and saves square roots until the extremes are known.
 #[inline(always)]
-fn signed_square<F: FourLanes>(x: F) -> F {
+pub(super) fn signed_square<F: FourLanes>(x: F) -> F {
     x * x.abs()
 }
 
 #[inline(always)]
-fn signed_root<F: FourLanes>(machine: F::Machine, x: F) -> F {
+pub(super) fn signed_root<F: FourLanes>(machine: F::Machine, x: F) -> F {
     let root = x.abs().sqrt();
     x.select_positive(root, F::splat(machine, 0.0) - root)
-}
-
-/// More than the effect on a skew of the error of [`rough_angle`], 0.004.
-const ROUGHNESS: f64 = 0.005;
-
-/// The angles with these cotangents, accurate to 0.004: `atan x` is about `x (pi / 4 + 0.273 (1 - |x|))` in
-/// [-1, 1] (Rajan, Wang, Inkol, Joyal 2006).
-#[inline(always)]
-fn rough_angle<F: FourLanes>(machine: F::Machine, cotangent: F) -> F {
-    let (zero, one) = (F::splat(machine, 0.0), F::splat(machine, 1.0));
-    let outside = cotangent.abs() - one;
-    let x = outside.select_positive(one / cotangent, cotangent);
-    let arc = x * (F::splat(machine, FRAC_PI_4) + F::splat(machine, 0.273) * (one - x.abs()));
-    let of_negative = (zero - cotangent).select_positive(F::splat(machine, PI), zero);
-    outside.select_positive(of_negative + arc, F::splat(machine, FRAC_PI_2) - arc)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
-
-    fn is_roughly(angle: f64) -> bool {
-        let cotangent = Plain::splat((), angle.cos() / angle.sin());
-        rough_angle::<Plain>((), cotangent).stored().iter().all(|rough| (rough - angle).abs() < 0.004)
-    }
-
-    #[test]
-    fn rough_angles_are_as_good_as_they_are_said_to_be() {
-        for i in 0..=100_000 {
-            let exact = PI * f64::from(i) / 100_000.0;
-            assert!(is_roughly(exact), "{exact}");
-        }
-        const { assert!(0.004 / FRAC_PI_3 < ROUGHNESS) }
-        let limits = Plain::load((), &[f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, 0.0]);
-        assert_eq!(rough_angle::<Plain>((), limits).stored(), [0.0, PI, 0.0, FRAC_PI_2]);
-    }
 
     /// The skew by its definition, from all angles, one by one.
     fn by_definition(tet: [Point; 4]) -> f64 {

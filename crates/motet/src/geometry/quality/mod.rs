@@ -11,21 +11,22 @@
 //!
 //! Every measure is finite for every tet of finite points.
 
+mod angles;
 mod cotangents;
 mod cubit_mean_ratio;
 pub mod dihedral;
 mod eas;
 mod edge_ratio;
 mod equiangle_skew;
+mod many;
 mod mean_ratio;
-mod rough_eas;
 mod scaled;
 mod volume;
 
 pub use cubit_mean_ratio::cubit_mean_ratio;
-pub use eas::eas;
+pub use eas::{POSITIVE_EAS, eas};
 pub use edge_ratio::edge_ratio;
 pub use equiangle_skew::equiangle_skew;
+pub use many::{EasStar, eas_of_each, for_each_quality};
 pub use mean_ratio::mean_ratio;
-pub use rough_eas::{ROUGH_EAS_ERROR, RoughStar, rough_eas};
 pub use volume::volume;

@@ -15,7 +15,7 @@ use pulp::NullaryFnOnce;
 use crate::base::four::Wide;
 use crate::base::four::{FourLanes, Plain};
 use crate::base::{Csr, Point, Threads, VertexId};
-use crate::geometry::quality::{ROUGH_EAS_ERROR, eas, rough_eas};
+use crate::geometry::quality::eas_of_each;
 use crate::geometry::vector::{add, norm, scale};
 use crate::motion::certificate::BAD_EAS;
 use crate::motion::corners::CornerTets;
@@ -78,11 +78,10 @@ impl Smoother {
     fn vertices_to_move(&self, tets: &[[VertexId; 4]], points: &[Point], threads: &Threads) -> Vec<ToMove> {
         let mut listed = threads.in_runs(tets.len(), CHUNK, |_: &mut (), run| {
             let mut found = Vec::new();
-            for (tet, rough) in tets[run.clone()].iter().zip(rough_eas(points, &tets[run])) {
-                if f64::from(rough) < FADE_EAS + ROUGH_EAS_ERROR {
-                    let corners = tet.map(|v| points[v.index()]);
-                    let freedom = ((FADE_EAS - eas(corners)) / (FADE_EAS - BAD_EAS)).clamp(0.0, 1.0);
-                    let may_move = tet.iter().filter(|v| freedom > 0.0 && self.may_move[v.index()]);
+            for (tet, eas) in tets[run.clone()].iter().zip(eas_of_each(points, &tets[run])) {
+                if eas < FADE_EAS {
+                    let freedom = ((FADE_EAS - eas) / (FADE_EAS - BAD_EAS)).clamp(0.0, 1.0);
+                    let may_move = tet.iter().filter(|v| self.may_move[v.index()]);
                     found.extend(may_move.map(|&vertex| ToMove { vertex, freedom }));
                 }
             }

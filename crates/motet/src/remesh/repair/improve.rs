@@ -66,7 +66,7 @@ impl<'a> CostModel<'a> {
 
     /// The cost of an existing tet.
     fn of_tet(&self, complex: &Complex, tet: TetId) -> f64 {
-        self.of(complex.quality(tet), self.pose.map(|pose| pose.quality(complex, tet)))
+        self.of(complex.quality(tet), self.pose.map(|pose| pose.quality(tet)))
     }
 
     /// The cost of a tet with these qualities in the current and the other pose: the sum of its defects.
@@ -113,7 +113,7 @@ impl<'a> CostModel<'a> {
     fn set_bars(&mut self, complex: &Complex, cavity: &[TetId]) {
         let bar = |worst: f64| worst.min(self.aim.floor).next_down();
         let worst_in_pose =
-            |pose: &Pose| cavity.iter().map(|&t| pose.quality(complex, t)).fold(f64::INFINITY, f64::min);
+            |pose: &Pose| cavity.iter().map(|&t| pose.quality(t)).fold(f64::INFINITY, f64::min);
         self.bars = [bar(complex.worst_of(cavity)), bar(self.pose.map_or(f64::NEG_INFINITY, worst_in_pose))];
     }
 }
