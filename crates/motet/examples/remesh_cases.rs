@@ -5,7 +5,7 @@
 //! edges brought to a size at each step; `sphere FILE` writes a mesh of the channel after motion, for
 //! docs/pictures.py
 
-#[path = "../tests/moving_cases/mod.rs"]
+#[path = "../tests/remesh/moving_cases/mod.rs"]
 #[allow(dead_code, unreachable_pub, reason = "tests share it, and use other parts of it")]
 mod moving_cases;
 

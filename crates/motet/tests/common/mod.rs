@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 pub(crate) mod adaptation;
+pub(crate) mod cad;
 pub(crate) mod criteria;
 pub(crate) mod devices;
 pub(crate) mod editor;

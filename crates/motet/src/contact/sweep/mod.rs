@@ -51,7 +51,7 @@ pub struct Sweep {
 ///
 /// Two balls of 50,000 triangles each take 0.3 s for a motion by the end of which 600 triangles touch, and 3
 /// s if they pass through each other and nearly all do (one thread of a busy machine; the measurement is in
-/// `tests/contact_sweep.rs`).
+/// `tests/contact/sweep.rs`).
 ///
 /// Pairs that share a vertex are always in touch and left out, as are those that `admit` rejects, and
 /// triangles with a corner or a velocity that is not finite. The result depends neither on the number of

@@ -7,7 +7,7 @@
 //! that of these points, so it is too small by no more than rounding. It is too large by at most about 1e-15
 //! of the *extent*, the size of both primitives together, whatever their shape: needles, parallel edges,
 //! segments and triangles that are points. (Of 20,000 hard pairs of each kind the worst was off by 3.4e-16 of
-//! it; `tests/distance.rs` prints it.)
+//! it; `tests/geometry/distance.rs` prints it.)
 //! There is no tolerance in units of length. Coordinates are taken relative to one of the points and in units
 //! of a power of two near the extent, so results do not depend on the unit of length or on the origin; sizes
 //! from 1e-150 to 1e150 are supported. Coordinates must be finite.

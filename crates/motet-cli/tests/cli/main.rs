@@ -1,0 +1,16 @@
+//! The program `motet`, called as a user or a script calls it.
+
+mod bad_input;
+mod common;
+mod contact;
+mod contract;
+mod hostile;
+mod implant;
+mod meshing;
+mod moving;
+mod moving_slide;
+mod quality;
+mod refine;
+mod remesh;
+mod report;
+mod run;

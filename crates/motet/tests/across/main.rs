@@ -1,0 +1,5 @@
+//! What all modules have in common: counts, refused numbers, calls that are watched.
+
+mod counts;
+mod refused_numbers;
+mod watch;

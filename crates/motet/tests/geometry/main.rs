@@ -1,0 +1,6 @@
+//! Geometry of points, triangles and tets: distances, shared volumes, quality.
+
+mod distance;
+mod distance_oracle;
+mod overlap;
+mod quality;

@@ -1,0 +1,9 @@
+//! Volume meshes of surfaces.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod divide;
+mod layers;
+mod sizes_and_regions;
+mod voids;
