@@ -1,4 +1,5 @@
-//! Several threads simulated on one: what a machine with more cores could gain, from the seconds of each task.
+//! Several threads simulated on one: what a machine with more cores could gain, from the seconds of each
+//! task.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -45,8 +45,8 @@ impl Threads {
         Ok(Self { pool, ..Self::default() })
     }
 
-    /// Threads whose work the calling thread does, part after part, while the clock of a simulation shows when
-    /// they would have ended. Without the feature `parallel`, a single thread.
+    /// Threads whose work the calling thread does, part after part, while the clock of a simulation shows
+    /// when they would have ended. Without the feature `parallel`, a single thread.
     pub fn simulated(simulation: &Simulation) -> Self {
         Self { pool: Pool::simulated(simulation), ..Self::default() }
     }

@@ -23,8 +23,8 @@ const ARCTANGENT: [f64; 11] = [
 /// The angles in [0, pi] with these cotangents, which may be infinite: within two units in the last place of
 /// the angle, or of the angle to pi where that is smaller.
 ///
-/// With `s` the size of the cotangent, the acute angle is `atan(1 / s)`, `pi / 4 - atan((s - 1) / (s + 1))` or
-/// `pi / 2 - atan s`, whichever needs the arctangent of the smallest number (Hart et al. 1968, chapter 6).
+/// With `s` the size of the cotangent, the acute angle is `atan(1 / s)`, `pi / 4 - atan((s - 1) / (s + 1))`
+/// or `pi / 2 - atan s`, whichever needs the arctangent of the smallest number (Hart et al. 1968, chapter 6).
 #[inline(always)]
 pub(super) fn angles<F: FourLanes>(machine: F::Machine, cotangents: F) -> F {
     let (zero, one) = (F::splat(machine, 0.0), F::splat(machine, 1.0));
