@@ -156,7 +156,7 @@ impl Console {
     /// Prints what simulated threads would have saved, on standard error, even with `--quiet`.
     pub(crate) fn saved_by(&self, simulation: &Simulation) {
         let (n, saved) = (simulation.count(), simulation.saved().as_secs_f64());
-        let _ = writeln!(io::stderr(), "{n} threads would have saved {saved:.3} s");
+        let _ = writeln!(io::stderr(), "simulated threads: {n}; saved: {saved:.3} s");
     }
 
     /// Prints an error on standard error.

@@ -1,10 +1,10 @@
 //! Triangulates points from a file and prints how long it took.
 //!
-//! Usage: `delaunay FILE [--threads N] [--simulate-threads N] [--runs N] [--tets OUT]`. FILE holds x y z of each point as
-//! little-endian `f64`; OUT gets the four vertex ids of each tet as little-endian `u32`. Prints one line of
-//! JSON: `{"seconds": [one for each run], "tets": .., "threads": .., "version": ".."}`. The time includes
-//! sorting, building and making the output arrays, but not reading and writing; with `--simulate-threads`, it is
-//! what so many threads would take, by the times of their tasks on one.
+//! Usage: `delaunay FILE [--threads N] [--simulate-threads N] [--runs N] [--tets OUT]`. FILE holds x y z of
+//! each point as little-endian `f64`; OUT gets the four vertex ids of each tet as little-endian `u32`. Prints
+//! one line of JSON: `{"seconds": [one for each run], "tets": .., "threads": .., "version": ".."}`. The time
+//! includes sorting, building and making the output arrays, but not reading and writing; with
+//! `--simulate-threads`, it is what so many threads would take, by the times of their tasks on one.
 
 use std::process::ExitCode;
 use std::time::Instant;

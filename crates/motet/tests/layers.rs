@@ -296,3 +296,27 @@ fn names_of_modules_say_what_is_in_them() {
     }
     assert!(found.is_empty(), "\n{}", found.join("\n"));
 }
+
+/// A file beside the `main.rs` of a program of tests that no `mod` line names is not compiled.
+#[test]
+fn every_file_of_tests_is_compiled() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the crate lies in `crates`");
+    let mut missing = Vec::new();
+    let mut n_programs = 0;
+    for name in ["motet", "motet-cli", "motet-report"] {
+        for folder in fs::read_dir(crates.join(name).join("tests")).expect("the folder of tests is readable")
+        {
+            let folder = folder.expect("the entry is readable").path();
+            let Ok(main) = fs::read_to_string(folder.join("main.rs")) else { continue };
+            n_programs += 1;
+            for entry in fs::read_dir(&folder).expect("the folder is readable") {
+                let path = entry.expect("the entry is readable").path();
+                let stem = path.file_stem().expect("a file has a name").to_string_lossy().into_owned();
+                if stem != "main" && !main.lines().any(|line| line == format!("mod {stem};")) {
+                    missing.push(path.display().to_string());
+                }
+            }
+        }
+    }
+    assert!(missing.is_empty() && n_programs > 10, "{n_programs} programs; no `mod` line for {missing:?}");
+}

@@ -14,7 +14,7 @@ use motet::geometry::vector::{norm, sub};
 use motet::implant::{Device, Inside, Options as Implanting, implant};
 use motet::mesh::history::{History, Rules};
 use motet::mesh::shapes::{ball, sphere_in_box};
-use motet::mesh::{CellKind, Cells, Field, OrientedTets, Surface};
+use motet::mesh::{CellKind, Cells, Field, OrientedTets, Qualities, Surface};
 use motet::meshing::layers::{Layers, Stack};
 use motet::meshing::{Options as Filling, Sizes, Surfaces, fill};
 use motet::motion::{MethodName, Motion, Mover, Strain};
@@ -166,14 +166,14 @@ fn acts(random: &mut Random) -> Vec<Act> {
 struct Left {
     mesh: Mesh,
     fractions: Vec<f64>,
-    worst: Vec<f64>,
+    qualities: Vec<Qualities>,
     histories: Vec<Arc<History>>,
 }
 
 impl Left {
     fn step(&mut self, step: Step) {
         self.fractions.push(step.fraction);
-        self.worst.push(step.quality.worst);
+        self.qualities.push(step.quality);
         self.changes(step.changes);
     }
 

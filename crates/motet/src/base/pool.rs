@@ -60,6 +60,7 @@ mod parallel {
                 .map_err(|e| e.to_string())
         }
 
+        /// Threads of a simulation; `None` if a pool has no use.
         pub(in crate::base) fn simulated(simulation: &Simulation) -> Option<Self> {
             (simulation.count() > 1).then(|| Self { workers: Simulated(simulation.clone()), disorder: None })
         }

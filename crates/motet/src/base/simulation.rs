@@ -30,11 +30,14 @@ struct Clock {
     saved: AtomicU64,
 }
 
+/// The largest number of simulated threads.
+const MOST: usize = 4096;
+
 impl Simulation {
-    /// A clock for `n_threads` threads; at least one.
+    /// A clock for `n_threads` threads, but at least one and at most 4096.
     pub fn new(n_threads: usize) -> Self {
         Self(Arc::new(Clock {
-            n_threads: n_threads.max(1),
+            n_threads: n_threads.clamp(1, MOST),
             origin: Instant::now(),
             saved: AtomicU64::new(0),
         }))
@@ -138,6 +141,7 @@ mod tests {
             tasks.take(|| busy(5));
         }
         assert_eq!(simulation.count(), 1);
+        assert_eq!(Simulation::new(usize::MAX).count(), MOST);
         assert!(simulation.now() >= Duration::from_millis(10));
     }
 }

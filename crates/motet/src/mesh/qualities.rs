@@ -38,18 +38,16 @@ impl Default for Qualities {
 impl Qualities {
     /// The statistics of `tets` with vertices at `points`.
     pub fn of(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Self {
-        let mut eas = vec![0.0; tets.len()];
-        let ratios = threads.each(eas.chunks_mut(CHUNK).zip(tets.chunks(CHUNK)).collect(), |(eas, tets)| {
-            let (mut places, mut ratios) = (eas.iter_mut(), 0.0);
+        let parts = threads.each(tets.chunks(CHUNK).collect(), |tets| {
+            let (mut all_eas, mut ratios) = (Vec::with_capacity(tets.len()), 0.0);
             for_each_quality(points, tets, |eas, ratio| {
-                if let Some(place) = places.next() {
-                    *place = eas;
-                }
+                all_eas.push(eas);
                 ratios += ratio;
             });
-            ratios
+            (all_eas, ratios)
         });
-        Self::of_values(&mut eas, ratios.iter().sum()).unwrap_or_default()
+        let (eas, ratios): (Vec<Vec<f64>>, Vec<f64>) = parts.into_iter().unzip();
+        Self::of_values(&mut eas.concat(), ratios.iter().sum()).unwrap_or_default()
     }
 
     /// The statistics of the linear and quadratic tets of a mesh (of quadratic ones, by their corners), as

@@ -10,7 +10,7 @@ use motet::mesh::tet_facets::tet_neighbors;
 use motet::mesh::{Boundary, CellKind, Cells, cell_volumes, cone_volume};
 use proptest::prelude::*;
 
-const HEX: [Point; 8] = [
+pub(crate) const HEX: [Point; 8] = [
     [0., 0., 0.],
     [1., 0., 0.],
     [1., 1., 0.],

@@ -1,21 +1,11 @@
 //! Defects: none in the built-in shapes; each inserted one is found by name and place.
 
+use crate::adjacency::HEX as CUBE;
 use motet::Mesh;
 use motet::base::{CellId, Point, VertexId};
 use motet::mesh::check::{DefectKind, check, is_conforming};
 use motet::mesh::shapes::{TubeOptions, WallCells, ball, box_grid, mixed, quadratic, sphere_in_box, tube};
 use motet::mesh::{CellKind, Cells, Summary};
-
-const CUBE: [Point; 8] = [
-    [0., 0., 0.],
-    [1., 0., 0.],
-    [1., 1., 0.],
-    [0., 1., 0.],
-    [0., 0., 1.],
-    [1., 0., 1.],
-    [1., 1., 1.],
-    [0., 1., 1.],
-];
 
 fn mesh(points: &[Point], cells: &[(CellKind, &[u32])]) -> Mesh {
     let mut list = Cells::new();

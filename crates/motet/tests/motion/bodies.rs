@@ -1,8 +1,8 @@
 //! Motion carried by rigid bodies: rotations, shifts, several bodies, non-rigid motion, bad input.
 
+use crate::stepped::{mover, n_inverted, step};
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
-use motet::geometry::tet::volume;
 use motet::geometry::vector::{add, distance, norm, sub};
 use motet::mesh::shapes::{box_grid, sphere_in_box};
 use motet::mesh::{Boundary, CellKind, Cells, Field};
@@ -10,29 +10,6 @@ use motet::motion::{Elastic, Extent, FacetSet, Method, Mover, Options, Prescribe
 
 fn bodies(sets: Vec<FacetSet>) -> Options {
     Options { method: Method::Bodies(sets), ..Options::default() }
-}
-
-fn mover(mesh: &Mesh, options: &Options) -> Mover {
-    Mover::new(mesh, options, &Threads::single()).unwrap()
-}
-
-fn step(mover: &Mover, map: impl Fn(Point) -> Point, threads: &Threads) -> Vec<Point> {
-    let displacement: Vec<Point> =
-        (mover.boundary().iter()).map(|v| mover.reference()[v.index()]).map(|p| sub(map(p), p)).collect();
-    let mut out = vec![[f64::NAN; 3]; mover.reference().len()];
-    mover.step(&displacement, &mut out, threads).unwrap();
-    for (v, d) in mover.boundary().iter().zip(&displacement) {
-        assert_eq!(
-            out[v.index()],
-            add(mover.reference()[v.index()], *d),
-            "the boundary is where it is requested to be"
-        );
-    }
-    out
-}
-
-fn n_inverted(mesh: &Mesh, points: &[Point]) -> usize {
-    mesh.cells.tets().filter(|(_, tet)| volume(tet.map(|v| points[v.index()])) <= 0.0).count()
 }
 
 fn is_sphere(p: Point) -> bool {

@@ -1,5 +1,6 @@
 //! Motion by distances from the boundary: compared with its definition, rigid motions, threads.
 
+use crate::stepped::step;
 use motet::Mesh;
 use motet::base::{Point, Threads};
 use motet::geometry::tet::volume;
@@ -10,17 +11,6 @@ use motet::motion::{FacetSet, Method, Mover, Options, Prescribed};
 
 fn mover(mesh: &Mesh, method: Method) -> Mover {
     Mover::new(mesh, &Options { method, ..Options::default() }, &Threads::single()).unwrap()
-}
-
-fn step(mover: &Mover, map: impl Fn(Point) -> Point, threads: &Threads) -> Vec<Point> {
-    let place = |v: &motet::base::VertexId| mover.reference()[v.index()];
-    let displacement: Vec<Point> = mover.boundary().iter().map(place).map(|p| sub(map(p), p)).collect();
-    let mut out = vec![[f64::NAN; 3]; mover.reference().len()];
-    mover.step(&displacement, &mut out, threads).unwrap();
-    for (v, d) in mover.boundary().iter().zip(&displacement) {
-        assert_eq!(out[v.index()], add(mover.reference()[v.index()], *d));
-    }
-    out
 }
 
 fn shifted(p: Point) -> Point {

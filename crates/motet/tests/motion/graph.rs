@@ -1,6 +1,7 @@
 //! Mesh motion: affine maps, periodic walls, rigid layers, sliding patches, sub-steps, bad input.
 
 use crate::common::data_meshes;
+use crate::stepped::mover;
 use motet::Mesh;
 use motet::base::{Csr, Point, Threads, VertexId};
 use motet::geometry::vector::{add, distance, norm, scale, sub};
@@ -135,10 +136,6 @@ const KINDS: [CellKind; 7] = [
 fn diagonal(mesh: &Mesh) -> f64 {
     let [low, high] = mesh.bounds().unwrap();
     distance(low, high)
-}
-
-fn mover(mesh: &Mesh, options: &Options) -> Mover {
-    Mover::new(mesh, options, &Threads::single()).unwrap()
 }
 
 /// Moves the mesh in one step, with `displacement` of every driven vertex.

@@ -1,38 +1,15 @@
 //! Motion by a graph whose nodes turn: rigid motions, a flap that bends, the same bits on every path.
 
+use crate::stepped::{mover, n_inverted, step};
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
-use motet::geometry::tet::volume;
-use motet::geometry::vector::{add, distance, norm, sub};
+use motet::geometry::vector::{add, distance, norm};
 use motet::mesh::shapes::{box_grid, mixed, sphere_in_box};
 use motet::mesh::{CellKind, Cells};
-use motet::motion::{Extent, Method, Mover, Options, Prescribed, RigidLayer};
+use motet::motion::{Extent, Method, Options, Prescribed, RigidLayer};
 
 fn guided() -> Options {
     Options { method: Method::Guided, ..Options::default() }
-}
-
-fn mover(mesh: &Mesh, options: &Options) -> Mover {
-    Mover::new(mesh, options, &Threads::single()).unwrap()
-}
-
-fn step(mover: &Mover, map: impl Fn(Point) -> Point, threads: &Threads) -> Vec<Point> {
-    let displacement: Vec<Point> =
-        (mover.boundary().iter()).map(|v| mover.reference()[v.index()]).map(|p| sub(map(p), p)).collect();
-    let mut out = vec![[f64::NAN; 3]; mover.reference().len()];
-    mover.step(&displacement, &mut out, threads).unwrap();
-    for (v, d) in mover.boundary().iter().zip(&displacement) {
-        assert_eq!(
-            out[v.index()],
-            add(mover.reference()[v.index()], *d),
-            "the boundary is where it is requested to be"
-        );
-    }
-    out
-}
-
-fn n_inverted(mesh: &Mesh, points: &[Point]) -> usize {
-    mesh.cells.tets().filter(|(_, tet)| volume(tet.map(|v| points[v.index()])) <= 0.0).count()
 }
 
 /// A channel with a flap on its floor, `y = -1`: a slot one cell wide.

@@ -12,4 +12,5 @@ mod slide;
 mod slide_steps;
 mod smooth;
 mod solve;
+mod stepped;
 mod walls;

@@ -1,5 +1,6 @@
 //! Motion by a linear system: patch tests, least energy, rigid motions, sub-steps, bad input.
 
+use crate::stepped::mover;
 use motet::Mesh;
 use motet::algebra::Tolerance;
 use motet::base::{Point, Threads, VertexId};
@@ -36,10 +37,6 @@ fn factorised(options: Options) -> Options {
         other => other,
     };
     Options { method, ..options }
-}
-
-fn mover(mesh: &Mesh, options: &Options) -> Mover {
-    Mover::new(mesh, options, &Threads::single()).unwrap()
 }
 
 fn step(mover: &Mover, displacement: impl Fn(Point) -> Point, threads: &Threads) -> Vec<Point> {

@@ -1,30 +1,16 @@
 //! The graph within its walls: branches and flaps, the same maps as without walls, refusals.
 
+use crate::stepped::{mover, step};
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::distance::segment_triangle::meet;
-use motet::geometry::vector::{add, distance, sub};
+use motet::geometry::vector::{add, distance};
 use motet::mesh::shapes::{box_grid, mixed, quadratic, sphere_in_box};
 use motet::mesh::{Boundary, CellKind, Cells};
 use motet::motion::{FacetSet, Method, Mover, Options};
 
 fn within(method: Method) -> Options {
     Options { method, within_walls: true, ..Options::default() }
-}
-
-fn mover(mesh: &Mesh, options: &Options) -> Mover {
-    Mover::new(mesh, options, &Threads::single()).unwrap()
-}
-
-fn step(mover: &Mover, map: impl Fn(Point) -> Point, threads: &Threads) -> Vec<Point> {
-    let place = |v: &VertexId| mover.reference()[v.index()];
-    let displacement: Vec<Point> = mover.boundary().iter().map(place).map(|p| sub(map(p), p)).collect();
-    let mut out = vec![[f64::NAN; 3]; mover.reference().len()];
-    mover.step(&displacement, &mut out, threads).unwrap();
-    for (v, d) in mover.boundary().iter().zip(&displacement) {
-        assert_eq!(out[v.index()], add(mover.reference()[v.index()], *d));
-    }
-    out
 }
 
 /// Where the channels are joined, in grid steps.
