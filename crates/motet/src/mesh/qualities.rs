@@ -1,7 +1,7 @@
 //! Quality statistics over all tets of a mesh: what the worst tet alone does not show.
 
 use crate::base::{Point, Threads, VertexId};
-use crate::geometry::quality::for_each_quality;
+use crate::geometry::quality::eas_and_mean_ratio_of_each;
 use crate::geometry::vector::in_range;
 use crate::mesh::{Mesh, OrientedTets};
 
@@ -38,16 +38,14 @@ impl Default for Qualities {
 impl Qualities {
     /// The statistics of `tets` with vertices at `points`.
     pub fn of(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Self {
-        let parts = threads.each(tets.chunks(CHUNK).collect(), |tets| {
-            let (mut all_eas, mut ratios) = (Vec::with_capacity(tets.len()), 0.0);
-            for_each_quality(points, tets, |eas, ratio| {
-                all_eas.push(eas);
-                ratios += ratio;
-            });
-            (all_eas, ratios)
-        });
-        let (eas, ratios): (Vec<Vec<f64>>, Vec<f64>) = parts.into_iter().unzip();
-        Self::of_values(&mut eas.concat(), ratios.iter().sum()).unwrap_or_default()
+        let each = Self::each(points, tets, threads);
+        let mut eas: Vec<f64> = each.iter().map(|[eas, _]| *eas).collect();
+        Self::of_values(&mut eas, each.iter().map(|[_, ratio]| *ratio).sum()).unwrap_or_default()
+    }
+
+    /// EAS and mean ratio of each of `tets` with vertices at `points`.
+    pub(crate) fn each(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Vec<[f64; 2]> {
+        threads.in_runs(tets.len(), CHUNK, |(): &mut (), run| eas_and_mean_ratio_of_each(points, &tets[run]))
     }
 
     /// The statistics of the linear and quadratic tets of a mesh (of quadratic ones, by their corners), as
@@ -83,7 +81,7 @@ mod tests {
     use super::*;
     use crate::geometry::quality::eas;
     use crate::mesh::shapes::sphere_in_box;
-    use crate::mesh::{CellKind, Cells};
+    use crate::mesh::{CellKind, Cells, Summary};
 
     #[test]
     fn percentiles_are_those_of_the_sorted_values() {
@@ -129,6 +127,17 @@ mod tests {
         let other = Mesh::new(mesh.points.clone(), cells);
         let found = Qualities::of_mesh(&other, &threads).unwrap();
         assert!((found.worst - plain.worst).abs() < 1e-12 && (found.mean - plain.mean).abs() < 1e-12);
+    }
+
+    /// Threads judge parts of the mesh; the sums do not depend on the parts.
+    #[test]
+    fn a_summary_and_any_number_of_threads_give_the_same_bits() {
+        let mesh = sphere_in_box(10, 6);
+        assert!(mesh.cells.len() > 2 * CHUNK);
+        let summary = Summary::of(&mesh).quality.unwrap().distribution;
+        for n in [1, 2, 5] {
+            assert_eq!(Qualities::of_mesh(&mesh, &Threads::new(n).unwrap()), Some(summary), "{n} threads");
+        }
     }
 
     #[test]

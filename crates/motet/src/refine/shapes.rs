@@ -1,7 +1,6 @@
 //! Shape statistics of the tets of a mesh.
 
 use crate::base::Threads;
-use crate::geometry::quality::{eas, mean_ratio};
 use crate::mesh::{Qualities, TetMesh};
 
 /// Shape statistics over all tets of a mesh, computed as if all tets were positively oriented.
@@ -22,10 +21,8 @@ pub struct Shapes {
 impl Shapes {
     /// Computes the statistics of all tets of a mesh. All values are 0 if there is no tet.
     pub fn of(mesh: &TetMesh, threads: &Threads) -> Self {
-        let each = threads.map(mesh.tets.len(), |t| {
-            let corners = mesh.tets[t].map(|v| mesh.points[v.index()]);
-            [eas(corners).abs(), mean_ratio(corners).abs()]
-        });
+        let mut each = Qualities::each(&mesh.points, &mesh.tets, threads);
+        each.as_flattened_mut().iter_mut().for_each(|value| *value = value.abs());
         let (sums, all) = threads.join(
             || {
                 let start = ([f64::INFINITY; 2], [0.0; 2]);

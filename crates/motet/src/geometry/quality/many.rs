@@ -27,9 +27,11 @@ pub fn eas_of_each(points: &[Point], tets: &[[VertexId; 4]]) -> Vec<f64> {
     of_each
 }
 
-/// Calls `take` with EAS and mean ratio of each tet, in order.
-pub fn for_each_quality(points: &[Point], tets: &[[VertexId; 4]], mut take: impl FnMut(f64, f64)) {
-    judge_tets(points, tets, |judged| take(judged.eas, judged.mean_ratio()));
+/// EAS and mean ratio of each tet.
+pub fn eas_and_mean_ratio_of_each(points: &[Point], tets: &[[VertexId; 4]]) -> Vec<[f64; 2]> {
+    let mut of_each = Vec::with_capacity(tets.len());
+    judge_tets(points, tets, |judged| of_each.push([judged.eas, judged.mean_ratio()]));
+    of_each
 }
 
 fn judge_tets(points: &[Point], tets: &[[VertexId; 4]], take: impl FnMut(Judged)) {
@@ -309,12 +311,11 @@ mod tests {
             let points: Vec<Point> = tets.as_flattened().iter().map(|p| p.map(|x| x * size)).collect();
             let ids: Vec<[VertexId; 4]> =
                 (0..tets.len()).map(|t| [0, 1, 2, 3].map(|i| VertexId::new(4 * t + i))).collect();
-            let mut ratios = Vec::new();
-            for_each_quality(&points, &ids, |_, ratio| ratios.push(ratio));
+            let both = eas_and_mean_ratio_of_each(&points, &ids);
             for (t, found) in eas_of_each(&points, &ids).into_iter().enumerate() {
                 let corners = [0, 1, 2, 3].map(|i| points[4 * t + i]);
                 prop_assert_eq!(found + 0.0, eas(corners) + 0.0);
-                prop_assert_eq!(ratios[t] + 0.0, mean_ratio(corners) + 0.0);
+                prop_assert_eq!(both[t].map(|x| x + 0.0), [eas(corners) + 0.0, mean_ratio(corners) + 0.0]);
             }
         }
 

@@ -27,6 +27,6 @@ pub use cubit_mean_ratio::cubit_mean_ratio;
 pub use eas::{POSITIVE_EAS, eas};
 pub use edge_ratio::edge_ratio;
 pub use equiangle_skew::equiangle_skew;
-pub use many::{EasStar, eas_of_each, for_each_quality};
+pub use many::{EasStar, eas_and_mean_ratio_of_each, eas_of_each};
 pub use mean_ratio::mean_ratio;
 pub use volume::volume;
