@@ -1,11 +1,12 @@
 //! The insertion loop: find a tet in conflict, dig the cavity, fill it (Bowyer 1981; Watson 1981).
 //!
 //! Several threads insert points of different parts of space at the same time (as in Marot, Pellerin and
-//! Remacle 2019, *One machine, one minute, three billion tetrahedra*). A tet whose vertices all belong to one
-//! part may be changed by the thread of that part alone; tets between parts are frozen. A tet of one part
+//! Remacle 2019, *One machine, one minute, three billion tetrahedra*). A tet of which three vertices belong
+//! to one part may be changed by the thread of that part alone; the others are frozen. A tet of one part
 //! never has a neighbour that belongs to another, so a thread that stops at frozen tets meets nothing that
 //! others change. Points whose cavity reaches a frozen tet are left for later, when space is divided
-//! elsewhere.
+//! elsewhere. There are as many parts as threads: the tets are those of the Delaunay triangulation in any
+//! case, and how they are numbered does not depend on parts (`numbering`).
 //!
 //! The whole loop is compiled twice, for any machine and for one with AVX2 and FMA, and dispatched once per
 //! thousands of points: everything it calls is inlined or dispatched with it. The signs are exact either way,
@@ -29,28 +30,35 @@ use pulp::{Arch, Simd, WithSimd};
 /// The watch is consulted each time this many points have been inserted.
 const RUN: usize = 8192;
 
-/// Into how many parts space is divided. It decides which slots tets get, and so their order: for the same
-/// result on any number of threads it depends on the number of points alone.
+/// After this many points in a row that were left, the next walk starts elsewhere: frozen tets can enclose
+/// the one where it started.
+const PATIENCE: usize = 16;
+
+/// Into how many parts space is divided.
 #[derive(Clone, Copy)]
 pub(super) struct Division {
-    /// The least number of points of one of two parts. The smaller parts are, the more of their points lie
-    /// near others, and are left.
-    pub(super) least_of_two: usize,
-    /// The least number of points of one of more than two parts.
-    pub(super) least_of_many: usize,
+    /// The least number of points of a set for which space is divided at all.
+    pub(super) least: usize,
+    /// The least number of points of a part. The smaller parts are, the more of their points lie near others,
+    /// and are left.
+    pub(super) least_of_part: usize,
 }
 
 impl Division {
-    /// The binary logarithm of the largest number of parts: each has a table as long as all vertices, of
-    /// which it touches the places of its own.
-    const MOST: u32 = 6;
+    /// The largest number of parts: each has a table as long as all vertices, of which it touches the places
+    /// of its own.
+    const MOST: usize = 64;
 
-    pub(super) const USUAL: Self = Self { least_of_two: 50_000, least_of_many: 300_000 };
+    pub(super) const USUAL: Self = Self { least: 100_000, least_of_part: 8_000 };
 
-    /// The number of parts for the insertion of `n` points.
-    fn n_parts(self, n: usize) -> usize {
-        let least = u32::from(n >= 2 * self.least_of_two);
-        1 << (n / self.least_of_many).checked_ilog2().unwrap_or(0).clamp(least, Self::MOST)
+    /// Whether a set of `n` points may be inserted in parts, on any number of threads.
+    pub(super) fn applies(self, n: usize) -> bool {
+        n >= self.least
+    }
+
+    /// The number of parts for the insertion of `n` points of a set for which space is divided.
+    fn n_parts(self, n: usize, threads: &Threads) -> usize {
+        (n / self.least_of_part).min(threads.count()).clamp(1, Self::MOST)
     }
 }
 
@@ -84,7 +92,7 @@ pub(super) fn triangulate(
         n_attempts: 0,
         hint: 0,
         n_done: AtomicUsize::new(0),
-        division: Some(division),
+        division: Some(division).filter(|division| division.applies(points.len())),
         threads,
     };
     let n = points.len() as u32;
@@ -132,7 +140,7 @@ impl Builder<'_> {
     /// Inserts the vertices of a round.
     fn insert(&mut self, mut todo: Vec<u32>) -> Result<()> {
         while let Some(division) = self.division {
-            let (n, n_parts) = (todo.len(), division.n_parts(todo.len()));
+            let (n, n_parts) = (todo.len(), division.n_parts(todo.len(), self.threads));
             if n_parts == 1 {
                 break;
             }
@@ -159,12 +167,12 @@ impl Builder<'_> {
             scratch: &mut self.scratches[0],
             n_attempts: self.n_attempts,
             part: Part::ALL,
-            hint: Some(self.hint),
+            hints: vec![self.hint],
         };
         let left = worker.insert(vertices, &self.n_done, self.threads.watch())?;
-        let Worker { slots, n_attempts, hint, .. } = worker;
+        let Worker { slots, n_attempts, hints, .. } = worker;
         self.n_attempts = n_attempts;
-        self.hint = hint.unwrap_or(self.hint);
+        self.hint = hints[0];
         self.store.slots = slots;
         Ok(left)
     }
@@ -180,14 +188,16 @@ impl Builder<'_> {
         let parts = Parts::new(points, vertices, n_parts, threads);
         let n_used = self.store.n_used();
         let mut slots = std::mem::take(&mut self.store.slots);
-        let part_slots = slots.split_off(SLOTS_PER_POINT * vertices.len(), n_parts);
+        let own: Vec<Vec<u32>> = threads.each((0..n_parts).collect(), |part| parts.own(vertices, part));
+        let requested: Vec<usize> = own.iter().map(|own| SLOTS_PER_POINT * own.len()).collect();
+        let part_slots = slots.split_off(&requested);
         // SAFETY: freezing changes each tet in the run of slots that has it, and reads no other; afterwards
         // the tets of a part, all of whose neighbours belong to the same part or are frozen, are changed by
         // its thread alone; and nothing changes or marks a frozen tet.
         let tets = unsafe { self.store.tets() };
         let frozen = Frozen::new(tets, n_used, &parts, threads);
-        let all = part_slots.into_iter().zip(&mut self.scratches).zip(&frozen.hints).enumerate();
-        let workers = all.map(|(part, ((slots, scratch), &hint))| Worker {
+        let all = part_slots.into_iter().zip(&mut self.scratches).zip(frozen.hints.clone()).enumerate();
+        let workers = all.map(|(part, ((slots, scratch), hints))| Worker {
             points,
             sure: self.sure,
             tets,
@@ -195,11 +205,11 @@ impl Builder<'_> {
             scratch,
             n_attempts: self.n_attempts,
             part: parts.get(part),
-            hint,
+            hints,
         });
         let insert = |(part, mut worker): (usize, Worker)| -> Result<_> {
-            let left = worker.insert(&parts.own(vertices, part), &self.n_done, threads.watch())?;
-            Ok((left, worker.slots, worker.n_attempts, worker.hint))
+            let left = worker.insert(&own[part], &self.n_done, threads.watch())?;
+            Ok((left, worker.slots, worker.n_attempts, worker.hints.first().copied()))
         };
         let done = threads.each(workers.enumerate().collect(), insert);
         frozen.release(tets);
@@ -244,15 +254,15 @@ struct Worker<'a> {
     scratch: &'a mut Scratch,
     n_attempts: u32,
     part: Part<'a>,
-    /// The tet where the next walk starts; `None` where no tet belongs to the part.
-    hint: Option<u32>,
+    /// The tet where the next walk starts, and others of the part; empty where no tet belongs to the part.
+    hints: Vec<u32>,
 }
 
 impl Worker<'_> {
     /// Inserts vertices in order; returns those left: whose cavity reaches a frozen tet, and those from the
     /// one on for which there are too few slots.
     fn insert(&mut self, vertices: &[u32], n_done: &AtomicUsize, watch: &Watch) -> Result<Vec<u32>> {
-        let Some(mut hint) = self.hint else { return Ok(vertices.to_vec()) };
+        let Some(&(mut hint)) = self.hints.first() else { return Ok(vertices.to_vec()) };
         let (mut left, arch) = (Vec::new(), Arch::new());
         for (k, run) in vertices.chunks(RUN).enumerate() {
             let done = n_done.fetch_add(run.len(), Ordering::Relaxed);
@@ -260,8 +270,9 @@ impl Worker<'_> {
             let n_left = left.len();
             let n = arch.dispatch(Run { worker: self, vertices: run, left: &mut left, hint: &mut hint });
             let n_tried = k * RUN + n;
-            // Where most are left, trying the others would be in vain.
-            let is_last = n < run.len() || left.len() > n_tried / 2;
+            // Where nearly all are left, trying the others would be in vain. The first ones can lie near a
+            // corner of the part, where many are left.
+            let is_last = n < run.len() || left.len() > n_tried / 8 * 7;
             if is_last {
                 left.extend(&vertices[n_tried..]);
             }
@@ -270,7 +281,7 @@ impl Worker<'_> {
                 break;
             }
         }
-        self.hint = Some(hint);
+        self.hints[0] = hint;
         Ok(left)
     }
 }
@@ -289,11 +300,19 @@ impl WithSimd for Run<'_, '_> {
     /// Returns the number of vertices that were inserted or left, all unless there are too few slots.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> usize {
-        let Worker { points, sure, tets, part, ref mut slots, ref mut scratch, ref mut n_attempts, .. } =
-            *self.worker;
+        let Worker {
+            points,
+            sure,
+            tets,
+            part,
+            ref mut slots,
+            ref mut scratch,
+            ref mut n_attempts,
+            ref hints,
+        } = *self.worker;
         let Scratch { cavity, fill } = scratch;
         let mut hint = *self.hint;
-        let mut n = 0;
+        let (mut n, mut n_failed) = (0, 0);
         for &vertex in self.vertices {
             *n_attempts += 1;
             let new = Newcomer { vertex, point: points[vertex as usize], attempt: *n_attempts };
@@ -301,7 +320,12 @@ impl WithSimd for Run<'_, '_> {
             if first.is_some_and(|first| cavity.dig(simd, tets, points, first, new)) {
                 let Some(made) = fill.fill(simd, tets, slots, points, cavity, new) else { break };
                 hint = made;
+                n_failed = 0;
             } else {
+                n_failed += 1;
+                if n_failed % PATIENCE == 0 {
+                    hint = hints[n_failed / PATIENCE % hints.len()];
+                }
                 assert!(!part.is_all(), "the points are distinct, so each is in conflict with a tet");
                 self.left.push(vertex);
             }

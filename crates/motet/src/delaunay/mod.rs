@@ -14,7 +14,7 @@
 //! | test | `conflict` | 12 multiplications with the stored minors; then pairs of `f64`; then integers |
 //! | cavity | `cavity` | breadth first, without branches |
 //! | new tets | `fill`, `edges` | linked through a small matrix over the directed edges of the cavity |
-//! | output | `finish` | without ghosts and free slots, under the caller's ids |
+//! | output | `finish`, `numbering` | without ghosts and free slots, under the caller's ids; where there were parts, in an order that does not depend on them |
 //!
 //! *Ties.* Five points on one sphere would leave the triangulation ambiguous. The ambiguity is removed by
 //! lifting each point by an infinitesimal that grows with its place in the order of insertion (Devillers and
@@ -44,6 +44,7 @@ mod finish;
 mod gauge;
 mod input;
 mod insert;
+mod numbering;
 mod order;
 mod parts;
 mod start;

@@ -1,17 +1,17 @@
 //! Divides space into parts in which threads insert points at the same time.
 
 use super::conflict::FROZEN;
-use super::store::{FACETS, FREE, INFINITY, Tets, is_ghost};
+use super::store::{FREE, Tets, is_ghost};
 use crate::base::{Point, Threads};
 
 /// Points of a sample for each part, by which space is divided.
-const SAMPLE: usize = 1024;
+const SAMPLE: usize = 256;
 
 /// Slots that a thread looks at, at a time.
 const RUN: usize = 1 << 16;
 
-/// The part of each vertex. Parts are boxes: halves along the longest axis, halved again, with about as many
-/// of the points to insert in each.
+/// The part of each vertex. Parts are boxes: space is divided in two, and each side again, with about as many
+/// of the points to insert on each side.
 pub(super) struct Parts {
     of_vertex: Vec<u16>,
     count: usize,
@@ -35,11 +35,10 @@ impl Part<'_> {
         self.of_vertex.is_empty()
     }
 
-    /// Whether what lies behind a facet of a frozen tet belongs to another part, or may do so.
+    /// Whether the neighbour of a frozen tet, given by its vertices, belongs to another part.
     #[cold]
-    pub(super) fn is_beyond(self, vertices: [u32; 4], facet: usize) -> bool {
-        let mut corners = FACETS[facet].into_iter().map(|i| vertices[i]).filter(|&v| v != INFINITY);
-        corners.all(|v| self.of_vertex[v as usize] != self.own)
+    pub(super) fn is_beyond(self, vertices: [u32; 4]) -> bool {
+        of_tet(self.of_vertex, vertices).is_some_and(|part| part != self.own)
     }
 }
 
@@ -78,11 +77,18 @@ impl Parts {
         let is_own = |v: &u32| usize::from(self.of_vertex[*v as usize]) == part;
         vertices.iter().copied().filter(is_own).collect()
     }
+}
 
-    /// The part to which all vertices of a tet belong, the one at infinity aside.
-    fn of_tet(&self, vertices: [u32; 4]) -> Option<u16> {
-        let [a, b, c, d] = vertices.map(|v| self.of_vertex[v as usize]);
-        (a == b && b == c && (c == d || is_ghost(vertices))).then_some(a)
+/// The part to which at least three vertices of a tet belong; of a ghost, all three. So two tets that share
+/// a facet never belong to different parts.
+fn of_tet(of_vertex: &[u16], vertices: [u32; 4]) -> Option<u16> {
+    let [a, b, c, d] = vertices.map(|v| of_vertex[v as usize]);
+    if is_ghost(vertices) {
+        (a == b && b == c).then_some(a)
+    } else if a == b {
+        (c == a || d == a).then_some(a)
+    } else {
+        (c == d && (c == a || c == b)).then_some(c)
     }
 }
 
@@ -91,22 +97,40 @@ fn divide(sample: &mut [Point], first: usize, n: usize, splits: &mut Vec<Split>)
     if n < 2 || sample.is_empty() {
         return Side::Part(first as u16);
     }
-    let extent = |axis: usize| {
-        let of = |range: [f64; 2], p: &Point| [range[0].min(p[axis]), range[1].max(p[axis])];
-        let [low, high] = sample.iter().fold([f64::INFINITY, f64::NEG_INFINITY], of);
-        high - low
-    };
-    let axis = (0..3).max_by(|&i, &j| extent(i).total_cmp(&extent(j))).unwrap_or(0);
-    let middle = sample.len() * (n / 2) / n;
+    let n_below_parts = n / 2;
+    let (axis, middle) = sparsest(sample, sample.len() * n_below_parts / n);
     let (below, at, _) = sample.select_nth_unstable_by(middle, |p, q| p[axis].total_cmp(&q[axis]));
     let at = at[axis];
     let n_below = below.len();
     let split = splits.len();
     splits.push(Split { axis, at, sides: [Side::Part(0); 2] });
     let (below, above) = sample.split_at_mut(n_below);
-    splits[split].sides =
-        [divide(below, first, n / 2, splits), divide(above, first + n / 2, n - n / 2, splits)];
+    splits[split].sides = [
+        divide(below, first, n_below_parts, splits),
+        divide(above, first + n_below_parts, n - n_below_parts, splits),
+    ];
     Side::Split(split)
+}
+
+/// The axis, and the place in the order along it, where a plane has few points close by: points near the
+/// plane will be left, and those that are left lie near the planes of earlier parts. Places far from `middle`
+/// need fewer points.
+fn sparsest(sample: &[Point], middle: usize) -> (usize, usize) {
+    let n = sample.len();
+    let window = (n / 16).max(1);
+    let (mut best, mut widest) = ((0, middle), -1.0);
+    for axis in 0..3 {
+        let mut values: Vec<f64> = sample.iter().map(|p| p[axis]).collect();
+        values.sort_unstable_by(f64::total_cmp);
+        for start in 0..n - window {
+            let off_middle = (start + window / 2).abs_diff(middle) as f64 / n as f64;
+            let width = (values[start + window] - values[start]) * (1.0 - 4.0 * off_middle);
+            if width > widest {
+                (best, widest) = ((axis, start + window / 2), width);
+            }
+        }
+    }
+    best
 }
 
 fn part(splits: &[Split], root: Side, p: Point) -> u16 {
@@ -122,8 +146,8 @@ fn part(splits: &[Split], root: Side, p: Point) -> u16 {
 /// The tets between parts, which are marked as [`FROZEN`].
 pub(super) struct Frozen {
     tets: Vec<Vec<u32>>,
-    /// For each part one of its tets that is not a ghost.
-    pub(super) hints: Vec<Option<u32>>,
+    /// For each part some of its tets that are not ghosts, far from each other.
+    pub(super) hints: Vec<Vec<u32>>,
 }
 
 impl Frozen {
@@ -137,7 +161,7 @@ impl Frozen {
                 if vertices == FREE {
                     continue;
                 }
-                match parts.of_tet(vertices) {
+                match of_tet(&parts.of_vertex, vertices) {
                     Some(part) if !is_ghost(vertices) => hints[usize::from(part)] = Some(tet),
                     Some(_) => {}
                     None => {
@@ -148,13 +172,39 @@ impl Frozen {
             }
             (frozen, hints)
         });
-        let hint = |part: usize| found.iter().find_map(|(_, hints)| hints[part]);
-        let hints = (0..parts.count).map(hint).collect();
+        let hints_of = |part: usize| found.iter().filter_map(|(_, hints)| hints[part]).collect();
+        let hints = (0..parts.count).map(hints_of).collect();
         Self { tets: found.into_iter().map(|f| f.0).collect(), hints }
     }
 
     /// Takes the marks away.
     pub(super) fn release(self, tets: Tets) {
         self.tets.iter().flatten().for_each(|&tet| tets.gauges.set_mark(tet, 0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::store::INFINITY;
+    use super::of_tet;
+
+    #[test]
+    fn neighbours_never_belong_to_different_parts() {
+        let neighbours = [
+            [[1, 2, 3, 4], [1, 3, 2, 5]],
+            [[1, 2, 3, 4], [1, 3, 2, INFINITY]],
+            [[1, 2, 3, INFINITY], [1, 4, 2, INFINITY]],
+        ];
+        for code in 0..3u16.pow(6) {
+            // All ways to give five vertices, and the one at infinity, a part of three.
+            let of_vertex = [0, 1, 2, 3, 4, 5].map(|v| code / 3u16.pow(v) % 3);
+            for [one, other] in neighbours {
+                if let (Some(one), Some(other)) = (of_tet(&of_vertex, one), of_tet(&of_vertex, other)) {
+                    assert_eq!(one, other, "{of_vertex:?}");
+                }
+            }
+            let most = (0..3).find(|&part| (1..5).filter(|&v| of_vertex[v] == part).count() >= 3);
+            assert_eq!(of_tet(&of_vertex, [1, 2, 3, 4]), most, "{of_vertex:?}");
+        }
     }
 }

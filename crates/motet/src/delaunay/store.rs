@@ -161,16 +161,18 @@ impl Slots {
         true
     }
 
-    /// Takes out `n` slots if there are as many, in equal parts, free ones first.
-    pub(super) fn split_off(&mut self, n: usize, n_parts: usize) -> Vec<Self> {
-        let n_free = self.free.len().min(n) / n_parts;
-        let n_fresh = (self.fresh.len() / n_parts).min(n / n_parts - n_free);
-        let part = |_| {
-            let fresh = self.fresh.start..self.fresh.start + n_fresh as u32;
+    /// Takes out as many slots for each part as requested, fewer where there are too few, free ones first.
+    pub(super) fn split_off(&mut self, requested: &[usize]) -> Vec<Self> {
+        let all: usize = requested.iter().sum();
+        let n_free = self.free.len().min(all);
+        let n_fresh = self.fresh.len().min(all - n_free);
+        let part = |&n: &usize| {
+            let share = |of: usize| (of as u64 * n as u64 / all.max(1) as u64) as usize;
+            let fresh = self.fresh.start..self.fresh.start + share(n_fresh) as u32;
             self.fresh.start = fresh.end;
-            Self { free: self.free.split_off(self.free.len() - n_free), fresh }
+            Self { free: self.free.split_off(self.free.len() - share(n_free)), fresh }
         };
-        (0..n_parts).map(part).collect()
+        requested.iter().map(part).collect()
     }
 
     /// Puts back what was split off.

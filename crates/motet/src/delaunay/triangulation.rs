@@ -1,8 +1,9 @@
 //! The Delaunay triangulation as the caller sees it: arrays under the caller's ids.
 
-use super::finish::{Finished, finish};
+use super::finish::{Finished, by_slots};
 use super::input;
 use super::insert::{Division, triangulate};
+use super::numbering::by_vertices;
 use super::order::order;
 use super::start::bring_tet_to_front;
 use crate::base::{Point, Result, TetId, Threads, VertexId};
@@ -56,11 +57,15 @@ impl Triangulation {
         bring_tet_to_front(&mut order.ids, &scaled.points)?;
         // Vertex 0 is the one at infinity; its point is never used but may be read.
         let vertex_to_id: Vec<u32> = std::iter::once(0).chain(order.ids.iter().copied()).collect();
-        let sorted: Vec<Point> = vertex_to_id.iter().map(|&id| scaled.points[id as usize]).collect();
+        let sorted: Vec<Point> = threads.map(vertex_to_id.len(), |v| scaled.points[vertex_to_id[v] as usize]);
         // Vertices are numbered from 1.
         let rounds: Vec<u32> = order.rounds.iter().map(|&place| place + 1).collect();
         let store = triangulate(&sorted, &rounds, scaled.filtered, division, threads)?;
-        let Finished { tets, neighbors, hull } = finish(store, &vertex_to_id, threads);
+        let arrays = store.into_arrays();
+        let Finished { tets, neighbors, hull } = match division.applies(sorted.len()) {
+            true => by_vertices(arrays, &vertex_to_id, threads),
+            false => by_slots(arrays, &vertex_to_id, threads),
+        };
         let duplicates = order.duplicates.iter().map(|&(d, kept)| (VertexId(d), VertexId(kept))).collect();
         Ok((Self { points: points.to_vec(), tets, neighbors, hull, duplicates }, vertex_to_id))
     }
@@ -81,7 +86,7 @@ impl Triangulation {
         &self.neighbors
     }
 
-    /// The facets of the convex hull.
+    /// The facets of the convex hull, in the order of their tets.
     pub fn hull(&self) -> &[HullFacet] {
         &self.hull
     }
@@ -112,7 +117,7 @@ mod tests {
     use crate::spatial::OUTSIDE;
 
     /// Parts of so few points that small sets are divided many times.
-    const SMALL: Division = Division { least_of_two: 40, least_of_many: 150 };
+    const SMALL: Division = Division { least: 100, least_of_part: 40 };
 
     fn random(n: u64, seed: u64) -> Vec<Point> {
         let coordinate = |i: u64| (splitmix64(seed ^ i << 20) >> 11) as f64 / (1u64 << 53) as f64 - 0.5;

@@ -30,14 +30,18 @@ pub(super) fn walk<S: Simd>(
     let mut from = u32::MAX;
     loop {
         let is_frozen = tets.gauges.mark(tet) == FROZEN;
+        if is_frozen && is_ghost(tets.vertices.get(tet)) {
+            // Whatever is beyond the hull is in conflict. The tet behind it can belong to another part.
+            return None;
+        }
         if in_conflict(simd, tets, points, tet, new) {
             return (!is_frozen).then_some(tet);
         }
         let facet = exit::<S>(tets, points, tet, from, new.point, sure)?;
-        if is_frozen && part.is_beyond(tets.vertices.get(tet), facet) {
+        from = tets.links.get(tet)[facet % 4];
+        if is_frozen && part.is_beyond(tets.vertices.get(from >> 2)) {
             return None;
         }
-        from = tets.links.get(tet)[facet % 4];
         tet = from >> 2;
     }
 }
