@@ -21,18 +21,19 @@ use super::gauge::LEAST;
 use super::input::sides;
 use super::parts::{Frozen, Part, Parts};
 use super::start::first_tet;
-use super::store::{MAX_TETS, Slots, Store, Tets};
+use super::store::{MAX_TETS, Slots, Store, Tets, is_ghost};
 use super::walk::walk;
 use crate::base::{Point, Result, Threads, Watch};
 use crate::geometry::predicates::pair::U;
+use crate::geometry::vector::distance_squared;
 use pulp::{Arch, Simd, WithSimd};
 
 /// The watch is consulted each time this many points have been inserted.
 const RUN: usize = 8192;
 
-/// After this many points in a row that were left, the next walk starts elsewhere: frozen tets can enclose
-/// the one where it started.
-const PATIENCE: usize = 16;
+/// After this many points in a row that were left, the next walk starts at the hint that is nearest: frozen
+/// tets can enclose the tet where the last ones started.
+const PATIENCE: usize = 8;
 
 /// Into how many parts space is divided.
 #[derive(Clone, Copy)]
@@ -167,12 +168,13 @@ impl Builder<'_> {
             scratch: &mut self.scratches[0],
             n_attempts: self.n_attempts,
             part: Part::ALL,
-            hints: vec![self.hint],
+            hint: Some(self.hint),
+            hints: &[],
         };
         let left = worker.insert(vertices, &self.n_done, self.threads.watch())?;
-        let Worker { slots, n_attempts, hints, .. } = worker;
+        let Worker { slots, n_attempts, hint, .. } = worker;
         self.n_attempts = n_attempts;
-        self.hint = hints[0];
+        self.hint = hint.unwrap_or(self.hint);
         self.store.slots = slots;
         Ok(left)
     }
@@ -196,7 +198,7 @@ impl Builder<'_> {
         // its thread alone; and nothing changes or marks a frozen tet.
         let tets = unsafe { self.store.tets() };
         let frozen = Frozen::new(tets, n_used, &parts, threads);
-        let all = part_slots.into_iter().zip(&mut self.scratches).zip(frozen.hints.clone()).enumerate();
+        let all = part_slots.into_iter().zip(&mut self.scratches).zip(&frozen.hints).enumerate();
         let workers = all.map(|(part, ((slots, scratch), hints))| Worker {
             points,
             sure: self.sure,
@@ -205,11 +207,12 @@ impl Builder<'_> {
             scratch,
             n_attempts: self.n_attempts,
             part: parts.get(part),
+            hint: hints.first().copied(),
             hints,
         });
         let insert = |(part, mut worker): (usize, Worker)| -> Result<_> {
             let left = worker.insert(&own[part], &self.n_done, threads.watch())?;
-            Ok((left, worker.slots, worker.n_attempts, worker.hints.first().copied()))
+            Ok((left, worker.slots, worker.n_attempts, worker.hint))
         };
         let done = threads.each(workers.enumerate().collect(), insert);
         frozen.release(tets);
@@ -254,15 +257,17 @@ struct Worker<'a> {
     scratch: &'a mut Scratch,
     n_attempts: u32,
     part: Part<'a>,
-    /// The tet where the next walk starts, and others of the part; empty where no tet belongs to the part.
-    hints: Vec<u32>,
+    /// The tet where the next walk starts; `None` where no tet belongs to the part.
+    hint: Option<u32>,
+    /// Other tets of the part, or what has become of their slots.
+    hints: &'a [u32],
 }
 
 impl Worker<'_> {
     /// Inserts vertices in order; returns those left: whose cavity reaches a frozen tet, and those from the
     /// one on for which there are too few slots.
     fn insert(&mut self, vertices: &[u32], n_done: &AtomicUsize, watch: &Watch) -> Result<Vec<u32>> {
-        let Some(&(mut hint)) = self.hints.first() else { return Ok(vertices.to_vec()) };
+        let Some(mut hint) = self.hint else { return Ok(vertices.to_vec()) };
         let (mut left, arch) = (Vec::new(), Arch::new());
         for (k, run) in vertices.chunks(RUN).enumerate() {
             let done = n_done.fetch_add(run.len(), Ordering::Relaxed);
@@ -281,7 +286,7 @@ impl Worker<'_> {
                 break;
             }
         }
-        self.hints[0] = hint;
+        self.hint = Some(hint);
         Ok(left)
     }
 }
@@ -305,10 +310,11 @@ impl WithSimd for Run<'_, '_> {
             sure,
             tets,
             part,
+            hints,
             ref mut slots,
             ref mut scratch,
             ref mut n_attempts,
-            ref hints,
+            ..
         } = *self.worker;
         let Scratch { cavity, fill } = scratch;
         let mut hint = *self.hint;
@@ -324,7 +330,7 @@ impl WithSimd for Run<'_, '_> {
             } else {
                 n_failed += 1;
                 if n_failed % PATIENCE == 0 {
-                    hint = hints[n_failed / PATIENCE % hints.len()];
+                    hint = nearest(tets, points, hints, new.point).unwrap_or(hint);
                 }
                 assert!(!part.is_all(), "the points are distinct, so each is in conflict with a tet");
                 self.left.push(vertex);
@@ -334,4 +340,12 @@ impl WithSimd for Run<'_, '_> {
         *self.hint = hint;
         n
     }
+}
+
+/// The hint whose tet has the nearest first vertex, if any of them still has a tet that is not a ghost.
+#[cold]
+fn nearest(tets: Tets, points: &[Point], hints: &[u32], place: Point) -> Option<u32> {
+    let with_tet = hints.iter().copied().filter(|&hint| !is_ghost(tets.vertices.get(hint)));
+    let away = |hint: &u32| distance_squared(points[tets.vertices.get(*hint)[0] as usize], place);
+    with_tet.min_by(|x, y| away(x).total_cmp(&away(y)))
 }

@@ -9,6 +9,10 @@ const SAMPLE: usize = 256;
 
 /// Slots that a thread looks at, at a time.
 const RUN: usize = 1 << 16;
+/// Of each part one tet of so many slots is listed as a hint, if the part has one there.
+const HINT_RUN: u32 = 1 << 11;
+/// The largest number of hints of a part.
+const MOST_HINTS: usize = 256;
 
 /// The part of each vertex. Parts are boxes: space is divided in two, and each side again, with about as many
 /// of the points to insert on each side.
@@ -146,7 +150,7 @@ fn part(splits: &[Split], root: Side, p: Point) -> u16 {
 /// The tets between parts, which are marked as [`FROZEN`].
 pub(super) struct Frozen {
     tets: Vec<Vec<u32>>,
-    /// For each part some of its tets that are not ghosts, far from each other.
+    /// For each part some of its tets that are not ghosts.
     pub(super) hints: Vec<Vec<u32>>,
 }
 
@@ -155,14 +159,19 @@ impl Frozen {
     pub(super) fn new(tets: Tets, n_used: usize, parts: &Parts, threads: &Threads) -> Self {
         let runs = (0..n_used as u32).step_by(RUN).map(|from| from..(n_used as u32).min(from + RUN as u32));
         let found = threads.each(runs.collect(), |run| {
-            let (mut frozen, mut hints) = (Vec::new(), vec![None; parts.count]);
+            let (mut frozen, mut hints) = (Vec::new(), vec![Vec::new(); parts.count]);
             for tet in run {
                 let vertices = tets.vertices.get(tet);
                 if vertices == FREE {
                     continue;
                 }
                 match of_tet(&parts.of_vertex, vertices) {
-                    Some(part) if !is_ghost(vertices) => hints[usize::from(part)] = Some(tet),
+                    Some(part) if !is_ghost(vertices) => {
+                        let hints: &mut Vec<u32> = &mut hints[usize::from(part)];
+                        if hints.last().is_none_or(|last| last / HINT_RUN != tet / HINT_RUN) {
+                            hints.push(tet);
+                        }
+                    }
                     Some(_) => {}
                     None => {
                         tets.gauges.set_mark(tet, FROZEN);
@@ -172,7 +181,10 @@ impl Frozen {
             }
             (frozen, hints)
         });
-        let hints_of = |part: usize| found.iter().filter_map(|(_, hints)| hints[part]).collect();
+        let hints_of = |part: usize| {
+            let all: Vec<u32> = found.iter().flat_map(|(_, hints)| &hints[part]).copied().collect();
+            all.iter().copied().step_by(all.len().div_ceil(MOST_HINTS).max(1)).collect()
+        };
         let hints = (0..parts.count).map(hints_of).collect();
         Self { tets: found.into_iter().map(|f| f.0).collect(), hints }
     }
