@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::finish::{Finished, push_hull};
 use super::store::is_ghost;
-use crate::base::{TetId, Threads, VertexId};
+use crate::base::{Csr, TetId, Threads, VertexId};
 use crate::spatial::OUTSIDE;
 
 /// Numbers the tets by their vertices, the one that was inserted last first, and orders the vertices of each
@@ -36,11 +36,12 @@ pub(super) fn by_vertices(arrays: [Vec<[u32; 4]>; 2], vertex_to_id: &[u32], thre
         }
         hull
     });
-    let tets =
-        tets.into_iter().map(|[a, b, c, d]| [VertexId(a), VertexId(b), VertexId(c), VertexId(d)]).collect();
-    let neighbors =
-        neighbors.into_iter().map(|[a, b, c, d]| [TetId(a), TetId(b), TetId(c), TetId(d)]).collect();
-    Finished { tets, neighbors, hull: hull.concat() }
+    Finished { tets: as_ids(tets, VertexId), neighbors: as_ids(neighbors, TetId), hull: hull.concat() }
+}
+
+/// The same memory as ids.
+fn as_ids<T>(numbers: Vec<[u32; 4]>, id: impl Fn(u32) -> T) -> Vec<[T; 4]> {
+    numbers.into_iter().map(|[a, b, c, d]| [id(a), id(b), id(c), id(d)]).collect()
 }
 
 /// The even permutations of four: those that begin with the first, the second, ...
@@ -89,36 +90,6 @@ const LEAST_SPAN: usize = 1 << 9;
 /// The largest number of groups of such vertices.
 const MOST_GROUPS: usize = 1 << 11;
 
-/// Slots, group by group.
-struct Grouped {
-    slots: Vec<u32>,
-    /// Where each group begins, and where the last one ends.
-    starts: Vec<u32>,
-}
-
-impl Grouped {
-    /// The slots of a run, those of `group(slot)` together; `None` are left out.
-    fn new(slots: std::ops::Range<u32>, n_groups: usize, group: impl Fn(u32) -> Option<usize>) -> Self {
-        let mut starts = vec![0; n_groups + 1];
-        slots.clone().filter_map(&group).for_each(|group| starts[group + 1] += 1);
-        for group in 0..n_groups {
-            starts[group + 1] += starts[group];
-        }
-        let (mut next, mut placed) = (starts.clone(), vec![0; starts[n_groups] as usize]);
-        for slot in slots {
-            if let Some(group) = group(slot) {
-                placed[next[group] as usize] = slot;
-                next[group] += 1;
-            }
-        }
-        Self { slots: placed, starts }
-    }
-
-    fn group(&self, group: usize) -> &[u32] {
-        &self.slots[self.starts[group] as usize..self.starts[group + 1] as usize]
-    }
-}
-
 /// Tets in the order of their turned vertices.
 struct Order {
     /// The turned vertices under the caller's ids.
@@ -138,15 +109,16 @@ fn in_order(vertices: &[[u32; 4]], vertex_to_id: &[u32], threads: &Threads) -> O
         (!is_ghost(vertices)).then(|| a.max(b).max(c.max(d)) as usize / span)
     };
     let runs = threads.each((0..vertices.len()).step_by(RUN).collect(), |from| {
-        Grouped::new(from as u32..vertices.len().min(from + RUN) as u32, n_groups, group)
+        let slots = from as u32..vertices.len().min(from + RUN) as u32;
+        Csr::from_pairs(n_groups, || slots.clone().filter_map(|slot| Some((group(slot)?, slot))))
     });
-    let n_tets = |group: usize| runs.iter().map(|run| run.group(group).len()).sum();
+    let n_tets = |group: usize| runs.iter().map(|run| run.list(group).len()).sum();
     let lengths: Vec<usize> = (0..n_groups).map(n_tets).collect();
     let n = lengths.iter().sum();
     let mut order = Order { tets: vec![[0; 4]; n], slots: vec![0; n], turns: vec![0; n] };
     threads.each(order.groups(&lengths), |group| {
         let number = group.number;
-        let slots = runs.iter().flat_map(|run| run.group(number)).copied();
+        let slots = runs.iter().flat_map(|run| run.list(number)).copied();
         group.fill(slots, span, vertices, vertex_to_id);
     });
     order
@@ -195,29 +167,18 @@ impl Group<'_> {
         vertices: &[[u32; 4]],
         vertex_to_id: &[u32],
     ) {
-        let mut starts = vec![0; span + 1];
         let mut entries = Vec::with_capacity(self.tets.len());
         for slot in slots {
             let vertices = vertices[slot as usize];
             let turn = turn(vertices);
             let [last, second, third, fourth] = turned(vertices, turn);
-            starts[last as usize % span + 1] += 1;
             entries.push(Entry { last, key: u64::from(second) << 32 | u64::from(third), fourth, slot, turn });
         }
-        for k in 0..span {
-            starts[k + 1] += starts[k];
-        }
-        let (mut next, mut sorted) = (starts.clone(), vec![Entry::default(); entries.len()]);
-        for entry in entries {
-            let place: &mut usize = &mut next[entry.last as usize % span];
-            sorted[*place] = entry;
-            *place += 1;
-        }
-        for vertex in starts.windows(2) {
-            sorted[vertex[0]..vertex[1]].sort_unstable_by_key(|entry| entry.key);
-        }
+        let mut of_last =
+            Csr::from_pairs(span, || entries.iter().map(|entry| (entry.last as usize % span, *entry)));
+        (0..span).for_each(|k| of_last.list_mut(k).sort_unstable_by_key(|entry| entry.key));
         let id = |v: u32| vertex_to_id[v as usize];
-        for (k, Entry { last, key, fourth, slot, turn }) in sorted.into_iter().enumerate() {
+        for (k, &Entry { last, key, fourth, slot, turn }) in of_last.items().iter().enumerate() {
             self.tets[k] = [id(last), id((key >> 32) as u32), id(key as u32), id(fourth)];
             (self.slots[k], self.turns[k]) = (slot, turn);
         }
