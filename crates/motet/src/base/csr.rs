@@ -112,15 +112,15 @@ impl<T> Csr<T> {
 }
 
 impl<T: Copy> Csr<T> {
-    /// Adds the lists of another at the end.
+    /// Adds some lists of another at the end.
     ///
     /// Panics past `u32::MAX` items in all.
-    pub(crate) fn append(&mut self, other: &Self) {
+    pub(crate) fn append_range(&mut self, other: &Self, lists: Range<usize>) {
+        let [start, end] = [lists.start, lists.end].map(|i| other.offsets[i]);
         let n = u32::try_from(self.items.len()).expect("fewer than 2^32 items");
-        let most = other.offsets.last().copied().unwrap_or(0);
-        assert!(n.checked_add(most).is_some(), "fewer than 2^32 items");
-        self.items.extend_from_slice(&other.items);
-        self.offsets.extend(other.offsets[1..].iter().map(|offset| n + offset));
+        assert!(n.checked_add(end - start).is_some(), "fewer than 2^32 items");
+        self.items.extend_from_slice(&other.items[start as usize..end as usize]);
+        self.offsets.extend(other.offsets[lists.start + 1..=lists.end].iter().map(|o| n + (o - start)));
     }
 }
 

@@ -164,9 +164,14 @@ fn label_ids(field: &Field, on_dim: &[bool]) -> Option<Vec<i32>> {
     if field.components != 1 || matches!(field.values, Values::Text(_)) {
         return None;
     }
-    let all = field.values.to_i64()?;
-    let ids: Option<Vec<i32>> =
-        all.iter().zip(on_dim).map(|(&id, &on)| if on { i32::try_from(id).ok() } else { Some(0) }).collect();
+    let ids: Option<Vec<i32>> = match &field.values {
+        Values::I32(ids) => Some(ids.iter().zip(on_dim).map(|(&id, &on)| if on { id } else { 0 }).collect()),
+        values => {
+            let all = values.to_i64()?;
+            let id = |(&id, &on): (&i64, &bool)| if on { i32::try_from(id).ok() } else { Some(0) };
+            all.iter().zip(on_dim).map(id).collect()
+        }
+    };
     ids.filter(|ids| ids.iter().any(|&id| id != 0))
 }
 

@@ -42,23 +42,24 @@ pub struct Body {
 /// The bodies of a mesh, in the order of their region numbers.
 pub(crate) fn bodies_of_mesh(mesh: &Mesh) -> Vec<Body> {
     let Some(regions) = mesh.regions() else { return Vec::new() };
-    let mut bodies: BTreeMap<i32, Body> = BTreeMap::new();
-    for (cell, kind, vertices) in mesh.cells.iter() {
-        let (CellKind::TETRA, &[a, b, c, d]) = (kind, vertices) else { continue };
+    let (mut bodies, mut places, mut last) = (Vec::new(), BTreeMap::new(), None);
+    for (cell, tet) in mesh.cells.tets() {
         let region = regions.ids[cell.index()];
-        let name = || regions.names.get(&region).cloned();
-        let body = bodies.entry(region).or_insert_with(|| Body {
-            region,
-            name: name(),
-            tets: 0,
-            prisms: 0,
-            volume: 0.0,
-            is_void: false,
-        });
+        let place = match last {
+            Some((of_last, place)) if of_last == region => place,
+            _ => *places.entry(region).or_insert_with(|| {
+                let name = regions.names.get(&region).cloned();
+                bodies.push(Body { region, name, tets: 0, prisms: 0, volume: 0.0, is_void: false });
+                bodies.len() - 1
+            }),
+        };
+        last = Some((region, place));
+        let body = &mut bodies[place];
         body.tets += 1;
-        body.volume += volume([a, b, c, d].map(|v| mesh.points[v.index()]));
+        body.volume += volume(tet.map(|v| mesh.points[v.index()]));
     }
-    bodies.into_values().collect()
+    bodies.sort_by_key(|body| body.region);
+    bodies
 }
 
 /// Counts the tets and prisms of a mesh into its bodies, which must be in the order of their regions.
@@ -124,7 +125,7 @@ pub(super) fn arrange(
         voids.iter().copied().filter(|body| leaves_voids_out && !names.contains_key(body)).collect();
     holes.extend(&left_out);
     let order = from_outside(&tets.triangle_to_bodies);
-    let by_surface = EnclosingSurfaces::find(tets, surfaces, triangles).names(surfaces, &order);
+    let by_surface = EnclosingSurfaces::find(tets, surfaces, triangles).names(tets, surfaces, &order);
     for (body, name) in by_surface {
         if !names.contains_key(&body) && !holes.contains(&body) {
             let unused = unused_name(&name, |name| names.values().any(|other| other == name));
@@ -184,6 +185,10 @@ fn voids(tets: &Constrained, surfaces: &Surfaces, triangles: &[[VertexId; 3]]) -
 }
 
 fn renumber(tets: &mut Constrained, new: &BTreeMap<u32, u32>) {
+    let is_same = new.iter().all(|(old, new)| old == new);
+    if is_same && tets.bodies.iter().all(|&body| (body as usize) < new.len()) {
+        return;
+    }
     let kept = |body: &u32| new.get(body).copied();
     let both = tets.tets.iter().zip(&tets.bodies);
     (tets.tets, tets.bodies) = both.filter_map(|(tet, body)| Some((*tet, kept(body)?))).unzip();
@@ -297,8 +302,6 @@ fn from_outside(triangle_to_bodies: &[[Side; 2]]) -> Vec<u32> {
 struct EnclosingSurfaces {
     /// For each body its surfaces, in ascending order.
     of_body: BTreeMap<u32, BTreeSet<u32>>,
-    /// The volume that each surface encloses; absent for surfaces that are not closed by themselves.
-    volumes: BTreeMap<u32, f64>,
 }
 
 impl EnclosingSurfaces {
@@ -335,26 +338,30 @@ impl EnclosingSurfaces {
                 }
             }
         }
-        let of_body: BTreeMap<u32, BTreeSet<u32>> =
-            of_side.into_iter().filter_map(|(side, of)| Some((side?, &of - &torn))).collect();
+        Self { of_body: of_side.into_iter().filter_map(|(side, of)| Some((side?, &of - &torn))).collect() }
+    }
+
+    /// The volume that each surface encloses; absent for surfaces that are not closed by themselves.
+    fn volumes(&self, tets: &Constrained) -> BTreeMap<u32, f64> {
         let mut volumes = BTreeMap::new();
         for (tet, body) in tets.tets.iter().zip(&tets.bodies) {
             let volume = volume(tet.map(|v| tets.points[v.index()]));
-            let of_body = of_body.get(body).into_iter().flatten();
+            let of_body = self.of_body.get(body).into_iter().flatten();
             of_body.for_each(|s| *volumes.entry(*s).or_insert(0.0) += volume);
         }
-        Self { of_body, volumes }
+        volumes
     }
 
     /// For each body, in this order, the name of the smallest surface that encloses it; empty if there is
     /// only one surface.
-    fn names(&self, surfaces: &Surfaces, order: &[u32]) -> Vec<(u32, String)> {
+    fn names(&self, tets: &Constrained, surfaces: &Surfaces, order: &[u32]) -> Vec<(u32, String)> {
         if surfaces.roles.iter().filter(|role| **role == Role::Boundary).count() < 2 {
             return Vec::new();
         }
+        let volumes = self.volumes(tets);
         let smallest = |body: &u32| {
             let holders = self.of_body.get(body)?.iter();
-            holders.min_by(|a, b| self.volumes[a].total_cmp(&self.volumes[b]))
+            holders.min_by(|a, b| volumes[a].total_cmp(&volumes[b]))
         };
         let named = |body: &u32| Some((*body, surfaces.names[*smallest(body)? as usize].clone()));
         order.iter().filter_map(named).filter(|(_, name)| !name.is_empty()).collect()

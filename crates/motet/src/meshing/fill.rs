@@ -13,16 +13,19 @@ use super::layers::{self, GrownLayers, Layers};
 use super::size_field::SizeField;
 use super::sizes::{Coarse, Sizes};
 use super::surfaces::Surfaces;
-use crate::base::{Error, Point, Result, Threads, VertexId, reasons};
+use crate::base::{CellId, Error, Point, Result, Threads, VertexId, reasons};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
 use crate::geometry::predicates::orient3d;
-use crate::geometry::quality::eas;
+use crate::geometry::quality::eas_of_each;
 use crate::geometry::rounding;
 use crate::geometry::tet::volume;
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh};
 use crate::names;
 use crate::preflight::Preflight;
 use crate::remesh::{self, Improve, SurfaceRule, remesh_labelled};
+
+/// A thread takes this many cells at a time.
+const SWEEP: usize = 1 << 14;
 
 /// Vertices of a flat facet may lie off a plane through three of them by up to this many times the rounding
 /// error of a coordinate.
@@ -220,13 +223,13 @@ pub fn fill(
     let mut tets = fill_tets(&joined, points, options, threads)?;
     threads.watch().report_and_check("finding regions", 0, 0)?;
     let arranged = bodies::arrange(&mut tets, surfaces, &triangles, &named)?;
-    let mut report = report(&joined, &tets, n_points);
-    let (mut mesh, _) = mesh(&joined, &tets);
+    let mut report = report(&joined, &tets, n_points, threads);
+    let (mut mesh, _) = mesh(&joined, &tets, threads);
     mesh.label_names.regions = region_names(&arranged);
     drop(tets);
     let (mesh, improved) = improve(mesh, options, coarse.is_some(), off_plane, threads)?;
     (report.coarse, report.divided) = (coarse, divided);
-    (report.bodies, report.not_positive) = (bodies_of(&mesh, &arranged), not_positive(&mesh));
+    (report.bodies, report.not_positive) = (bodies_of(&mesh, &arranged), not_positive(&mesh, threads));
     report.voids = arranged.n_left_out;
     Ok(Filled { report, mesh, improved, layers: None })
 }
@@ -247,13 +250,13 @@ fn fill_with_layers(
         let n_points = core.points.len() + points.len();
         Ok((fill_tets(core, points, options, threads)?, n_points))
     })?;
-    let mut report = report(grown.core(), &tets, n_points);
-    let (core, core_to_mesh) = mesh(grown.core(), &tets);
+    let mut report = report(grown.core(), &tets, n_points, threads);
+    let (core, core_to_mesh) = mesh(grown.core(), &tets, threads);
     let mut glued = grown.glue(&core, &core_to_mesh);
     glued.label_names.regions = region_names(&arranged);
     let (mut mesh, improved) = improve(glued, options, false, None, threads)?;
     let split = layers::split(mesh.clone());
-    (report.bodies, report.not_positive) = (bodies_of(&split, &arranged), not_positive(&split));
+    (report.bodies, report.not_positive) = (bodies_of(&split, &arranged), not_positive(&split, threads));
     report.voids = arranged.n_left_out;
     match layers.keep_prisms {
         true => bodies::count_cells(&mut report.bodies, &mesh),
@@ -337,17 +340,23 @@ fn points_inside(
     }
 }
 
-fn not_positive(mesh: &Mesh) -> usize {
-    let tets = mesh.cells.iter().filter_map(|(_, kind, vertices)| match (kind, vertices) {
+fn not_positive(mesh: &Mesh, threads: &Threads) -> usize {
+    let corners = |cell: usize| match (mesh.cells.kinds()[cell], mesh.cells.vertices(CellId::new(cell))) {
         (CellKind::TETRA, &[a, b, c, d]) => Some([a, b, c, d].map(|v| mesh.points[v.index()])),
         _ => None,
+    };
+    let is_not = |&[a, b, c, d]: &[Point; 4]| orient3d(a, b, c, d) <= 0 || volume([a, b, c, d]) <= 0.0;
+    let counts = threads.in_runs(mesh.cells.len(), SWEEP, |(): &mut (), run| {
+        vec![run.filter_map(corners).filter(is_not).count()]
     });
-    tets.filter(|&[a, b, c, d]| orient3d(a, b, c, d) <= 0 || volume([a, b, c, d]) <= 0.0).count()
+    counts.into_iter().sum()
 }
 
 /// Collects statistics. The first `n_points` points were given; points on edges follow.
-fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report {
-    let corners = |t: &[VertexId; 4]| t.map(|v| filled.points[v.index()]);
+fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize, threads: &Threads) -> Report {
+    let worst = threads.in_runs(filled.tets.len(), SWEEP, |(): &mut (), run| {
+        vec![eas_of_each(&filled.points, &filled.tets[run]).into_iter().fold(f64::INFINITY, f64::min)]
+    });
     let is_used = used_vertices(filled.points.len(), filled.tets.as_flattened().iter());
     let n_used = |of: std::ops::Range<usize>| is_used[of].iter().filter(|n| **n).count();
     let points_on_edges = n_used(n_points..n_points + filled.on_edges.len() + filled.in_triangles.len());
@@ -362,7 +371,7 @@ fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report 
         coarse: None,
         divided: None,
         voids: 0,
-        worst_eas: filled.tets.iter().map(|t| eas(corners(t))).fold(f64::INFINITY, f64::min),
+        worst_eas: worst.into_iter().fold(f64::INFINITY, f64::min),
         not_positive: 0,
         bodies: Vec::new(),
     }
@@ -370,27 +379,24 @@ fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report 
 
 /// Returns tets and triangles as cells, and the new number of each point; points that no cell uses are left
 /// out.
-fn mesh(surfaces: &Surfaces, filled: &Constrained) -> (Mesh, Vec<VertexId>) {
-    let mut triangles = Vec::new();
+fn mesh(surfaces: &Surfaces, filled: &Constrained, threads: &Threads) -> (Mesh, Vec<VertexId>) {
+    let (mut triangles, mut patches) = (Vec::new(), vec![0; filled.tets.len()]);
     for (i, list) in filled.triangle_to_facets.iter().enumerate() {
         if filled.triangle_to_bodies[i] != [None; 2] {
-            triangles.extend(list.iter().map(|&t| (t, surfaces.patches[i])));
+            triangles.extend_from_slice(list);
+            patches.resize(filled.tets.len() + triangles.len(), surfaces.patches[i]);
         }
     }
-    let of_triangles = triangles.iter().flat_map(|(t, _)| t);
-    let is_used = used_vertices(filled.points.len(), filled.tets.as_flattened().iter().chain(of_triangles));
+    let used = filled.tets.as_flattened().iter().chain(triangles.as_flattened());
+    let is_used = used_vertices(filled.points.len(), used);
     let (points, old_to_new) = compact(&filled.points, &is_used);
-    let (mut cells, mut regions, mut patches) = (Cells::new(), Vec::new(), Vec::new());
-    for (tet, &body) in filled.tets.iter().zip(&filled.bodies) {
-        cells.push(CellKind::TETRA, tet.map(|v| old_to_new[v.index()]));
-        regions.push(body as i32 + 1);
-        patches.push(0);
-    }
-    for (triangle, patch) in triangles {
-        cells.push(CellKind::TRIANGLE, triangle.map(|v| old_to_new[v.index()]));
-        regions.push(0);
-        patches.push(patch);
-    }
+    let new = |v: VertexId| old_to_new[v.index()];
+    let mut cells = Cells::new();
+    cells.push_all(CellKind::TETRA, &threads.map(filled.tets.len(), |t| filled.tets[t].map(new)), threads);
+    triangles.iter_mut().for_each(|triangle| *triangle = triangle.map(new));
+    cells.push_all(CellKind::TRIANGLE, &triangles, threads);
+    let mut regions: Vec<i32> = filled.bodies.iter().map(|&body| body as i32 + 1).collect();
+    regions.resize(cells.len(), 0);
     let mesh = Mesh {
         cell_data: vec![Field::scalars("region", regions), Field::scalars("patch", patches)],
         label_names: LabelNames { patches: surfaces.patch_names.clone(), ..LabelNames::default() },

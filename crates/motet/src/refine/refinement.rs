@@ -106,8 +106,8 @@ impl Refinement {
     pub fn new(mesh: &TetMesh, options: Options, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
         check_roots(mesh, threads)?;
-        let roots = mesh.tets.iter().map(|tet| (tet.map(in_forest), false));
-        let forest = Forest::new(&mesh.points, roots);
+        let roots: Vec<_> = mesh.tets.iter().map(|tet| (tet.map(in_forest), false)).collect();
+        let forest = Forest::new(&mesh.points, &roots, threads);
         let bounds = ShapeBounds::new(options, &forest);
         let mut refinement = Self {
             first_mesh: mesh.clone(),

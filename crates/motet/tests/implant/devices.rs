@@ -263,7 +263,7 @@ fn fields_go_along() {
         let p = made.mesh.point_field("p").unwrap().values.to_f64().unwrap();
         let off = p.iter().zip(&made.mesh.points).map(|(x, p)| (x - linear(*p)).abs()).fold(0.0, f64::max);
         assert!(off < 1e-13, "{off}");
-        let ledger = field_ledger(&host, &made.mesh, &Rules::default());
+        let ledger = field_ledger(&host, &made.mesh, &Rules::default(), &Threads::single());
         let of_mean = ledger.iter().find(|field| field.name == "mean").unwrap();
         assert!(of_mean.range_after.unwrap()[0] >= of_mean.range_before.unwrap()[0]);
         // The sum over all regions is preserved: what lies in the ball came from the box.

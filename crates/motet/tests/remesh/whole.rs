@@ -171,7 +171,7 @@ fn the_ledger_of_fields_tells_integrals_by_region() {
     let old = shaken_box(0.35, false);
     let rules = Rules { points: [("velocity".to_owned(), Rule::Drop)].into(), ..Rules::default() };
     let outcome = remesh_mesh(&old, &Options::default(), &rules, &Threads::single()).unwrap();
-    let fields = field_ledger(&old, &outcome.mesh, &rules);
+    let fields = field_ledger(&old, &outcome.mesh, &rules, &Threads::single());
     let heads: Vec<_> = fields.iter().map(|f| (f.name.as_str(), f.on, f.rule)).collect();
     assert_eq!(
         heads,
@@ -195,7 +195,7 @@ fn the_ledger_of_fields_tells_integrals_by_region() {
     // Values that do not come from the old mesh.
     let mut other = outcome.mesh.clone();
     other.set_cell_field(Field::scalars("pressure", vec![0.5; other.cells.len()]));
-    assert!(field_ledger(&old, &other, &rules)[2].deviation() > 0.1);
+    assert!(field_ledger(&old, &other, &rules, &Threads::single())[2].deviation() > 0.1);
 }
 
 #[test]

@@ -39,7 +39,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let (mut mesh, history, report) = outcome.map_err(|e| e.in_file(&args.mesh))?;
     meter.stage("writing");
     let begin_fields = Instant::now();
-    let fields = field_ledger(&old, &mesh, &rules);
+    let fields = field_ledger(&old, &mesh, &rules, &threads);
     let on_fields = begin_fields.elapsed().as_secs_f64();
     let Written { lost, seconds: write } =
         args.arrays.write(&mut mesh, history.as_ref(), &args.output, &args.writing, &threads)?;

@@ -7,7 +7,7 @@ use super::grown::GrownFacets;
 use super::levels::Levels;
 use super::recovery::{Order, Unrecovered};
 use super::sites::Sites;
-use crate::base::{Point, Result, VertexId, Watch};
+use crate::base::{Point, Result, Threads, VertexId};
 
 /// The largest number of ways of joining triangles that are tried.
 const ATTEMPTS: usize = 6;
@@ -23,20 +23,20 @@ const RETRIES_ROUNDED: usize = 2;
 /// previous one has failed.
 ///
 /// # Errors
-/// When no attempt fills the surfaces: the error of the first attempt. When `watch` stops the work.
+/// When no attempt fills the surfaces: the error of the first attempt. When the watch stops the work.
 pub(super) fn best(
     sites: &Sites,
     triangles: &[[VertexId; 3]],
     rounding: Point,
-    watch: &Watch,
-    fill: impl Fn(&FlatFacets, &Order) -> Result<Filled, Unrecovered>,
+    threads: &Threads,
+    fill: impl Fn(&FlatFacets, &Order<'_>) -> Result<Filled, Unrecovered>,
 ) -> Result<Filled> {
     let grown = GrownFacets::find(sites, triangles, rounding);
     let mut levels = Levels::new(triangles, &grown);
     let mut flats = FlatFacets::find(sites, triangles, &levels);
     let attempt = |levels: &Levels, flats: &FlatFacets| {
         let max_retries = if levels.has_rounded() { RETRIES_ROUNDED } else { RETRIES };
-        Order::with_retries(max_retries, watch, |order| fill(flats, order))
+        Order::with_retries(max_retries, threads, |order| fill(flats, order))
     };
     let mut best = attempt(&levels, &flats);
     let mut failed = failures(&best, &levels, triangles);
@@ -74,7 +74,9 @@ fn failures(filled: &Result<Filled, Unrecovered>, levels: &Levels, triangles: &[
 /// triangles differ from those given; the number of facets in excess of triangles; and the number of tets
 /// without volume.
 fn faults(filled: &Result<Filled, Unrecovered>) -> (bool, usize, usize) {
-    let of =
-        |filled: &Filled| (!filled.unrestored.is_empty(), filled.n_in_pieces(), filled.flat_tets().count());
+    let of = |filled: &Filled| {
+        let surface = &filled.surface;
+        (!surface.unrestored.is_empty(), filled.n_in_pieces(), surface.flat_tets.len())
+    };
     filled.as_ref().map_or((true, usize::MAX, usize::MAX), of)
 }

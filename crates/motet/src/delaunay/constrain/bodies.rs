@@ -1,8 +1,9 @@
 //! The bodies that the surfaces enclose: a body is a set of tets connected without crossing a surface.
 
 use super::flats::FlatFacets;
+use super::present::find_facets;
 use super::recovery::{Part, Unrecovered};
-use crate::base::{Csr, Error, TetId, VertexId, same_orientation};
+use crate::base::{Csr, Error, TetId, Threads, VertexId, same_orientation};
 use crate::kernel::{HalfFacet, NO_TET, Tets};
 
 /// The bodies, and those on both sides of each flat facet.
@@ -23,30 +24,28 @@ impl Bodies {
     /// # Errors
     /// When a part is not a facet of tets.
     pub(super) fn find(
-        tets: &mut Tets,
+        tets: &Tets,
         flats: &FlatFacets,
         parts: &Csr<[VertexId; 3]>,
         corner: VertexId,
+        threads: &Threads,
     ) -> Result<Self, Unrecovered> {
         let mut walls = vec![0u8; tets.n_slots()];
-        let (mut halves, mut star) = (Vec::with_capacity(parts.items().len()), Vec::new());
-        for (i, list) in parts.iter().enumerate() {
-            for &part in list {
-                let half =
-                    tets.find_facet(part, &mut star).ok_or_else(|| lost(flats.triangles.list(i)[0]))?;
-                let other = tets.across(half);
-                let (front, behind) = if faces(tets, half, part) { (half, other) } else { (other, half) };
-                for side in [front, behind] {
-                    if !side.is_none() {
-                        walls[side.tet().index()] |= 1 << side.facet();
-                    }
-                }
-                halves.push(front);
+        let mut halves = find_facets(tets, parts.items(), threads);
+        if let Some(place) = halves.iter().position(|half| half.is_none()) {
+            let flat = parts.offsets().partition_point(|&first| first as usize <= place) - 1;
+            return Err(lost(flats.triangles.list(flat)[0]));
+        }
+        for (half, &part) in halves.iter_mut().zip(parts.items()) {
+            let sides = [*half, tets.across(*half)];
+            for side in sides.into_iter().filter(|side| !side.is_none()) {
+                walls[side.tet().index()] |= 1 << side.facet();
             }
+            *half = sides[usize::from(!faces(tets, *half, part))];
         }
         let mut bodies = Self { of_slot: vec![Self::NONE; tets.n_slots()], count: 0, sides: Vec::new() };
         let first = tets.tet_of(corner);
-        let others: Vec<_> = tets.iter().map(|(tet, _)| tet).collect();
+        let others = tets.iter().map(|(tet, _)| tet);
         for tet in [first].into_iter().filter(|&t| t != NO_TET).chain(others) {
             if bodies.of_slot[tet.index()] == Self::NONE {
                 bodies.flood(tets, &walls, tet);

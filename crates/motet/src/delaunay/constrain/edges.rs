@@ -96,13 +96,17 @@ impl<'a> Edges<'a> {
     /// # Errors
     /// When an edge would have to be divided beyond the precision of its coordinates, or passes through a
     /// vertex or another edge.
-    pub(super) fn recover(mut self, order: &Order) -> Result<(), Unrecovered> {
-        let mut missing = self.segments.missing(self.tets);
+    pub(super) fn recover(mut self, order: &Order<'_>) -> Result<(), Unrecovered> {
+        let mut missing = self.segments.missing(self.tets, order.threads);
         missing.sort_by_key(|&edge| order.rank(|part| part == Part::Edge(edge)));
         let mut queue = VecDeque::from(missing);
         let mut n_made = 0;
         while let Some(piece) = queue.pop_front() {
-            order.watch.report_and_check("recovering edges of the surface", n_made, n_made + queue.len())?;
+            order.watch().report_and_check(
+                "recovering edges of the surface",
+                n_made,
+                n_made + queue.len(),
+            )?;
             n_made += 1;
             let mut n_neutral = None;
             while self.way.find(self.tets, self.sites, piece) {

@@ -4,12 +4,13 @@
 //! The tets cut by a part are removed; the hollows on its two sides are refilled, each with tets that see
 //! nothing beyond the part.
 
-use hashbrown::HashSet;
+use hashbrown::{HashMap, HashSet};
 
 use super::cut::{Cut, Face, Stuck};
 use super::flats::FlatFacets;
 use super::pierce::PiercedFacet;
 use super::plane::Plane;
+use super::present::find_facets;
 use super::recovery::{Order, Part, Unrecovered};
 use super::segments::Segments;
 use super::sites::Sites;
@@ -27,37 +28,57 @@ pub(super) fn recover(
     triangles: &[[VertexId; 3]],
     flats: &FlatFacets,
     may_swap: bool,
-    order: &Order,
+    order: &Order<'_>,
 ) -> Result<Csr<[VertexId; 3]>, Unrecovered> {
     let on_segments = segments.points(sites);
+    let of_flat = |i: usize| {
+        let all = flats.triangles.list(i).iter().map(|&i| triangles[i as usize]);
+        parts_of_flat(sites, all, |t| polygon_of(segments, &on_segments, t))
+    };
+    let mut parts = Csr::default();
+    order.threads.map(flats.triangles.len(), of_flat).into_iter().for_each(|own| parts.push(own));
+    let sides = find_facets(tets, parts.items(), order.threads);
     let mut work = Work::default();
-    let mut all_parts = vec![Vec::new(); flats.triangles.len()];
+    let mut changed = HashMap::new();
     let mut in_line: Vec<usize> = (0..flats.triangles.len()).collect();
     in_line.sort_by_key(|&i| order.rank(|part| flats.has(i, part)));
     for (n_made, i) in in_line.into_iter().enumerate() {
-        order.watch.report_and_check("recovering facets of the surface", n_made, all_parts.len())?;
-        let flat = flats.triangles.list(i);
+        order.watch().report_and_check("recovering facets of the surface", n_made, parts.len())?;
+        let (own, first) = (parts.list(i), parts.offsets()[i] as usize);
+        let at_first = &sides[first..first + own.len()];
+        let is_missing = |(part, side): &(&[VertexId; 3], &HalfFacet)| !work.has(tets, **part, **side);
+        let missing: Vec<_> = own.iter().zip(at_first).filter(is_missing).map(|(&part, _)| part).collect();
+        if missing.is_empty() {
+            work.walls.extend(own.iter().copied().map(sorted_ids));
+            continue;
+        }
+        let (flat, mut own) = (flats.triangles.list(i), own.to_vec());
         let first = triangles[flat[0] as usize];
-        let all = flat.iter().map(|&i| triangles[i as usize]);
-        let mut own = match flat {
-            [_] => parts_of(sites, &polygon_of(segments, &on_segments, first), first),
-            _ => parts_of_many(sites, all.clone(), |t| polygon_of(segments, &on_segments, t)),
-        };
-        let missing = work.missing(tets, &own);
-        let done = match missing[..] {
-            [] => Ok(()),
-            _ if may_swap => {
-                work.make(tets, sites, segments, flat.iter().copied().zip(all).collect(), &mut own)
-            }
-            _ => work.recover(tets, sites, (first, &own), missing),
+        let done = if may_swap {
+            let all = flat.iter().map(|&i| (i, triangles[i as usize])).collect();
+            work.make(tets, sites, segments, all, &mut own)
+        } else {
+            work.recover(tets, sites, (first, &own), missing)
         };
         done.map_err(|_: Stuck| stuck(sites, flat[0], first))?;
         work.walls.extend(own.iter().copied().map(sorted_ids));
-        all_parts[i] = own;
+        changed.insert(i, own);
     }
-    let mut parts = Csr::default();
-    all_parts.into_iter().for_each(|own| parts.push(own));
-    Ok(parts)
+    Ok(with_changed(parts, &changed))
+}
+
+/// The facets of each flat facet, those of some flat facets replaced.
+fn with_changed(
+    parts: Csr<[VertexId; 3]>,
+    changed: &HashMap<usize, Vec<[VertexId; 3]>>,
+) -> Csr<[VertexId; 3]> {
+    if changed.is_empty() {
+        return parts;
+    }
+    let mut all = Csr::default();
+    let own = |(i, list)| changed.get(&i).map_or(list, Vec::as_slice);
+    parts.iter().enumerate().for_each(|each| all.push(own(each).iter().copied()));
+    all
 }
 
 fn stuck(sites: &Sites, i: u32, triangle: [VertexId; 3]) -> Unrecovered {
@@ -103,13 +124,17 @@ fn polygon_of(segments: &Segments, on_segments: &Csr<VertexId>, triangle: [Verte
     polygon
 }
 
-/// The constrained Delaunay triangulation of a flat facet of many triangles, with the points on its outline.
-fn parts_of_many(
+/// The constrained Delaunay triangulation of a flat facet, given by its triangles, with the points on its
+/// outline; `polygon` gives the corners of a triangle and the points on its edges.
+fn parts_of_flat(
     sites: &Sites,
-    triangles: impl Iterator<Item = [VertexId; 3]> + Clone,
+    triangles: impl ExactSizeIterator<Item = [VertexId; 3]> + Clone,
     polygon: impl Fn([VertexId; 3]) -> Vec<VertexId>,
 ) -> Vec<[VertexId; 3]> {
     let Some(first) = triangles.clone().next() else { return Vec::new() };
+    if triangles.len() == 1 {
+        return parts_of(sites, &polygon(first), first);
+    }
     let plane = Plane::new(sites, first);
     let turned = triangles.map(|t| plane.turned(t));
     let mut parts: Vec<_> = turned.flat_map(|t| parts_of(sites, &polygon(t), t)).collect();
@@ -134,6 +159,15 @@ struct Work {
 }
 
 impl Work {
+    /// Whether tets have a facet; `side` is a side that it has had, or [`HalfFacet::NONE`].
+    fn has(&mut self, tets: &mut Tets, facet: [VertexId; 3], side: HalfFacet) -> bool {
+        let still_has = |side: HalfFacet| {
+            let v = tets.vertices(side.tet());
+            facet.iter().all(|corner| v.contains(corner))
+        };
+        !side.is_none() && still_has(side) || tets.find_facet(facet, &mut self.star).is_some()
+    }
+
     fn missing(&mut self, tets: &mut Tets, parts: &[[VertexId; 3]]) -> Vec<[VertexId; 3]> {
         parts.iter().copied().filter(|&part| tets.find_facet(part, &mut self.star).is_none()).collect()
     }

@@ -4,15 +4,22 @@ use hashbrown::HashMap;
 
 use super::bodies::Bodies;
 use super::plane::Plane;
+use super::present::SWEEP;
 use super::sites::Place;
 use super::{Back, Constrained, Filled, PointInTriangle, PointOnEdge};
-use crate::base::{Csr, Point, VertexId, sorted_ids};
+use crate::base::{Csr, Point, Threads, VertexId, sorted_ids};
 use crate::geometry::predicates::spot::Between;
 use crate::geometry::vector::{cross, dot, sub};
 
 impl Filled {
     /// Drops what lies outside, and numbers the rest.
-    pub(super) fn finish(self, points: &[Point], triangles: &[[VertexId; 3]], back: Back) -> Constrained {
+    pub(super) fn finish(
+        self,
+        points: &[Point],
+        triangles: &[[VertexId; 3]],
+        back: Back,
+        threads: &Threads,
+    ) -> Constrained {
         let numbers = Numbers::new(&self, points.len());
         let on_edge = |v: &VertexId| match self.sites.place(*v)? {
             Place::On(place) => {
@@ -36,13 +43,18 @@ impl Filled {
         let placed = of_edges.chain(of_triangles).map(|between| between.rounded());
         let inside =
             numbers.later[on_edges.len() + in_triangles.len()..].iter().map(|&v| back.of(self.sites.near(v)));
-        let tets = || self.tets.iter().filter_map(|(tet, v)| self.body(tet.index()).map(|b| (v, b)));
+        let n_slots = self.tets.n_slots();
+        let inside_of = |run| self.tets.among(run).filter_map(|(tet, v)| Some((v, self.body(tet.index())?)));
+        let renamed = |v: [VertexId; 4]| v.map(|v| numbers.of(v));
         Constrained {
             points: points.iter().copied().chain(placed).chain(inside).collect(),
             on_edges,
             in_triangles,
-            tets: tets().map(|(v, _)| v.map(|v| numbers.of(v))).collect(),
-            bodies: tets().map(|(_, b)| b).collect(),
+            tets: threads.in_runs(n_slots, SWEEP, |(): &mut (), run| {
+                inside_of(run).map(|(v, _)| renamed(v)).collect()
+            }),
+            bodies: threads
+                .in_runs(n_slots, SWEEP, |(): &mut (), run| inside_of(run).map(|(_, b)| b).collect()),
             triangle_to_facets: self.facets(triangles, &numbers),
             triangle_to_bodies: self.sides(triangles),
         }
@@ -82,7 +94,7 @@ impl Filled {
     fn facets(&self, triangles: &[[VertexId; 3]], numbers: &Numbers) -> Csr<[VertexId; 3]> {
         let mut pairs: Vec<(usize, [VertexId; 3])> = Vec::with_capacity(triangles.len());
         for (flat, list) in self.flats.triangles.iter().enumerate() {
-            let parts = self.parts.list(flat);
+            let parts = self.surface.parts.list(flat);
             if let [one] = *list {
                 pairs.extend(parts.iter().map(|&part| (one as usize, part)));
                 continue;
@@ -135,7 +147,7 @@ impl Numbers {
                 v.iter().for_each(|v| is_used[v.index()] = true);
             }
         }
-        filled.parts.items().as_flattened().iter().for_each(|v| is_used[v.index()] = true);
+        filled.surface.parts.items().as_flattened().iter().for_each(|v| is_used[v.index()] = true);
         let used = (n_given..is_used.len()).filter(|&v| is_used[v]).map(VertexId::new);
         let mut later: Vec<VertexId> = used.collect();
         later.sort_by_key(|&v| match filled.sites.place(v) {

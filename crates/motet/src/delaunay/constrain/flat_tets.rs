@@ -5,9 +5,10 @@
 //! point inside, only the other sides of the flat tets limit where that point may lie.
 
 use super::flatness::is_flat;
+use super::present::SWEEP;
 use super::refill::Side;
 use super::repair::{Exchange, SurfaceRepair};
-use crate::base::{TetId, VertexId, sorted_ids};
+use crate::base::{TetId, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
 use crate::kernel::Tets;
@@ -16,23 +17,31 @@ use crate::kernel::Tets;
 const MAX_ROUNDS: usize = 4;
 
 impl SurfaceRepair<'_> {
-    /// Remakes tets without volume, where possible.
-    pub(super) fn remove_flat(&mut self) {
+    /// Remakes tets without volume, where possible; returns those that are left.
+    pub(super) fn remove_flat(&mut self, threads: &Threads) -> Vec<[VertexId; 4]> {
+        let mut flat = self.find_flat(threads);
         for _ in 0..MAX_ROUNDS {
-            let is_inside = |tet: &TetId| self.bodies.of_slot[tet.index()] != 0;
-            let all =
-                self.tets.iter().filter(|(tet, v)| is_inside(tet) && is_flat(v.map(|v| self.sites.near(v))));
-            let flat: Vec<(TetId, [VertexId; 4])> = all.collect();
             let mut has_changed = false;
-            for (tet, v) in flat {
+            for &(tet, v) in &flat {
                 has_changed |= self.tets.vertices(tet) == v
                     && (EDGES.iter().any(|&[i, j]| self.remove_at([v[i], v[j]]).is_some())
                         || v.iter().any(|&v| self.replace(v).is_some()));
             }
             if !has_changed {
-                return;
+                break;
             }
+            flat = self.find_flat(threads);
         }
+        flat.into_iter().map(|(_, v)| v).collect()
+    }
+
+    /// The tets inside that have no volume in the digits of their coordinates.
+    fn find_flat(&self, threads: &Threads) -> Vec<(TetId, [VertexId; 4])> {
+        let is_inside = |tet: TetId| self.bodies.of_slot[tet.index()] != 0;
+        let near = |v: [VertexId; 4]| v.map(|v| self.sites.near(v));
+        threads.in_runs(self.tets.n_slots(), SWEEP, |(): &mut (), run| {
+            self.tets.among(run).filter(|&(tet, v)| is_inside(tet) && is_flat(near(v))).collect()
+        })
     }
 
     /// Replaces a Steiner point inside by another one, provided that no tet at the new one is flat.

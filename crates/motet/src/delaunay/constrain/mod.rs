@@ -5,6 +5,7 @@
 //! | start | here | the Delaunay triangulation of all vertices, within a large box |
 //! | edges | `edges`, `path`, `swap`, `split` | a missing edge of the surface is recovered by swaps of tets; where no swap helps, a point is put on it |
 //! | facets | `facets`, `pierce`, `cut`, `wrap` | a missing triangle is recovered by swaps; or the tets that it cuts are removed and both hollows are refilled; or points are put in it |
+//! | sweeps | `present` | which edges and facets the tets have, found on all threads |
 //! | bodies | `bodies` | the bodies that the surfaces separate |
 //! | surface | `repair`, `restore`, `refill`, `grow` | points on edges and in triangles are moved inside |
 //!
@@ -46,6 +47,7 @@ mod levels;
 mod path;
 mod pierce;
 mod plane;
+mod present;
 mod recovery;
 mod refill;
 mod repair;
@@ -63,7 +65,7 @@ use hashbrown::HashSet;
 
 use super::Triangulation;
 use super::input::{self, Scaled};
-use crate::base::{Csr, Error, Point, Result, TetId, Threads, VertexId, sorted_ids};
+use crate::base::{Csr, Error, Point, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::rounding;
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, distance, scale};
@@ -71,11 +73,10 @@ use crate::kernel::Tets;
 use crate::mesh::bounds;
 use bodies::Bodies;
 use edges::Edges;
-use flatness::is_flat;
 use flats::FlatFacets;
 use grown::GrownFacets;
 use recovery::{Order, Unrecovered};
-use repair::SurfaceRepair;
+use repair::{Repaired, SurfaceRepair};
 use segments::Segments;
 use sites::Sites;
 
@@ -163,21 +164,21 @@ pub fn constrain(
     check_distinct(&triangulation, triangles)?;
     given.extend(far_around(&given));
     let moves = edge_points == EdgePoints::MoveInside;
-    let fill = |flats: &FlatFacets, order: &Order| {
+    let fill = |flats: &FlatFacets, order: &Order<'_>| {
         let n_vertices = triangulation.points().len();
-        let tets = Tets::from_neighbors(triangulation.tets(), triangulation.neighbors(), n_vertices);
+        let tets = Tets::from_neighbors(triangulation.tets(), triangulation.neighbors(), n_vertices, threads);
         let sites = Sites::new(given.clone(), &sorted);
         Filled::new(tets, sites, points.len(), triangles, flats.clone(), edge_points, order)
     };
     let sites = Sites::new(given.clone(), &sorted);
     let filled = if moves {
-        attempts::best(&sites, triangles, back.rounding(rounding::of(points)), threads.watch(), fill)?
+        attempts::best(&sites, triangles, back.rounding(rounding::of(points)), threads, fill)?
     } else {
         let flats = FlatFacets::of_each(triangles);
-        Order::with_retries(0, threads.watch(), |order| fill(&flats, order))
+        Order::with_retries(0, threads, |order| fill(&flats, order))
             .map_err(|unrecovered| unrecovered.error)?
     };
-    Ok(filled.finish(points, triangles, back))
+    Ok(filled.finish(points, triangles, back, threads))
 }
 
 /// Returns the number of the flat facet of each triangle: connected triangles that lie in one plane, exactly
@@ -273,9 +274,8 @@ struct Filled {
     segments: Segments,
     flats: FlatFacets,
     bodies: Bodies,
-    parts: Csr<[VertexId; 3]>,
-    /// Flat facets whose triangles differ from those given.
-    unrestored: Vec<u32>,
+    /// The surface. Tets without volume are not looked for where points stay on edges.
+    surface: Repaired,
 }
 
 impl Filled {
@@ -286,48 +286,47 @@ impl Filled {
         triangles: &[[VertexId; 3]],
         flats: FlatFacets,
         edge_points: EdgePoints,
-        order: &Order,
+        order: &Order<'_>,
     ) -> Result<Self, Unrecovered> {
         let is_kept = edge_points == EdgePoints::MoveInside;
         let mut segments = Segments::new(flats.creases.clone());
         if is_kept {
             Edges::new(&mut tets, &mut sites, &mut segments).recover(order)?;
         } else {
-            segments.recover(&mut tets, &mut sites, &order.watch)?;
+            segments.recover(&mut tets, &mut sites, order.threads)?;
         }
-        let mut parts = facets::recover(&mut tets, &mut sites, &segments, triangles, &flats, is_kept, order)?;
-        let mut bodies = Bodies::find(&mut tets, &flats, &parts, VertexId::new(n_points))?;
-        let mut unrestored = Vec::new();
-        if is_kept {
+        let parts = facets::recover(&mut tets, &mut sites, &segments, triangles, &flats, is_kept, order)?;
+        let mut bodies = Bodies::find(&tets, &flats, &parts, VertexId::new(n_points), order.threads)?;
+        let surface = if is_kept {
             let keep = SurfaceRepair::new(&mut tets, &mut sites, &mut bodies, triangles, &flats, &parts);
-            (parts, unrestored) = keep.run(&segments, &order.watch)?;
-        }
-        Ok(Self { tets, sites, segments, flats, bodies, parts, unrestored })
+            keep.run(&segments, order.threads)?
+        } else {
+            Repaired { parts, ..Repaired::default() }
+        };
+        Ok(Self { tets, sites, segments, flats, bodies, surface })
     }
 
     /// The number of facets in excess of the number of triangles.
     fn n_in_pieces(&self) -> usize {
         let n: usize = self.flats.triangles.iter().map(<[u32]>::len).sum();
-        self.parts.items().len().saturating_sub(n)
-    }
-
-    /// The tets inside that have no volume in the digits of their coordinates.
-    fn flat_tets(&self) -> impl Iterator<Item = [VertexId; 4]> {
-        let is_inside = |tet: &TetId| self.bodies.of_slot[tet.index()] != 0;
-        let near = |v: [VertexId; 4]| v.map(|v| self.sites.near(v));
-        self.tets.iter().filter(move |(tet, v)| is_inside(tet) && is_flat(near(*v))).map(|(_, v)| v)
+        self.surface.parts.items().len().saturating_sub(n)
     }
 
     /// The triangles that are in pieces, in flat facets whose triangles differ from those given, or at tets
     /// without volume.
     fn failed(&self, triangles: &[[VertexId; 3]]) -> Vec<u32> {
-        let in_pieces = |flat: usize| self.parts.list(flat).len() != self.flats.triangles.list(flat).len();
+        let in_pieces =
+            |flat: usize| self.surface.parts.list(flat).len() != self.flats.triangles.list(flat).len();
         let all = (0..self.flats.triangles.len()).filter(|&flat| in_pieces(flat));
-        let all = all.chain(self.unrestored.iter().map(|&flat| flat as usize));
+        let all = all.chain(self.surface.unrestored.iter().map(|&flat| flat as usize));
         let mut failed: Vec<u32> =
             all.flat_map(|flat| self.flats.triangles.list(flat).iter().copied()).collect();
-        let edges: HashSet<[VertexId; 2]> =
-            self.flat_tets().flat_map(|v| EDGES.map(|[i, j]| sorted_ids([v[i], v[j]]))).collect();
+        let edges: HashSet<[VertexId; 2]> = self
+            .surface
+            .flat_tets
+            .iter()
+            .flat_map(|v| EDGES.map(|[i, j]| sorted_ids([v[i], v[j]])))
+            .collect();
         let is_at_flat_tet = |[a, b, c]: [VertexId; 3]| {
             [[a, b], [b, c], [c, a]].iter().any(|e| edges.contains(&sorted_ids(*e)))
         };

@@ -1,7 +1,7 @@
 //! Order of recovery: a part that could not be made is made first the next time, or last. What blocks it may
 //! exist only because it was made earlier, or may not exist yet.
 
-use crate::base::{Error, VertexId, Watch};
+use crate::base::{Error, Threads, VertexId, Watch};
 
 /// An edge or a triangle of the surface that could not be made, and why.
 #[derive(Debug)]
@@ -26,17 +26,17 @@ pub(super) enum Part {
     Triangle(u32),
 }
 
-/// Parts that are made out of turn, and the watch.
-#[derive(Debug, Default)]
-pub(super) struct Order {
+/// Parts that are made out of turn, and the threads.
+#[derive(Debug)]
+pub(super) struct Order<'a> {
     /// Parts made before all others, latest failure first.
     first: Vec<Part>,
     /// Parts made after all others.
     last: Vec<Part>,
-    pub(super) watch: Watch,
+    pub(super) threads: &'a Threads,
 }
 
-impl Order {
+impl<'a> Order<'a> {
     /// Repeats `work`, moving each part that could not be made to the front of the line, then to its end,
     /// until all are made. Gives up after `max_retries` repetitions, or when a part could be made neither
     /// first nor last.
@@ -45,10 +45,10 @@ impl Order {
     /// The last failure.
     pub(super) fn with_retries<T>(
         max_retries: usize,
-        watch: &Watch,
+        threads: &'a Threads,
         mut work: impl FnMut(&Self) -> Result<T, Unrecovered>,
     ) -> Result<T, Unrecovered> {
-        let mut order = Self { watch: watch.clone(), ..Self::default() };
+        let mut order = Self { first: Vec::new(), last: Vec::new(), threads };
         let mut n_retries = 0;
         loop {
             let unrecovered = match work(&order) {
@@ -68,6 +68,11 @@ impl Order {
             }
             n_retries += 1;
         }
+    }
+
+    /// The watch on the work.
+    pub(super) fn watch(&self) -> &Watch {
+        self.threads.watch()
     }
 
     /// The position of a part in line; all parts without a special place share one.

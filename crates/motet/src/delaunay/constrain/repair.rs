@@ -15,7 +15,7 @@ use super::plane::Plane;
 use super::refill::Side;
 use super::segments::Segments;
 use super::sites::{Place, SegmentId, Sites};
-use crate::base::{Csr, Point, Result, TetId, VertexId, Watch, sorted_ids};
+use crate::base::{Csr, Point, Result, TetId, Threads, VertexId, sorted_ids};
 use crate::kernel::{HalfFacet, Tets};
 
 /// A point inside is removed when the least share of the tets without it exceeds this, or the present one.
@@ -41,10 +41,21 @@ pub(super) struct SurfaceRepair<'a> {
     pub(super) walls: HashMap<[VertexId; 3], u32>,
     /// The number of further failed attempts at enlarging cavities that are allowed (`grow`).
     pub(super) n_failures_left: usize,
-    /// The tets of each vertex, together with some that no longer have it.
-    incident: Vec<Vec<TetId>>,
+    /// The tets of each vertex; `None` until first needed.
+    incident: Option<Incidence>,
     /// A point in front of the plane of each flat facet.
     beside: Vec<Point>,
+}
+
+/// What a repair leaves.
+#[derive(Default)]
+pub(super) struct Repaired {
+    /// The facets of each flat facet.
+    pub(super) parts: Csr<[VertexId; 3]>,
+    /// Flat facets whose triangles differ from those given.
+    pub(super) unrestored: Vec<u32>,
+    /// The tets inside that have no volume in the digits of their coordinates.
+    pub(super) flat_tets: Vec<[VertexId; 4]>,
 }
 
 /// Facets of the surface, and those that replace them, each with its flat facet and oriented like its plane.
@@ -78,18 +89,13 @@ impl<'a> SurfaceRepair<'a> {
             flats,
             walls,
             n_failures_left: MAX_FAILURES,
-            incident: Vec::new(),
+            incident: None,
             beside,
         }
     }
 
-    /// Repairs the surface where possible; returns the facets of each flat facet, and the flat facets whose
-    /// triangles differ from those given.
-    pub(super) fn run(
-        mut self,
-        segments: &Segments,
-        watch: &Watch,
-    ) -> Result<(Csr<[VertexId; 3]>, Vec<u32>)> {
+    /// Repairs the surface where possible.
+    pub(super) fn run(mut self, segments: &Segments, threads: &Threads) -> Result<Repaired> {
         self.shed();
         self.remove_outside();
         let on_segments = segments.points(self.sites);
@@ -104,7 +110,7 @@ impl<'a> SurfaceRepair<'a> {
             in_triangles.retain(|&vertex| self.free(vertex, None).is_none());
             let n_chains = chains.len();
             for (i, (segment, points)) in chains.iter_mut().enumerate() {
-                watch.report_and_check("moving points off edges", i, n_chains)?;
+                threads.watch().report_and_check("moving points off edges", i, n_chains)?;
                 self.move_all_inside(segments.ends(SegmentId(*segment)), points);
             }
             chains.retain(|(_, points)| !points.is_empty());
@@ -116,14 +122,13 @@ impl<'a> SurfaceRepair<'a> {
                 unrestored.push(flat as u32);
             }
         }
-        self.remove_flat();
-        let mut csr = Csr::default();
-        lists.into_iter().for_each(|list| csr.push(list));
-        Ok((csr, unrestored))
+        let flat_tets = self.remove_flat(threads);
+        let mut parts = Csr::default();
+        lists.into_iter().for_each(|list| parts.push(list));
+        Ok(Repaired { parts, unrestored, flat_tets })
     }
 
-    /// Removes the tets outside where each triangle has a body at it: they are no longer needed. Records the
-    /// remaining tets by vertex, since those of one vertex need not be connected then.
+    /// Removes the tets outside where each triangle has a body at it: they are no longer needed.
     fn remove_outside(&mut self) {
         if self.bodies.sides.iter().all(|sides| *sides != [0; 2]) {
             let is_outside = |tet: &TetId| self.bodies.of_slot[tet.index()] == 0;
@@ -135,26 +140,12 @@ impl<'a> SurfaceRepair<'a> {
                 self.tets.remove(tet);
             }
         }
-        let all: Vec<TetId> = self.tets.iter().map(|(tet, _)| tet).collect();
-        all.into_iter().for_each(|tet| self.note(tet));
     }
 
-    fn note(&mut self, tet: TetId) {
-        for v in self.tets.vertices(tet) {
-            if self.incident.len() <= v.index() {
-                self.incident.resize(v.index() + 1, Vec::new());
-            }
-            self.incident[v.index()].push(tet);
-        }
-    }
-
-    /// All tets of a vertex.
+    /// All tets of a vertex, which need not be connected.
     pub(super) fn star(&mut self, vertex: VertexId) -> Vec<TetId> {
-        let Some(star) = self.incident.get_mut(vertex.index()) else { return Vec::new() };
-        star.sort_unstable();
-        star.dedup();
-        star.retain(|&tet| self.tets.vertices(tet).contains(&vertex));
-        star.clone()
+        let incident = self.incident.get_or_insert_with(|| Incidence::of(self.tets, self.sites.len()));
+        incident.star(self.tets, vertex)
     }
 
     /// Moves inside those points of a segment that can be; leaves the others in the list.
@@ -383,7 +374,9 @@ impl<'a> SurfaceRepair<'a> {
         let made = side.make(self.tets, apex);
         self.bodies.of_slot.resize(self.tets.n_slots(), Bodies::NONE);
         made.iter().for_each(|tet| self.bodies.of_slot[tet.index()] = body);
-        made.iter().for_each(|&tet| self.note(tet));
+        if let Some(incident) = &mut self.incident {
+            made.iter().for_each(|&tet| incident.add(tet, self.tets.vertices(tet)));
+        }
         made
     }
 
@@ -399,5 +392,34 @@ impl<'a> SurfaceRepair<'a> {
         } else if let Some(place) = side.better_place(self.sites, vertex, worst) {
             self.sites.move_to(vertex, place);
         }
+    }
+}
+
+/// The tets of each vertex, together with some that no longer have it.
+struct Incidence {
+    first: Csr<TetId>,
+    /// Tets made later.
+    made: HashMap<VertexId, Vec<TetId>>,
+}
+
+impl Incidence {
+    fn of(tets: &Tets, n_vertices: usize) -> Self {
+        let pairs = || tets.iter().flat_map(|(tet, v)| v.map(|v| (v.index(), tet)));
+        Self { first: Csr::from_pairs(n_vertices, pairs), made: HashMap::new() }
+    }
+
+    fn add(&mut self, tet: TetId, vertices: [VertexId; 4]) {
+        vertices.into_iter().for_each(|v| self.made.entry(v).or_default().push(tet));
+    }
+
+    /// All tets of a vertex, in rising order.
+    fn star(&self, tets: &Tets, vertex: VertexId) -> Vec<TetId> {
+        let first = if vertex.index() < self.first.len() { self.first.list(vertex.index()) } else { &[] };
+        let made = self.made.get(&vertex).map_or(&[][..], Vec::as_slice);
+        let all = first.iter().chain(made).copied();
+        let mut star: Vec<TetId> = all.filter(|&tet| tets.vertices(tet).contains(&vertex)).collect();
+        star.sort_unstable();
+        star.dedup();
+        star
     }
 }

@@ -19,11 +19,11 @@ use std::collections::VecDeque;
 use hashbrown::HashMap;
 
 use super::insert::Insertion;
+use super::present::missing_edges;
 use super::recovery::{Part, Unrecovered};
 use super::share::Share;
 use super::sites::{OnSegment, Place, SegmentId, Sites};
-use crate::base::{Csr, Error, TetId, VertexId, Watch, sorted_ids};
-use crate::geometry::tet::EDGES;
+use crate::base::{Csr, Error, TetId, Threads, VertexId, sorted_ids};
 use crate::geometry::vector::{distance, dot, sub};
 use crate::kernel::Tets;
 
@@ -122,14 +122,18 @@ impl Segments {
         &mut self,
         tets: &mut Tets,
         sites: &mut Sites,
-        watch: &Watch,
+        threads: &Threads,
     ) -> Result<(), Unrecovered> {
-        let mut queue: VecDeque<[VertexId; 2]> = self.missing(tets).into();
+        let mut queue: VecDeque<[VertexId; 2]> = self.missing(tets, threads).into();
         let most = BASE_POINTS + POINTS_PER_SEGMENT * self.ends.len();
         let (mut insertion, mut star) = (Insertion::default(), Vec::new());
         let mut n_made = 0;
         while let Some(piece) = queue.pop_front() {
-            watch.report_and_check("recovering edges of the surface", n_made, n_made + queue.len())?;
+            threads.watch().report_and_check(
+                "recovering edges of the surface",
+                n_made,
+                n_made + queue.len(),
+            )?;
             n_made += 1;
             let Some(&segment) = self.pieces.get(&piece) else { continue };
             if tets.find_edge(piece, &mut star).is_some() {
@@ -167,23 +171,8 @@ impl Segments {
     }
 
     /// The segments that are not edges of tets; ascending.
-    pub(super) fn missing(&self, tets: &Tets) -> Vec<[VertexId; 2]> {
-        let n_rows = self.ends.last().map_or(0, |e| e[0].index() + 1);
-        let mut starts = vec![0u32; n_rows + 1];
-        self.ends.iter().for_each(|e| starts[e[0].index() + 1] += 1);
-        (0..n_rows).for_each(|v| starts[v + 1] += starts[v]);
-        let mut found = vec![false; self.ends.len()];
-        for (_, v) in tets.iter() {
-            for [i, j] in EDGES {
-                let [a, b] = sorted_ids([v[i], v[j]]);
-                if a.index() < n_rows {
-                    let row = starts[a.index()] as usize..starts[a.index() + 1] as usize;
-                    let place = row.clone().find(|&s| self.ends[s][1] == b);
-                    place.into_iter().for_each(|s| found[s] = true);
-                }
-            }
-        }
-        self.ends.iter().zip(found).filter(|(_, found)| !found).map(|(&e, _)| e).collect()
+    pub(super) fn missing(&self, tets: &Tets, threads: &Threads) -> Vec<[VertexId; 2]> {
+        missing_edges(tets, &self.ends, threads)
     }
 
     /// Where to divide a piece, as a fraction of its segment; `None` where no number lies between its ends.

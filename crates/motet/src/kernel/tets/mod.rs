@@ -13,7 +13,9 @@ mod walk;
 
 pub(super) use walk::flood;
 
-use crate::base::{TetId, VertexId};
+use std::ops::Range;
+
+use crate::base::{TetId, Threads, VertexId};
 use crate::geometry::tet::FACETS;
 use crate::kernel::link::{HalfFacet, Link};
 use crate::kernel::marks::Marks;
@@ -53,14 +55,15 @@ impl Tets {
         vertices: &[[VertexId; 4]],
         neighbors: &[[TetId; 4]],
         n_vertices: usize,
+        threads: &Threads,
     ) -> Self {
         let back = |tet: usize, other: TetId| {
             let i = neighbors[other.index()].iter().position(|n| n.index() == tet);
             HalfFacet::new(other, i.unwrap_or_default())
         };
         let half = |tet: usize, n: TetId| if n == NO_TET { HalfFacet::NONE } else { back(tet, n) };
-        let links = neighbors.iter().enumerate().map(|(tet, n)| n.map(|n| Link::tet(half(tet, n))));
-        Self::new(vertices.to_vec(), links.collect(), n_vertices)
+        let links = threads.map(neighbors.len(), |tet| neighbors[tet].map(|n| Link::tet(half(tet, n))));
+        Self::new(vertices.to_vec(), links, n_vertices)
     }
 
     /// Removes all tets. Vertices keep the ids of their former tets until they get new ones.
@@ -84,7 +87,15 @@ impl Tets {
 
     /// The existing tets with their vertices, in rising order of id.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (TetId, [VertexId; 4])> + Clone + '_ {
-        let all = self.vertices.iter().enumerate().map(|(t, &v)| (TetId::new(t), v));
+        self.among(0..self.vertices.len())
+    }
+
+    /// The existing tets in some slots with their vertices, in rising order of id.
+    pub(crate) fn among(
+        &self,
+        slots: Range<usize>,
+    ) -> impl Iterator<Item = (TetId, [VertexId; 4])> + Clone + '_ {
+        let all = slots.clone().zip(&self.vertices[slots]).map(|(t, &v)| (TetId::new(t), v));
         all.filter(|(_, v)| *v != FREE)
     }
 

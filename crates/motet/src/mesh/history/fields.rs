@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::rule::is_averageable;
 use super::{Rule, Rules};
-use crate::base::VertexId;
+use crate::base::{Threads, VertexId};
 use crate::geometry::tet;
 use crate::mesh::{Field, Mesh, Values};
 
@@ -66,7 +66,7 @@ impl FieldLedger {
 /// Compares each array of real numbers that both meshes have, first those on points, then those on cells, in
 /// their order. `rules` are those by which they were transferred. Takes one pass over the tets of each mesh,
 /// and one more for each array.
-pub fn field_ledger(before: &Mesh, after: &Mesh, rules: &Rules) -> Vec<FieldLedger> {
+pub fn field_ledger(before: &Mesh, after: &Mesh, rules: &Rules, threads: &Threads) -> Vec<FieldLedger> {
     let sources = [
         (On::Points, &before.point_data, &after.point_data),
         (On::Cells, &before.cell_data, &after.cell_data),
@@ -79,10 +79,9 @@ pub fn field_ledger(before: &Mesh, after: &Mesh, rules: &Rules) -> Vec<FieldLedg
     if pairs.is_empty() {
         return Vec::new();
     }
-    let tets = [before, after].map(Tets::of);
+    let tets = threads.each(vec![before, after], Tets::of);
     let ledger = |&(on, old, new): &(On, &Field, &Field)| {
-        let [old_sums, new_sums] =
-            [(&tets[0], old), (&tets[1], new)].map(|(tets, field)| tets.sums(on, field));
+        let (old_sums, new_sums) = threads.join(|| tets[0].sums(on, old), || tets[1].sums(on, new));
         FieldLedger {
             name: old.name.clone(),
             on,
@@ -258,7 +257,7 @@ mod tests {
         mesh.set_cell_field(Field::scalars("two", vec![-2.0; n_cells]));
         let mut later = mesh.clone();
         later.set_cell_field(Field::scalars("two", vec![-3.0; n_cells]));
-        let ledger = field_ledger(&mesh, &later, &Rules::default());
+        let ledger = field_ledger(&mesh, &later, &Rules::default(), &Threads::single());
         assert_eq!(ledger.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["place", "single", "two"]);
         let region = |i: usize| {
             assert_eq!(ledger[i].regions.len(), 1);
@@ -281,11 +280,11 @@ mod tests {
         let mut values = vec![1.0; mesh.cells.len()];
         values[0] = f64::NAN;
         mesh.set_cell_field(Field::scalars("odd", values));
-        let ledger = field_ledger(&mesh, &mesh, &Rules::default());
+        let ledger = field_ledger(&mesh, &mesh, &Rules::default(), &Threads::single());
         assert_eq!(ledger[0].range_before, Some([1.0, 1.0]));
         assert!(ledger[0].deviation().is_nan());
         mesh.set_cell_field(Field::scalars("odd", vec![f64::INFINITY; mesh.cells.len()]));
-        let ledger = field_ledger(&mesh, &mesh, &Rules::default());
+        let ledger = field_ledger(&mesh, &mesh, &Rules::default(), &Threads::single());
         assert_eq!(ledger[0].regions[0].before, [f64::INFINITY]);
     }
 

@@ -1,5 +1,7 @@
 //! The rows of entities that changed: old entities with shares, and the main one among them.
 
+use std::ops::Range;
+
 use crate::base::{Csr, Error, Id, Result};
 
 /// Tolerance on the sum of the shares of a row, which must be 1.
@@ -121,10 +123,15 @@ impl<I: Id> Rows<I> {
             *self = rows;
             return;
         }
-        self.ids.extend_from_slice(&rows.ids);
-        self.from.append(&rows.from);
-        self.shares.extend_from_slice(&rows.shares);
-        self.main.extend_from_slice(&rows.main);
+        self.append_range(&rows, 0..rows.len());
+    }
+
+    fn append_range(&mut self, rows: &Self, range: Range<usize>) {
+        let [start, end] = [range.start, range.end].map(|i| rows.from.offsets()[i] as usize);
+        self.ids.extend_from_slice(&rows.ids[range.clone()]);
+        self.main.extend_from_slice(&rows.main[range.clone()]);
+        self.from.append_range(&rows.from, range);
+        self.shares.extend_from_slice(&rows.shares[start..end]);
     }
 
     /// These rows and others, by rising ids; no id is in both.
@@ -139,16 +146,22 @@ impl<I: Id> Rows<I> {
         }
         let mut merged = Self::new();
         let (mut i, mut k) = (0, 0);
-        while i < self.len() || k < others.len() {
-            let is_first = k == others.len() || i < self.len() && self.ids[i] < others.ids[k];
-            let (id, row) =
-                if is_first { (self.ids[i], self.row(i)) } else { (others.ids[k], others.row(k)) };
-            merged.ids.push(id);
-            merged.from.push(row.from.iter().copied());
-            merged.shares.extend_from_slice(row.shares);
-            merged.main.push(row.main);
-            (i, k) = if is_first { (i + 1, k) } else { (i, k + 1) };
+        // Rows below the next one of the others.
+        let run = |rows: &Self, first: usize, next: I| {
+            first..first + rows.ids[first..].partition_point(|id| *id < next)
+        };
+        while i < self.len() && k < others.len() {
+            let first = run(&self, i, others.ids[k]);
+            i = first.end;
+            merged.append_range(&self, first);
+            if i < self.len() {
+                let second = run(&others, k, self.ids[i]);
+                k = second.end;
+                merged.append_range(&others, second);
+            }
         }
+        merged.append_range(&self, i..self.len());
+        merged.append_range(&others, k..others.len());
         merged
     }
 

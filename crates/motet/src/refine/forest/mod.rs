@@ -39,7 +39,7 @@ use facets::{Facets, Middles};
 use fills::Fills;
 use hashbrown::HashMap;
 
-use crate::base::{EdgeId, ForestVertexId, MaybeId, NodeId, Point, VertexId};
+use crate::base::{EdgeId, ForestVertexId, MaybeId, NodeId, Point, Threads, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, dot, scale, sub};
 
@@ -119,25 +119,24 @@ pub(super) struct Forest {
 impl Forest {
     /// Makes a root of every tet, in either orientation; the flag says whether the mesh has it in the
     /// opposite one.
-    pub(super) fn new(
-        points: &[Point],
-        tets: impl ExactSizeIterator<Item = ([ForestVertexId; 4], bool)>,
-    ) -> Self {
+    pub(super) fn new(points: &[Point], tets: &[([ForestVertexId; 4], bool)], threads: &Threads) -> Self {
         let n_roots = tets.len();
+        let class = |t: usize| Class::of_root(tets[t].0.map(|v| points[v.index()]));
         let mut forest = Self {
             reference: points.to_vec(),
             n_roots,
             n_first_vertices: points.len(),
             max_nodes: MAX_NODES,
-            classes: Vec::with_capacity(n_roots),
+            classes: threads.map(n_roots, class),
+            // A mesh has up to about a fifth more edges than tets.
+            root_edges: HashMap::with_capacity(n_roots + n_roots / 5),
             ..Self::default()
         };
         let (mut nodes, mut edges_of) = (Vec::with_capacity(n_roots), Vec::with_capacity(n_roots));
-        for ((vertices, is_turned), root) in tets.zip(0..) {
+        for (&(vertices, is_turned), root) in tets.iter().zip(0..) {
             edges_of.push(EDGES.map(|[i, j]| forest.make_root_edge([vertices[i], vertices[j]])));
             let shape = Shape::new(ClassId(root), is_turned);
             nodes.push(Node { vertices, first_child: MaybeId::NONE, shape });
-            forest.classes.push(Class::of_root(vertices.map(|v| points[v.index()])));
         }
         forest.states = Eights::of(&vec![State::default(); n_roots]);
         (forest.nodes, forest.edges_of) = (Eights::of(&nodes), Eights::of(&edges_of));

@@ -116,12 +116,12 @@ impl Roots {
         self.first.points = firsts.iter().map(|&v| reference[v]).collect();
         check_roots(&self.first, threads)?;
         let turned = |tree_node: TreeNodeId| trees.nodes[tree_node.index()].is_turned;
-        let roots =
-            self.first.tets.iter().zip(&self.tree_nodes).map(|(tet, tree_node)| match tet.map(in_forest) {
-                [a, b, c, d] if tree_node.get().is_some_and(turned) => ([b, a, c, d], true),
-                tet => (tet, false),
-            });
-        let forest = Forest::new(&self.first.points, roots);
+        let root = |(tet, tree_node): (&[VertexId; 4], &MaybeId<TreeNodeId>)| match tet.map(in_forest) {
+            [a, b, c, d] if tree_node.get().is_some_and(turned) => ([b, a, c, d], true),
+            tet => (tet, false),
+        };
+        let roots: Vec<_> = self.first.tets.iter().zip(&self.tree_nodes).map(root).collect();
+        let forest = Forest::new(&self.first.points, &roots, threads);
         let bounds = ShapeBounds::new(options, &forest);
         self.first.points = firsts.iter().map(|&v| mesh.points[v]).collect();
 
