@@ -27,6 +27,7 @@ from .errors import InputError, OptionsError
 
 # Tets below this EAS are bad.
 BAD = 0.2
+TETS = (pyvista.CellType.TETRA, pyvista.CellType.QUADRATIC_TETRA, pyvista.CellType.LAGRANGE_TETRAHEDRON)
 
 
 def read_grid(path: str, **options: Any) -> Any:
@@ -63,43 +64,32 @@ class MotetAccessor:
     >>> grid = pv.Sphere().motet.mesh(size=0.1)                         # doctest: +SKIP
     >>> grid.motet.refine(ball=[((0, 0, 0), 0.2)]).motet.plot()         # doctest: +SKIP
 
-    What a call reports is with its result: :attr:`report`, :attr:`history`, :attr:`gaps`.
-
     A ``pyvista.MultiBlock`` stands for several meshes by name: surfaces to be filled, or between which gaps
     are measured.
+
+    Attributes
+    ----------
+    report : Report or None
+        What the call that made this data set reports; None for data sets that no call has made.
+    history : History or None
+        Where points and cells came from, if a call has changed them.
+    gaps : Gaps or None
+        The gaps, if :meth:`contact` has measured them.
+    not_reached : str or None
+        Why the call that made this data set did not reach what was requested; None if it did.
     """
 
     def __init__(self, data: Any):
         self._data = data
-        self._report: Report | None = None
-        self._history: History | None = None
-        self._gaps: Gaps | None = None
-        self._not_reached: str | None = None
-
-    @property
-    def report(self) -> Report | None:
-        """What the call that made this data set reports; None for other data sets."""
-        return self._report
-
-    @property
-    def history(self) -> History | None:
-        """Where points and cells came from, for a data set that a call has changed; None for others."""
-        return self._history
-
-    @property
-    def gaps(self) -> Gaps | None:
-        """The gaps that :meth:`contact` has measured; None for other data sets."""
-        return self._gaps
-
-    @property
-    def not_reached(self) -> str | None:
-        """Why the call that made this data set did not reach what was requested; None if it did."""
-        return self._not_reached
+        self.report: Report | None = None
+        self.history: History | None = None
+        self.gaps: Gaps | None = None
+        self.not_reached: str | None = None
 
     @property
     def complete(self) -> bool:
         """Whether the call that made this data set reached what was requested."""
-        return self._not_reached is None
+        return self.not_reached is None
 
     def to_mesh(self) -> Mesh:
         """Convert the data set to a :class:`motet.Mesh`."""
@@ -125,7 +115,7 @@ class MotetAccessor:
 
     @_documented(mesh)
     def mesh(self, **options: Any) -> Any:
-        return _result(mesh(self._several(), **options))
+        return _result(mesh(_blocks_of(self._data), **options))
 
     @_documented(remesh)
     def remesh(self, **options: Any) -> Any:
@@ -143,7 +133,7 @@ class MotetAccessor:
     def move(self, **options: Any) -> Any:
         moved = move(self._one("move"), **options)
         grid = to_pyvista(moved.mesh)
-        grid.motet._report, grid.motet._not_reached = moved.certificate, moved.not_reached
+        grid.motet.report, grid.motet.not_reached = moved.certificate, moved.not_reached
         return grid
 
     def contact(self, others: Any = None, **options: Any) -> Any:
@@ -160,9 +150,9 @@ class MotetAccessor:
         -------
         pyvista.DataSet or pyvista.MultiBlock
             This data set with the point arrays ``gap``, ``closest_point`` and ``warning``; for a ``MultiBlock``,
-            all of its blocks. Points that are on no surface have an infinite gap. :attr:`gaps` has the pairs.
+            all of its blocks. Points that are on no surface have an infinite gap. Its ``motet.gaps`` has the pairs.
         """
-        own = self._several()
+        own = _blocks_of(self._data)
         own = dict(own) if isinstance(own, Mapping) else {"this": own}
         rest = {} if others is None else dict(named(_blocks_of(others), "other"))
         clash = sorted(own.keys() & rest.keys())
@@ -175,7 +165,7 @@ class MotetAccessor:
             result[name] = _with_gaps(block, gaps, shift)
             shift += block.n_points
         data = result if isinstance(self._data, pyvista.MultiBlock) else result[0]
-        data.motet._gaps = gaps
+        data.motet.gaps = gaps
         return data
 
     def blocks(self) -> Any:
@@ -220,7 +210,7 @@ class MotetAccessor:
         """
         own = {name: options.pop(name) for name in ("off_screen", "window_size") if name in options}
         plotter = pyvista.Plotter(**own)
-        if (show or ("gaps" if self._gaps else "quality")) == "gaps":
+        if (show or ("gaps" if self.gaps else "quality")) == "gaps":
             _add_gaps(plotter, self._data)
         else:
             _add_quality(plotter, self._one("plot"), cut, bad)
@@ -230,9 +220,6 @@ class MotetAccessor:
         if isinstance(self._data, pyvista.MultiBlock):
             raise InputError(f"{verb} takes one data set, not a MultiBlock: choose one of {', '.join(map(str, self._data.keys()))}")
         return self._data
-
-    def _several(self) -> Any:
-        return _blocks_of(self._data)
 
 
 def _blocks_of(data: Any) -> Any:
@@ -253,7 +240,7 @@ def _blocks_of(data: Any) -> Any:
 def _result(changed: Any) -> Any:
     grid = to_pyvista(changed.mesh)
     own = grid.motet
-    own._report, own._history, own._not_reached = changed.report, changed.history, changed.not_reached
+    own.report, own.history, own.not_reached = changed.report, changed.history, changed.not_reached
     return grid
 
 
@@ -263,7 +250,7 @@ def _with_gaps(block: Any, gaps: Gaps, shift: int) -> Any:
     n = block.n_points
     gap, closest, warning = np.full(n, np.inf), np.full((n, 3), np.nan), np.zeros(n, np.uint8)
     for body in gaps.bodies.values():
-        is_own = (body.vertices >= shift) & (body.vertices < shift + n)
+        is_own = (shift <= body.vertices) & (body.vertices < shift + n)
         own = body.vertices[is_own].astype(np.int64) - shift
         gap[own], closest[own], warning[own] = body.gap[is_own], body.closest_point[is_own], body.warning[is_own]
     block.point_data["gap"], block.point_data["closest_point"], block.point_data["warning"] = gap, closest, warning
@@ -275,7 +262,7 @@ def _add_quality(plotter: Any, data: Any, cut: str | Sequence[float] | None, bad
     given = as_mesh(data)
     grid = to_pyvista(given)
     grid.cell_data["EAS"] = given.quality()
-    tets = grid.extract_cells(np.isin(grid.celltypes, (10, 24, 71)))
+    tets = grid.extract_cells(np.isin(grid.celltypes, TETS))
     surfaces = [block for block in grid.motet.blocks() if isinstance(block, pyvista.PolyData)]
     if not tets.n_cells:
         plotter.add_mesh(grid, color="lightsteelblue", show_edges=True)

@@ -39,7 +39,7 @@ pub(super) fn by_vertices(arrays: [Vec<[u32; 4]>; 2], vertex_to_id: &[u32], thre
     Finished { tets: as_ids(tets, VertexId), neighbors: as_ids(neighbors, TetId), hull: hull.concat() }
 }
 
-/// The same memory as ids.
+/// Turns numbers into ids, in place: a vector collected from its own elements keeps its memory.
 fn as_ids<T>(numbers: Vec<[u32; 4]>, id: impl Fn(u32) -> T) -> Vec<[T; 4]> {
     numbers.into_iter().map(|[a, b, c, d]| [id(a), id(b), id(c), id(d)]).collect()
 }

@@ -1,8 +1,8 @@
 //! The construction of a complex from plain arrays.
 
-use crate::base::{Error, Point, Result, TetId, Threads, VertexId};
+use crate::base::{Error, Result, TetId, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
-use crate::geometry::quality::{POSITIVE_EAS, eas_of_each};
+use crate::geometry::quality::POSITIVE_EAS;
 use crate::geometry::tet::FACETS;
 use crate::kernel::complex::Complex;
 use crate::kernel::hold::Hold;
@@ -19,7 +19,7 @@ use crate::kernel::vertices::Vertices;
 use crate::kernel::walls::Walls;
 use crate::mesh::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::tet_facets::{Sharing, tet_facets_in_parts};
-use crate::mesh::{MAX_TETS, TetMesh};
+use crate::mesh::{self, MAX_TETS, TetMesh};
 
 impl Complex {
     /// The complex of a mesh. All tets are oriented as most are; see [`crate::mesh::OrientedTets`].
@@ -45,7 +45,7 @@ impl Complex {
         let TetMesh { points, regions, triangles, patches, .. } = mesh;
         let mut tets = mesh.tets.clone();
         let mut joined = Joined::of(&tets, regions, triangles, patches, threads)?;
-        let mut qualities = measured(points, &tets, threads);
+        let mut qualities = mesh::Qualities::eas_of_each(points, &tets, threads);
         let (mut n_reversed, mut folded) = (0, Vec::new());
         if joined.has_same_side || qualities.iter().any(|&q| q <= 0.0) {
             let across = joined.across();
@@ -54,7 +54,7 @@ impl Complex {
             n_reversed = is_reversed.iter().filter(|reversed| **reversed).count();
             if n_reversed > 0 {
                 joined = Joined::of(&tets, regions, triangles, patches, threads)?;
-                qualities = measured(points, &tets, threads);
+                qualities = mesh::Qualities::eas_of_each(points, &tets, threads);
                 let across = joined.across();
                 folded = orientation::folded(&tets, points, &is_reversed, behind(&across));
             }
@@ -129,13 +129,6 @@ struct Joints {
     has_same_side: bool,
     /// The first facet that more than two tets share, by one of them, and how many there are.
     fault: Option<((TetId, usize), usize)>,
-}
-
-/// The number of tets that a thread judges at a time.
-const CHUNK: usize = 1 << 13;
-
-fn measured(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Vec<f64> {
-    threads.in_runs(tets.len(), CHUNK, |(): &mut (), run| eas_of_each(points, &tets[run]))
 }
 
 impl Joined {

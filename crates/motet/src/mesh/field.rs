@@ -133,9 +133,17 @@ impl Values {
         // At 2^63, to which the maximum rounds, the saturated value converts back; hence the second test.
         let whole = |x: f64| ((x as i64) as f64 == x && x < i64::MAX as f64).then_some(x as i64);
         match self {
+            Self::I8(v) => Some(v.iter().map(|&x| x.into()).collect()),
+            Self::U8(v) => Some(v.iter().map(|&x| x.into()).collect()),
+            Self::I16(v) => Some(v.iter().map(|&x| x.into()).collect()),
+            Self::U16(v) => Some(v.iter().map(|&x| x.into()).collect()),
+            Self::I32(v) => Some(v.iter().map(|&x| x.into()).collect()),
+            Self::U32(v) => Some(v.iter().map(|&x| x.into()).collect()),
             Self::I64(v) => Some(v.clone()),
             Self::U64(v) => v.iter().map(|&x| i64::try_from(x).ok()).collect(),
-            _ => self.to_f64()?.into_iter().map(whole).collect(),
+            Self::F32(v) => v.iter().map(|&x| whole(x.into())).collect(),
+            Self::F64(v) => v.iter().map(|&x| whole(x)).collect(),
+            Self::Text(_) => None,
         }
     }
 }

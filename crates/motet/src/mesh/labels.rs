@@ -75,6 +75,35 @@ impl Labels {
     }
 }
 
+/// Places of labels: 0, 1, ... in the order in which labels are first asked for. Neighbouring cells mostly
+/// have one label, so the last one is compared first.
+#[derive(Debug, Default)]
+pub(crate) struct LabelPlaces {
+    places: BTreeMap<i32, usize>,
+    last: Option<(i32, usize)>,
+}
+
+impl LabelPlaces {
+    /// The place of a label, the next one if it is new.
+    #[inline]
+    pub(crate) fn of(&mut self, label: i32) -> usize {
+        match self.last {
+            Some((last, place)) if last == label => place,
+            _ => {
+                let next = self.places.len();
+                let place = *self.places.entry(label).or_insert(next);
+                self.last = Some((label, place));
+                place
+            }
+        }
+    }
+
+    /// All labels, rising, with their places.
+    pub(crate) fn iter(&self) -> impl ExactSizeIterator<Item = (i32, usize)> + '_ {
+        self.places.iter().map(|(&label, &place)| (label, place))
+    }
+}
+
 /// A name that is not taken yet: `name`, or `name` with a number from 2 on appended.
 pub fn unused_name(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
     let numbered = (2u32..).map(|k| format!("{name}_{k}"));
@@ -164,14 +193,9 @@ fn label_ids(field: &Field, on_dim: &[bool]) -> Option<Vec<i32>> {
     if field.components != 1 || matches!(field.values, Values::Text(_)) {
         return None;
     }
-    let ids: Option<Vec<i32>> = match &field.values {
-        Values::I32(ids) => Some(ids.iter().zip(on_dim).map(|(&id, &on)| if on { id } else { 0 }).collect()),
-        values => {
-            let all = values.to_i64()?;
-            let id = |(&id, &on): (&i64, &bool)| if on { i32::try_from(id).ok() } else { Some(0) };
-            all.iter().zip(on_dim).map(id).collect()
-        }
-    };
+    let all = field.values.to_i64()?;
+    let ids: Option<Vec<i32>> =
+        all.iter().zip(on_dim).map(|(&id, &on)| if on { i32::try_from(id).ok() } else { Some(0) }).collect();
     ids.filter(|ids| ids.iter().any(|&id| id != 0))
 }
 

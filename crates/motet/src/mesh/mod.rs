@@ -47,6 +47,7 @@ pub use edge_lengths::{edge_lengths, mean_edge_lengths};
 pub use field::{Field, Values};
 pub use half_facet::HalfFacet;
 pub(crate) use half_facet::MAX_TETS;
+pub(crate) use labels::LabelPlaces;
 pub use labels::{LabelNames, Labels, unused_name};
 pub use oriented_tets::{Judged, OrientedTets, is_inverted};
 pub use qualities::Qualities;

@@ -1,7 +1,7 @@
 //! Quality statistics over all tets of a mesh: what the worst tet alone does not show.
 
 use crate::base::{Point, Threads, VertexId};
-use crate::geometry::quality::eas_and_mean_ratio_of_each;
+use crate::geometry::quality::{eas_and_mean_ratio_of_each, eas_of_each};
 use crate::geometry::vector::in_range;
 use crate::mesh::{Mesh, OrientedTets};
 
@@ -41,6 +41,11 @@ impl Qualities {
         let each = Self::each(points, tets, threads);
         let mut eas: Vec<f64> = each.iter().map(|[eas, _]| *eas).collect();
         Self::of_values(&mut eas, each.iter().map(|[_, ratio]| *ratio).sum()).unwrap_or_default()
+    }
+
+    /// The EAS of each of `tets` with vertices at `points`.
+    pub(crate) fn eas_of_each(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Vec<f64> {
+        threads.in_runs(tets.len(), CHUNK, |(): &mut (), run| eas_of_each(points, &tets[run]))
     }
 
     /// EAS and mean ratio of each of `tets` with vertices at `points`.

@@ -10,7 +10,7 @@ use crate::delaunay::Constrained;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::{FACETS, holds, volume};
 use crate::geometry::vector::in_range;
-use crate::mesh::{CellKind, Mesh, bounds, unused_name};
+use crate::mesh::{CellKind, LabelPlaces, Mesh, bounds, unused_name};
 use crate::preflight::Role;
 
 /// A place in a body, and the name to give to the body.
@@ -42,18 +42,14 @@ pub struct Body {
 /// The bodies of a mesh, in the order of their region numbers.
 pub(crate) fn bodies_of_mesh(mesh: &Mesh) -> Vec<Body> {
     let Some(regions) = mesh.regions() else { return Vec::new() };
-    let (mut bodies, mut places, mut last) = (Vec::new(), BTreeMap::new(), None);
+    let (mut bodies, mut places) = (Vec::new(), LabelPlaces::default());
     for (cell, tet) in mesh.cells.tets() {
         let region = regions.ids[cell.index()];
-        let place = match last {
-            Some((of_last, place)) if of_last == region => place,
-            _ => *places.entry(region).or_insert_with(|| {
-                let name = regions.names.get(&region).cloned();
-                bodies.push(Body { region, name, tets: 0, prisms: 0, volume: 0.0, is_void: false });
-                bodies.len() - 1
-            }),
-        };
-        last = Some((region, place));
+        let place = places.of(region);
+        if place == bodies.len() {
+            let name = regions.names.get(&region).cloned();
+            bodies.push(Body { region, name, tets: 0, prisms: 0, volume: 0.0, is_void: false });
+        }
         let body = &mut bodies[place];
         body.tets += 1;
         body.volume += volume(tet.map(|v| mesh.points[v.index()]));

@@ -16,10 +16,9 @@ use super::surfaces::Surfaces;
 use crate::base::{CellId, Error, Point, Result, Threads, VertexId, reasons};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
 use crate::geometry::predicates::orient3d;
-use crate::geometry::quality::eas_of_each;
 use crate::geometry::rounding;
 use crate::geometry::tet::volume;
-use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh};
+use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh, Qualities};
 use crate::names;
 use crate::preflight::Preflight;
 use crate::remesh::{self, Improve, SurfaceRule, remesh_labelled};
@@ -354,9 +353,7 @@ fn not_positive(mesh: &Mesh, threads: &Threads) -> usize {
 
 /// Collects statistics. The first `n_points` points were given; points on edges follow.
 fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize, threads: &Threads) -> Report {
-    let worst = threads.in_runs(filled.tets.len(), SWEEP, |(): &mut (), run| {
-        vec![eas_of_each(&filled.points, &filled.tets[run]).into_iter().fold(f64::INFINITY, f64::min)]
-    });
+    let eas = Qualities::eas_of_each(&filled.points, &filled.tets, threads);
     let is_used = used_vertices(filled.points.len(), filled.tets.as_flattened().iter());
     let n_used = |of: std::ops::Range<usize>| is_used[of].iter().filter(|n| **n).count();
     let points_on_edges = n_used(n_points..n_points + filled.on_edges.len() + filled.in_triangles.len());
@@ -371,7 +368,7 @@ fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize, threads: &
         coarse: None,
         divided: None,
         voids: 0,
-        worst_eas: worst.into_iter().fold(f64::INFINITY, f64::min),
+        worst_eas: eas.into_iter().fold(f64::INFINITY, f64::min),
         not_positive: 0,
         bodies: Vec::new(),
     }

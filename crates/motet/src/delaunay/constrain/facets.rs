@@ -44,25 +44,25 @@ pub(super) fn recover(
     in_line.sort_by_key(|&i| order.rank(|part| flats.has(i, part)));
     for (n_made, i) in in_line.into_iter().enumerate() {
         order.watch().report_and_check("recovering facets of the surface", n_made, parts.len())?;
-        let (own, first) = (parts.list(i), parts.offsets()[i] as usize);
-        let at_first = &sides[first..first + own.len()];
+        let own = parts.list(i);
+        let sides = &sides[parts.offsets()[i] as usize..][..own.len()];
         let is_missing = |(part, side): &(&[VertexId; 3], &HalfFacet)| !work.has(tets, **part, **side);
-        let missing: Vec<_> = own.iter().zip(at_first).filter(is_missing).map(|(&part, _)| part).collect();
+        let missing: Vec<_> = own.iter().zip(sides).filter(is_missing).map(|(&part, _)| part).collect();
         if missing.is_empty() {
             work.walls.extend(own.iter().copied().map(sorted_ids));
             continue;
         }
-        let (flat, mut own) = (flats.triangles.list(i), own.to_vec());
+        let (flat, mut made) = (flats.triangles.list(i), own.to_vec());
         let first = triangles[flat[0] as usize];
         let done = if may_swap {
             let all = flat.iter().map(|&i| (i, triangles[i as usize])).collect();
-            work.make(tets, sites, segments, all, &mut own)
+            work.make(tets, sites, segments, all, &mut made)
         } else {
-            work.recover(tets, sites, (first, &own), missing)
+            work.recover(tets, sites, (first, &made), missing)
         };
         done.map_err(|_: Stuck| stuck(sites, flat[0], first))?;
-        work.walls.extend(own.iter().copied().map(sorted_ids));
-        changed.insert(i, own);
+        work.walls.extend(made.iter().copied().map(sorted_ids));
+        changed.insert(i, made);
     }
     Ok(with_changed(parts, &changed))
 }
@@ -169,7 +169,7 @@ impl Work {
     }
 
     fn missing(&mut self, tets: &mut Tets, parts: &[[VertexId; 3]]) -> Vec<[VertexId; 3]> {
-        parts.iter().copied().filter(|&part| tets.find_facet(part, &mut self.star).is_none()).collect()
+        parts.iter().copied().filter(|&part| !self.has(tets, part, HalfFacet::NONE)).collect()
     }
 
     /// Makes a flat facet a set of facets of tets: by swaps, by refilling the hollows on both sides, or with

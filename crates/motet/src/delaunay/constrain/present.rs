@@ -3,47 +3,47 @@
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32};
 
-use crate::base::{TetId, Threads, VertexId, sorted_ids};
+use crate::base::{Csr, TetId, Threads, VertexId, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::kernel::{HalfFacet, Tets};
 
 /// A thread takes this many slots of tets at a time.
 pub(super) const SWEEP: usize = 1 << 14;
 
-/// Lists of vertices, found by the first one and then by bisection.
+/// Edges or facets by their vertices: found by the first vertex, then by bisection.
 struct Index<'a, const N: usize> {
     keys: &'a [[VertexId; N]],
-    /// Where the keys with each first vertex begin, and the last ones end.
-    starts: Vec<u32>,
+    /// The places of the keys with each first vertex.
+    of_first: Csr<u32>,
 }
 
 impl<'a, const N: usize> Index<'a, N> {
     /// `keys` rise, each once, and so do the vertices of each.
     fn new(keys: &'a [[VertexId; N]]) -> Self {
         let n_firsts = keys.last().map_or(0, |key| key[0].index() + 1);
-        let mut starts = vec![0u32; n_firsts + 1];
-        keys.iter().for_each(|key| starts[key[0].index() + 1] += 1);
-        (0..n_firsts).for_each(|v| starts[v + 1] += starts[v]);
-        Self { keys, starts }
+        let of_first = Csr::from_pairs(n_firsts, || keys.iter().map(|key| key[0].index()).zip(0..));
+        Self { keys, of_first }
     }
 
+    /// The place of a key, given by its vertices in any order.
     #[inline]
-    fn find(&self, vertices: [VertexId; N]) -> Option<u32> {
+    fn find(&self, vertices: [VertexId; N]) -> Option<usize> {
         let key = sorted_ids(vertices);
         let first = key[0].index();
-        let (start, end) = (*self.starts.get(first)?, *self.starts.get(first + 1)?);
-        let place = self.keys[start as usize..end as usize].binary_search(&key).ok()?;
-        Some(start + place as u32)
+        let places = if first < self.of_first.len() { self.of_first.list(first) } else { return None };
+        let start = *places.first()? as usize;
+        let place = self.keys[start..start + places.len()].binary_search(&key).ok()?;
+        Some(start + place)
     }
 }
 
-/// The edges that no tet has. `edges` rise, each once, smaller vertex first.
+/// Returns the edges that no tet has. `edges` rise, each once, smaller vertex first.
 pub(super) fn missing_edges(tets: &Tets, edges: &[[VertexId; 2]], threads: &Threads) -> Vec<[VertexId; 2]> {
     let index = Index::new(edges);
     let is_found: Vec<AtomicBool> = edges.iter().map(|_| AtomicBool::new(false)).collect();
     sweep(tets, threads, |_, v| {
         for i in EDGES.iter().filter_map(|&[i, j]| index.find([v[i], v[j]])) {
-            is_found[i as usize].store(true, Relaxed);
+            is_found[i].store(true, Relaxed);
         }
     });
     edges
@@ -54,7 +54,7 @@ pub(super) fn missing_edges(tets: &Tets, edges: &[[VertexId; 2]], threads: &Thre
         .collect()
 }
 
-/// One side of each facet, the one with the lower number; [`HalfFacet::NONE`] for facets that no tet has.
+/// Returns one side of each facet, the one with the lower number; [`HalfFacet::NONE`] where no tet has it.
 pub(super) fn find_facets(tets: &Tets, facets: &[[VertexId; 3]], threads: &Threads) -> Vec<HalfFacet> {
     let mut keys: Vec<_> = facets.iter().map(|&facet| sorted_ids(facet)).collect();
     keys.sort_unstable();
@@ -64,11 +64,11 @@ pub(super) fn find_facets(tets: &Tets, facets: &[[VertexId; 3]], threads: &Threa
     sweep(tets, threads, |tet, _| {
         for half in Tets::facets(tet) {
             if let Some(i) = index.find(tets.inward(half)) {
-                sides[i as usize].fetch_min(half.0, Relaxed);
+                sides[i].fetch_min(half.0, Relaxed);
             }
         }
     });
-    let side = |facet: &[VertexId; 3]| index.find(*facet).map(|i| HalfFacet(sides[i as usize].load(Relaxed)));
+    let side = |facet: &[VertexId; 3]| index.find(*facet).map(|i| HalfFacet(sides[i].load(Relaxed)));
     facets.iter().map(|facet| side(facet).unwrap_or(HalfFacet::NONE)).collect()
 }
 

@@ -6,7 +6,7 @@ use super::rule::is_averageable;
 use super::{Rule, Rules};
 use crate::base::{Threads, VertexId};
 use crate::geometry::tet;
-use crate::mesh::{Field, Mesh, Values};
+use crate::mesh::{Field, LabelPlaces, Mesh, Values};
 
 /// The range and the integrals of an array of real numbers before and after a change.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,7 +106,7 @@ struct Tets {
     /// The cell of each tet, its vertices, its volume and the index of its region.
     tets: Vec<(usize, [VertexId; 4], f64, usize)>,
     /// The index of each region.
-    places: BTreeMap<i32, usize>,
+    places: LabelPlaces,
 }
 
 /// The integrals over each region: of each component, then of the magnitude of the rows.
@@ -116,21 +116,11 @@ impl Tets {
     fn of(mesh: &Mesh) -> Self {
         let labels = mesh.regions();
         let label = |cell: usize| labels.as_ref().map_or(0, |labels| labels.ids[cell]);
-        let mut places = BTreeMap::new();
+        let mut places = LabelPlaces::default();
         let mut tets = Vec::new();
-        let mut last = None;
         for (cell, vertices) in mesh.cells.tets() {
             let volume = tet::volume(vertices.map(|v| mesh.points[v.index()])).abs();
-            let region = label(cell.index());
-            let place = match last {
-                Some((same, place)) if same == region => place,
-                _ => {
-                    let next = places.len();
-                    *places.entry(region).or_insert(next)
-                }
-            };
-            last = Some((region, place));
-            tets.push((cell.index(), vertices, volume, place));
+            tets.push((cell.index(), vertices, volume, places.of(label(cell.index()))));
         }
         Self { tets, places }
     }
@@ -145,7 +135,7 @@ impl Tets {
 
     fn sums_of(&self, on: On, components: usize, value: impl Fn(usize) -> f64) -> Sums {
         let n = components + 1;
-        let mut sums = vec![Sum::default(); n * self.places.len()];
+        let mut sums = vec![Sum::default(); n * self.places.iter().len()];
         // Sums over one tet: of each component, then of the magnitude.
         let mut held = vec![0.0; n];
         for &(cell, vertices, volume, place) in &self.tets {
@@ -172,7 +162,7 @@ impl Tets {
             sums[place * n..][..n].iter_mut().zip(&held).for_each(|(sum, held)| sum.add(share * held));
         }
         let row = |place: usize| sums[place * n..][..n].iter().map(Sum::value).collect();
-        self.places.iter().map(|(&region, &place)| (region, row(place))).collect()
+        self.places.iter().map(|(region, place)| (region, row(place))).collect()
     }
 }
 

@@ -248,3 +248,30 @@ fn adjust_sum(shares: &mut [f64]) {
     let others: f64 = (0..shares.len()).filter(|&i| i != largest).map(|i| shares[i]).sum();
     shares[largest] = 1.0 - others;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::{CellId, splitmix64};
+
+    /// Rows of ids, runs of which alternate between two lists, against all rows in one list.
+    #[test]
+    fn merged_rows_are_those_of_both_lists_in_order() {
+        for (seed, runs) in [(0, 0), (1, 1), (2, 2), (3, 7), (4, 40)] {
+            let (mut both, mut lists, mut id) = (Rows::new(), [Rows::new(), Rows::new()], 0);
+            for run in 0..runs {
+                for _ in 0..splitmix64(seed + 100 * run) % 5 {
+                    let old = |k: u64| CellId::new((splitmix64(id + k) % 90) as usize);
+                    let parts: Vec<_> = (0..1 + id % 3).map(|k| (old(k), 0.25 + k as f64)).collect();
+                    let new = CellId::new(id as usize);
+                    both.push(new, &parts, old(0));
+                    lists[run as usize % 2].push(new, &parts, old(0));
+                    id += 2;
+                }
+            }
+            let [first, second] = lists;
+            assert_eq!(first.clone().merged(second.clone()), both);
+            assert_eq!(second.merged(first), both);
+        }
+    }
+}

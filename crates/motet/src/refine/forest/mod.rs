@@ -128,7 +128,7 @@ impl Forest {
             n_first_vertices: points.len(),
             max_nodes: MAX_NODES,
             classes: threads.map(n_roots, class),
-            // A mesh has up to about a fifth more edges than tets.
+            // A large mesh has about a fifth more edges than tets.
             root_edges: HashMap::with_capacity(n_roots + n_roots / 5),
             ..Self::default()
         };

@@ -15,6 +15,7 @@ use crate::base::{
 use crate::geometry::segment;
 use crate::geometry::tet;
 use crate::geometry::vector::{add, distance, scale, sub};
+use crate::mesh::LabelPlaces;
 use crate::mesh::history::{Ledger, RegionLedger, Rows};
 use crate::spatial::trace::{Labelled, LocalChange, trace};
 
@@ -119,21 +120,18 @@ fn tets(
 #[derive(Default)]
 struct Regions {
     all: Vec<RegionLedger>,
-    /// The place of the last one asked for.
-    last: usize,
+    places: LabelPlaces,
 }
 
 impl Regions {
-    /// The entry of a region, mostly that of the last one.
+    /// The entry of a region.
     #[inline]
     fn of(&mut self, region: i32) -> &mut RegionLedger {
-        if self.all.get(self.last).is_none_or(|entry| entry.region != region) {
-            self.last = self.all.iter().position(|entry| entry.region == region).unwrap_or_else(|| {
-                self.all.push(RegionLedger { region, ..RegionLedger::default() });
-                self.all.len() - 1
-            });
+        let place = self.places.of(region);
+        if place == self.all.len() {
+            self.all.push(RegionLedger { region, ..RegionLedger::default() });
         }
-        &mut self.all[self.last]
+        &mut self.all[place]
     }
 
     /// All entries, by rising labels.
