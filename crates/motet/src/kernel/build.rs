@@ -1,5 +1,7 @@
 //! The construction of a complex from plain arrays.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use crate::base::{Error, Result, TetId, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::POSITIVE_EAS;
@@ -121,10 +123,9 @@ struct Joined {
     has_same_side: bool,
 }
 
-/// What the facets of a part of a mesh join.
+/// What the facets of a part of a mesh are, besides links between tets.
 #[derive(Default)]
 struct Joints {
-    pairs: Vec<[HalfFacet; 2]>,
     walls: Vec<Wall>,
     has_same_side: bool,
     /// The first facet that more than two tets share, by one of them, and how many there are.
@@ -141,6 +142,11 @@ impl Joined {
     ) -> Result<Self> {
         // Most meshes have only one, which saves two random memory reads per facet.
         let one_region = regions.windows(2).all(|pair| pair[0] == pair[1]);
+        // Each facet has links of its own, so threads may set them in any order.
+        let links = threads.map(tets.len(), |_| [const { AtomicU32::new(HalfFacet::NONE.0) }; 4]);
+        let link = |from: HalfFacet, to: HalfFacet| {
+            links[from.tet().index()][from.facet()].store(Link::tet(to).0, Ordering::Relaxed);
+        };
         let join = |part: &mut Joints, Sharing { tets: uses, triangles }: Sharing| {
             if let [(t, i), (u, j)] = *uses {
                 let [x, y] = [(t, i), (u, j)].map(|(t, i)| orientation::facet(&tets[t.index()], i));
@@ -150,7 +156,8 @@ impl Joined {
             let same_region = |x: TetId, y: TetId| one_region || regions[x.index()] == regions[y.index()];
             match *uses {
                 [(t, _), (u, _)] if triangles.is_empty() && same_region(t, u) => {
-                    part.pairs.push([half(0), half(1)]);
+                    link(half(0), half(1));
+                    link(half(1), half(0));
                 }
                 [_] | [_, _] => {
                     let triangle = triangles.first().copied().unwrap_or(NO_TRIANGLE);
@@ -167,14 +174,11 @@ impl Joined {
             }
         };
         let parts = tet_facets_in_parts(tets, triangles, threads, join);
-        let links = vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()];
+        // A vector collected from its own elements keeps its memory.
+        let links = links.into_iter().map(|links| links.map(|link| Link(link.into_inner()))).collect();
         let mut joined = Self { links, walls: Vec::new(), has_same_side: false };
         let mut fault = None;
         for part in parts {
-            for [x, y] in part.pairs {
-                joined.links[x.tet().index()][x.facet()] = Link::tet(y);
-                joined.links[y.tet().index()][y.facet()] = Link::tet(x);
-            }
             part.walls.into_iter().for_each(|wall| joined.add_wall(wall));
             joined.has_same_side |= part.has_same_side;
             fault = fault.or(part.fault);
