@@ -159,8 +159,11 @@ def rivals(found, quick):
                 # 0 is CGAL's sequential triangulation, which needs no locks.
                 commands[name, "CGAL"] = lambda t, path=work.path: [TARGET / "delaunay_cgal", path, t if t > 1 else 0, 1]
     if not quick and (TARGET / "remesh_hxt").exists():
-        raw = Case("moved_1M").raw()
+        case = Case("moved_1M")
+        raw, source = case.raw(), case.numpy()
         commands["remesh, 1M moved tets", "HXT's optimiser"] = lambda t: [TARGET / "remesh_hxt", *raw, "eas", 0.2, t, FOLDER / "rival"]
+        mmg = [sys.executable, HERE / "rivals" / "remesh_python.py", "mmg-local", source, FOLDER / "rival.npz"]
+        commands["remesh, 1M moved tets", "Mmg, one ring (has one thread)"] = lambda t: mmg
     return commands
 
 

@@ -43,7 +43,8 @@ def tets():
 
 
 def verdict(points):
-    """Return the volume, edge ratio, mean ratio and equi-angle skew of each tet by VTK's Verdict."""
+    """Return the volume, edge ratio, mean ratio, equi-angle skew, scaled Jacobian, radius ratio and aspect ratio of each tet
+    by VTK's Verdict."""
     grid = vtk.vtkUnstructuredGrid()
     vtk_points = vtk.vtkPoints()
     vtk_points.SetDataTypeToDouble()
@@ -52,7 +53,7 @@ def verdict(points):
     for i in range(len(points)):
         grid.InsertNextCell(vtk.VTK_TETRA, 4, [4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3])
     q = vtk.vtkMeshQuality
-    measures = [q.TetVolume, q.TetEdgeRatio, q.TetMeanRatio, q.TetEquiangleSkew]
+    measures = [q.TetVolume, q.TetEdgeRatio, q.TetMeanRatio, q.TetEquiangleSkew, q.TetScaledJacobian, q.TetRadiusRatio, q.TetAspectRatio]
     return np.array([[measure(grid.GetCell(i)) for i in range(len(points))] for measure in measures])
 
 
@@ -90,12 +91,12 @@ def exact_skew(dihedral, face):
 
 @pytest.fixture(scope="module", params=list(tets()))
 def group(request, example, tmp_path_factory):
-    """Points of tets, eight measures of each by motet, and four by Verdict."""
+    """Points of tets, eleven measures of each by motet, and seven by Verdict."""
     points = tets()[request.param]
     folder = tmp_path_factory.mktemp("quality")
     points.astype("<f8").tofile(folder / "in")
     example("quality").run(folder / "in", folder / "out")
-    ours = np.fromfile(folder / "out", "<f8").reshape(-1, 8).T
+    ours = np.fromfile(folder / "out", "<f8").reshape(-1, 11).T
     assert ours.shape[1] == len(points)
     return points, ours, verdict(points)
 
@@ -109,6 +110,18 @@ def test_volume_edge_ratio_and_mean_ratio_agree_with_verdict(group):
     _, ours, theirs = group
     for row, expected in zip((7, 6, 5), theirs):
         assert (np.abs(ours[row] - expected) <= TOLERANCE * np.maximum(1, np.abs(expected))).all()
+
+
+def test_scaled_jacobian_and_ratios_of_radii_agree_with_verdict(group):
+    _, ours, theirs = group
+    jacobian, expected = ours[8], theirs[4]
+    assert (np.abs(jacobian - expected) <= TOLERANCE).all()
+    # A rounding error of the volume, relative to it, is as large as that of the Jacobian.
+    thick = np.abs(expected) > 1e-6
+    for row, theirs_too in ((9, theirs[5]), (10, theirs[6])):
+        assert (np.abs(ours[row] / theirs_too - 1)[thick] <= TOLERANCE / np.abs(expected[thick])).all()
+        flat = jacobian == 0
+        assert (ours[row][flat] == 1e30).all()
 
 
 def test_skew_agrees_with_verdict_or_is_more_accurate(group, request):

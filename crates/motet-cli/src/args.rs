@@ -4,7 +4,7 @@ use clap::{Parser, Subcommand};
 
 use crate::common::Common;
 use crate::verbs::{
-    cap, contact, convert, demo, implant, info, meshing, moving, refine, remesh, report, run,
+    cap, contact, convert, demo, implant, info, meshing, moving, quality, refine, remesh, report, run, shell,
 };
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
@@ -30,6 +30,7 @@ pub(crate) struct Call {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
     Info(info::InfoArgs),
+    Quality(quality::QualityArgs),
     Convert(convert::ConvertArgs),
     Cap(cap::CapArgs),
     Mesh(Box<meshing::MeshArgs>),
@@ -41,4 +42,6 @@ pub(crate) enum Verb {
     Run(run::RunArgs),
     Report(report::ReportArgs),
     Demo(demo::DemoArgs),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }

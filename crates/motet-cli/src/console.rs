@@ -115,7 +115,8 @@ impl Console {
         }
     }
 
-    fn put(&self, bytes: &[u8]) {
+    /// Writes bytes to standard output.
+    pub(crate) fn put(&self, bytes: &[u8]) {
         if let Err(e) = io::stdout().write_all(bytes) {
             self.record_failure(e);
         }

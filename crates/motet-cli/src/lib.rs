@@ -21,7 +21,7 @@ mod writing;
 
 use std::ffi::OsString;
 
-use clap::Parser as _;
+use clap::{CommandFactory as _, Parser as _};
 
 use crate::args::{Call, Verb};
 use crate::console::Console;
@@ -38,6 +38,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let console = Console::new(&call.common);
     let outcome = match call.verb {
         Verb::Info(args) => verbs::info::run(&args, &call.common, &console),
+        Verb::Quality(args) => verbs::quality::run(&args, &call.common, &console),
         Verb::Convert(args) => verbs::convert::run(&args, &call.common, &console),
         Verb::Cap(args) => verbs::cap::run(&args, &call.common, &console),
         Verb::Mesh(args) => verbs::meshing::run(&args, &call.common, &console),
@@ -49,6 +50,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Run(args) => verbs::run::run(&args, &call.common, &console),
         Verb::Report(args) => verbs::report::run(&args, &console),
         Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
+        Verb::Completions(args) => verbs::shell::complete(&args, Call::command(), &console),
+        Verb::Man(args) => verbs::shell::man(&args, Call::command(), &console),
     };
     if let Some(simulation) = call.common.simulation() {
         console.saved_by(simulation);

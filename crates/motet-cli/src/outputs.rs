@@ -2,14 +2,12 @@
 
 use std::path::Path;
 
-use motet::{Error, ErrorKind, Result, io};
+use motet::{Error, Result, io};
 
 /// Refuses an output that cannot be written, or that would overwrite one of the inputs, which `what` names.
-/// For a series, which is many files, the folder is created if missing.
 pub(crate) fn check<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>, what: &str) -> Result<()> {
     if io::can_write_series(output) {
-        let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
-        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::io(output, e))?;
+        io::can_have_folder(output)?;
     } else {
         io::can_write(output)?;
     }
@@ -22,14 +20,14 @@ pub(crate) fn check<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path
 }
 
 /// Refuses an output that cannot be written, and a history file that would overwrite a mesh or whose folder
-/// does not exist.
+/// cannot be made.
 pub(crate) fn check_with_history(output: &Path, mesh: &Path, history: Option<&Path>) -> Result<()> {
     io::can_write(output)?;
     history.map_or(Ok(()), |history| check_beside(history, [output, mesh], "history"))
 }
 
 /// Refuses a file to be written beside a result (`what` names it) that would overwrite one of the `others` or
-/// whose folder does not exist.
+/// whose folder cannot be made.
 pub(crate) fn check_beside<'a>(
     path: &Path,
     others: impl IntoIterator<Item = &'a Path>,
@@ -40,11 +38,5 @@ pub(crate) fn check_beside<'a>(
             .in_file(path)
             .remedy(format!("give the {what} a file of its own")));
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    match folder.filter(|folder| !folder.is_dir()) {
-        None => Ok(()),
-        Some(_) => Err(Error::new(ErrorKind::Io, "its folder does not exist")
-            .in_file(path)
-            .remedy("create the folder first")),
-    }
+    io::can_have_folder(path)
 }

@@ -1,15 +1,17 @@
-//! Reads tets as raw little-endian f64 (12 per tet), and writes all quality measures of each (8 per tet).
+//! Reads tets as raw little-endian f64 (12 per tet), and writes all quality measures of each (11 per tet).
 //!
 //! `quality IN OUT`; the order is eas, equi-angle skew, smallest and largest
-//! dihedral angle (radians), mean ratio, Cubit mean ratio, edge ratio, volume.
+//! dihedral angle (radians), mean ratio, Cubit mean ratio, edge ratio, volume, scaled
+//! Jacobian, radius ratio, aspect ratio.
 
 use std::process::ExitCode;
 
 use motet::geometry::quality::{
-    cubit_mean_ratio, dihedral, eas, edge_ratio, equiangle_skew, mean_ratio, volume,
+    aspect_ratio, cubit_mean_ratio, dihedral, eas, edge_ratio, equiangle_skew, mean_ratio, radius_ratio,
+    scaled_jacobian, volume,
 };
 
-fn measures(tet: [[f64; 3]; 4]) -> [f64; 8] {
+fn measures(tet: [[f64; 3]; 4]) -> [f64; 11] {
     let [low, high] = dihedral::min_max(tet);
     [
         eas(tet),
@@ -20,6 +22,9 @@ fn measures(tet: [[f64; 3]; 4]) -> [f64; 8] {
         cubit_mean_ratio(tet),
         edge_ratio(tet),
         volume(tet),
+        scaled_jacobian(tet),
+        radius_ratio(tet),
+        aspect_ratio(tet),
     ]
 }
 

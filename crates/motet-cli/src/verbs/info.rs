@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use motet::base::{Point, Threads};
-use motet::geometry::quality::{dihedral, eas, edge_ratio, mean_ratio, volume};
+use motet::base::{Names as _, Threads};
+use motet::geometry::quality::Measure;
 use motet::io::{self, WriteOptions};
 use motet::mesh::{OrientedTets, Summary};
 use motet::{Error, Mesh};
@@ -41,13 +41,13 @@ Examples:
   motet info vessel.vtu
   motet info vessel.vtu --json | jq .quality.eas.min
   motet info vessel.vtu --json | jq .quality.distribution    worst, 1 %, 5 %, median and mean EAS
+  motet quality before.vtu after.vtu          all measures of several meshes
   motet info vessel.msh -o quality.vtu        colour by eas in ParaView to see where it is bad")]
 pub(crate) struct InfoArgs {
     /// The mesh file (or folder, or series: .pvd, .vtkhdf with steps)
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
-    /// Write the mesh with a cell array for each measure: eas, mean_ratio, min_dihedral_deg,
-    /// max_dihedral_deg, edge_ratio, volume (of tets; other cells have none)
+    /// Write the mesh with a cell array for each measure of `motet quality` (of tets; other cells have none)
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
 }
@@ -78,15 +78,10 @@ pub(crate) fn run(args: &InfoArgs, common: &Common, console: &Console) -> motet:
 /// Adds a cell array for each quality measure.
 fn measured(mut mesh: Mesh, threads: &Threads) -> Mesh {
     let tets = OrientedTets::of_linear(&mesh, threads);
-    let field = |name: &str, measure: &dyn Fn([Point; 4]) -> f64| tets.field(&mesh, name, measure);
-    let fields = [
-        field("eas", &eas),
-        field("mean_ratio", &mean_ratio),
-        field("min_dihedral_deg", &|tet| dihedral::min(tet).to_degrees()),
-        field("max_dihedral_deg", &|tet| dihedral::max(tet).to_degrees()),
-        field("edge_ratio", &edge_ratio),
-        field("volume", &volume),
-    ];
+    let fields: Vec<_> = Measure::ALL
+        .iter()
+        .map(|measure| tets.field(&mesh, measure.as_str(), |tet| measure.of_tet(tet)))
+        .collect();
     fields.into_iter().for_each(|field| mesh.set_cell_field(field));
     mesh
 }
@@ -227,6 +222,12 @@ impl Report<'_> {
             short(quality.mean_ratio.min),
             short(quality.dihedral_deg.min),
             short(quality.dihedral_deg.max)
+        ));
+        console.print(format_args!(
+            "  scaled Jacobian at least {}; radius ratio at most {}, aspect ratio at most {} (as in Verdict)",
+            short(quality.scaled_jacobian.min),
+            short(quality.radius_ratio.max),
+            short(quality.aspect_ratio.max)
         ));
         console.print(format_args!(
             "  {} bad (EAS < 0.2), {} inverted or flat; worst: cell {} at ({x}, {y}, {z})",

@@ -51,11 +51,24 @@ fn a_file_that_is_not_there_is_an_unreadable_input() {
 }
 
 #[test]
-fn a_folder_that_is_not_there_is_reported_before_work_begins() {
+fn folders_of_outputs_are_made() {
     let folder = Folder::new();
     let mesh = folder.cube("cube.vtu");
-    let call = folder.motet(["convert", &mesh, "no/such/folder/out.vtu"]).assert().code(3);
-    assert!(stderr(&call).contains("folder"), "{}", stderr(&call));
+    for output in ["new/deep/out.vtu", "new/deep/foam", "series/out.pvd"] {
+        folder.motet(["convert", &mesh, output]).assert().code(0);
+        assert!(folder.path(output).exists(), "{output}");
+    }
+    folder.motet(["remesh", &mesh, "-o", "a/out.vtu", "--history", "b/map.json"]).assert().code(0);
+    assert!(folder.path("a/out.vtu").is_file() && folder.path("b/map.json").is_file());
+}
+
+#[test]
+fn a_file_in_the_place_of_a_folder_is_reported_before_work_begins() {
+    let folder = Folder::new();
+    let mesh = folder.cube("cube.vtu");
+    let call = folder.motet(["convert", &mesh, "cube.vtu/deep/out.vtu"]).assert().code(3);
+    assert!(stderr(&call).contains("cube.vtu is a file"), "{}", stderr(&call));
+    assert_eq!(folder.names(), ["cube.vtu"]);
 }
 
 #[test]
@@ -130,10 +143,31 @@ fn every_verb_takes_more_threads_than_the_machine_has_and_gives_the_same_files()
         let names = ["one", "many"].map(|name| format!("{}-{name}.{ending}", words[0]));
         assert!(made(&names[0], "1") == made(&names[1], "100000"), "{words:?}");
     }
-    for verb in
-        ["info", "convert", "mesh", "move", "remesh", "refine", "implant", "contact", "run", "cap", "report"]
-    {
+    for verb in [
+        "info", "quality", "convert", "mesh", "move", "remesh", "refine", "implant", "contact", "run", "cap",
+        "report",
+    ] {
         let call = folder.motet([verb, "--threads", "-1"]).assert().code(2);
         assert!(stderr(&call).contains("invalid value '-1' for '--threads <N>'"), "{}", stderr(&call));
     }
+}
+
+#[test]
+fn completions_and_manual_pages_know_every_verb() {
+    let folder = Folder::new();
+    let help = stdout(&folder.motet(["--help"]).assert().code(0));
+    let verbs = help.lines().skip_while(|line| !line.starts_with("Commands:")).skip(1);
+    let verbs: Vec<&str> = verbs.map_while(|line| line.split_whitespace().next()).collect();
+    assert!(verbs.contains(&"mesh") && verbs.contains(&"man"), "{verbs:?}");
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = stdout(&folder.motet(["completions", shell]).assert().code(0));
+        assert!(verbs.iter().all(|verb| script.contains(verb)), "{shell}");
+        assert!(script.contains("--layers"), "{shell}");
+    }
+    folder.motet(["man", "share/man1"]).assert().code(0);
+    for verb in verbs.into_iter().filter(|verb| *verb != "help") {
+        let page = folder.read(&format!("share/man1/motet-{verb}.1"));
+        assert!(String::from_utf8(page).unwrap().contains("Examples:") || verb == "man", "{verb}");
+    }
+    assert!(!folder.read("share/man1/motet.1").is_empty());
 }

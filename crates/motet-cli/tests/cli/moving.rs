@@ -213,7 +213,7 @@ fn displacements_of_nodes_over_time_are_written_and_read() {
         (["--displacement", "lid.dat", "--steps", "3"], 2, "omit --steps"),
         (["--displacement", "lid.dat", "--nodal", "lid=lid.dat"], 2, "would overwrite a file of the call"),
         (["--displacement", "lid.dat", "--nodal", "no=no.dat"], 2, "no patch `no`"),
-        (["--displacement", "lid.dat", "--nodal", "lid=no/no.dat"], 3, "folder does not exist"),
+        (["--displacement", "lid.dat", "--nodal", "lid=lid.dat/no.dat"], 3, "folder cannot be made"),
     ] {
         let call =
             folder.motet(["move", "cube.vtu", "-o", "no.vtu"].iter().chain(&words)).assert().code(code);

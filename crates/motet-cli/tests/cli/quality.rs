@@ -1,9 +1,10 @@
 //! Every report contains the quality of all tets: the same numbers for all verbs, compared with values sorted
 //! here.
 
-use crate::common::{Folder, stdout};
+use crate::common::{Folder, stderr, stdout};
 use motet::Mesh;
-use motet::geometry::quality::{eas, mean_ratio};
+use motet::base::Names as _;
+use motet::geometry::quality::{Measure, eas, mean_ratio};
 use motet::io::read;
 use motet::mesh::shapes::{ball, box_grid, sphere_in_box};
 use motet::mesh::{CellKind, Cells, Surface};
@@ -120,4 +121,43 @@ fn a_page_has_the_distribution_of_meshes_and_logs() {
     for what in ["EAS of all tets", "1 % below", "5 % below", "median EAS", "mean ratio"] {
         assert!(page.contains(what), "{what}");
     }
+}
+
+#[test]
+fn quality_compares_meshes_by_every_measure() {
+    let folder = folder();
+    folder.motet(["remesh", "box.vtu", "--goal", "best", "-o", "best.vtu"]).assert().success();
+    let call = folder.motet(["quality", "box.vtu", "best.vtu", "--json"]).assert().success();
+    let report: Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    for (entry, name) in report["meshes"].as_array().unwrap().iter().zip(["box.vtu", "best.vtu"]) {
+        let mesh = read(folder.path(name)).unwrap();
+        assert_eq!(entry["file"], name);
+        assert_eq!(entry["tets"], mesh.cells.tets().count());
+        assert_eq!(entry["measures"].as_object().unwrap().len(), Measure::ALL.len());
+        for measure in Measure::ALL {
+            let tets = mesh.cells.tets().map(|(_, tet)| tet.map(|v| mesh.points[v.index()]));
+            let mut sorted: Vec<f64> = tets.map(|tet| measure.of_tet(tet)).collect();
+            sorted.sort_by(f64::total_cmp);
+            if !measure.is_better_if_larger() {
+                sorted.reverse();
+            }
+            let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64) as usize];
+            let mean = sorted.iter().sum::<f64>() / sorted.len() as f64;
+            let expected = [("worst", at(0.0)), ("p1", at(0.01)), ("p5", at(0.05)), ("median", at(0.5))];
+            let found = &entry["measures"][measure.as_str()];
+            for (key, value) in expected {
+                assert_eq!(found[key].as_f64(), Some(value), "{measure} {key}");
+            }
+            assert!((found["mean"].as_f64().unwrap() - mean).abs() < 1e-9 * mean.abs(), "{measure}");
+        }
+    }
+    let words = ["quality", "box.vtu", "best.vtu", "--measures", "eas,radius_ratio"];
+    let table = stdout(&folder.motet(words).assert().success());
+    let names = ["mesh", "box.vtu", "best.vtu", "", "measure", "eas", "best.vtu", "radius_ratio", "best.vtu"];
+    let first = |line: &str| line.split_whitespace().next().unwrap_or_default().to_string();
+    assert_eq!(table.lines().map(first).collect::<Vec<_>>(), names);
+    let call = folder.motet(["quality", "box.vtu", "--measures", "radius"]).assert().code(2);
+    assert!(stderr(&call).contains("radius_ratio"), "{}", stderr(&call));
+    let call = folder.motet(["quality", "ball.stl"]).assert().code(3);
+    assert!(stderr(&call).contains("there are no tets"), "{}", stderr(&call));
 }

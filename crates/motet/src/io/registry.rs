@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::base::{Error, ErrorKind, Result, Threads};
+use crate::base::{Error, Result, Threads};
 use crate::io::format::{Format, Notes, Write, WriteOptions};
 use crate::io::reading::{checked, read_file};
-use crate::io::replace::{replace_all, replace_folder, replace_with};
+use crate::io::replace::{can_have_folder, replace_all, replace_folder, replace_with};
 use crate::io::{
     abaqus, cgns, dolfin, foreign, legacy, medit, msh, obj, off, ply, polymesh, simvascular, stl, tetgen,
     vtkhdf, vtkxml,
@@ -88,11 +88,11 @@ fn for_writing(path: &Path) -> Result<&'static Format> {
 }
 
 /// Checks whether a mesh can be written to `path`, so that a long run can check before it starts: the
-/// extension must belong to a format with a writer, and the parent folder must exist.
+/// extension must belong to a format with a writer, and its folder must exist or be one that can be made.
 ///
 /// # Errors
-/// Of kind [`ErrorKind::Options`] for the extension or a non-empty target folder, [`ErrorKind::Io`] for a
-/// missing parent folder.
+/// Of kind [`ErrorKind::Options`](crate::ErrorKind::Options) for the extension or a non-empty target folder,
+/// [`ErrorKind::Io`](crate::ErrorKind::Io) for a file in the place of its folder.
 pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
     let writable = match for_writing(path) {
@@ -107,13 +107,7 @@ pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
             .remedy(format!("writable extensions: {}", known.join(" "))));
     }
     refuse_full_folder(path)?;
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
-    match folder.filter(|folder| !folder.is_dir()) {
-        Some(_) => Err(Error::new(ErrorKind::Io, "its folder does not exist")
-            .in_file(path)
-            .remedy("create the folder first")),
-        None => Ok(()),
-    }
+    can_have_folder(path)
 }
 
 /// Rejects a non-empty folder as a target, so that nothing is lost and no old files remain among new ones.

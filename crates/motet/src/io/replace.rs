@@ -3,7 +3,7 @@
 //!
 //! An existing target is treated as by `cp`: symbolic links are followed, permissions and owner are kept,
 //! devices and pipes are written into, and a file without write permission is rejected. Only other hard links
-//! keep the old content, which is reported.
+//! keep the old content, which is reported. Missing folders of a target are made.
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{ErrorKind, Write as _};
@@ -62,6 +62,7 @@ pub(super) fn replace_with<T>(
 pub(super) fn replace_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
     let failed = |e: std::io::Error| Error::output(path, e);
     let place = if path.is_dir() { path.canonicalize().map_err(failed)? } else { resolve_links(path)? };
+    std::fs::create_dir_all(folder_of(&place)).map_err(failed)?;
     let folder = tempfile::Builder::new().prefix(".motet-").tempdir_in(folder_of(&place)).map_err(failed)?;
     // The temporary folder is private to its owner; the folder inside, which is renamed, has permissions from
     // the umask.
@@ -108,6 +109,7 @@ impl Draft {
         // Permissions of a new file, which the umask restricts.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        std::fs::create_dir_all(folder_of(&place)).map_err(failed)?;
         let file = builder.tempfile_in(folder_of(&place)).map_err(failed)?;
         Ok(Self::Beside(file, place, old))
     }
@@ -145,6 +147,20 @@ impl Draft {
         Ok(old.as_deref().map_or(1, hard_links).checked_sub(1).filter(|&n| n > 0).map(|n| {
             format!("{}: {n} other hard link(s) to the replaced file keep its old content", path.display())
         }))
+    }
+}
+
+/// Checks whether the folder of a file exists or can be made: nothing but a folder stands in its place.
+///
+/// # Errors
+/// Of kind [`Io`](crate::ErrorKind::Io).
+pub fn can_have_folder(path: &Path) -> Result<()> {
+    let existing = folder_of(path).ancestors().find(|folder| folder.exists());
+    match existing.filter(|folder| !folder.is_dir()) {
+        None => Ok(()),
+        Some(file) => Err(Error::new(crate::base::ErrorKind::Io, "its folder cannot be made")
+            .in_file(path)
+            .remedy(format!("{} is a file: give another folder", file.display()))),
     }
 }
 

@@ -25,6 +25,7 @@ mod oriented_tets;
 mod qualities;
 mod seams;
 pub mod shapes;
+mod spread;
 mod summary;
 mod surface;
 pub mod tet_facets;
@@ -52,9 +53,10 @@ pub use labels::{LabelNames, Labels, unused_name};
 pub use oriented_tets::{Judged, OrientedTets, is_inverted};
 pub use qualities::Qualities;
 pub use seams::{open_edges, seamless, seams};
+pub use spread::Spread;
 pub use summary::{
-    BAD_EAS, BoundarySummary, EasSummary, MinMean, PatchSummary, QualitySummary, Range, RegionSummary,
-    Summary,
+    BAD_EAS, BoundarySummary, EasSummary, MaxMean, MinMean, PatchSummary, QualitySummary, Range,
+    RegionSummary, Summary,
 };
 pub use surface::Surface;
 pub use tet_mesh::TetMesh;

@@ -3,7 +3,7 @@
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::quality::{eas_and_mean_ratio_of_each, eas_of_each};
 use crate::geometry::vector::in_range;
-use crate::mesh::{Mesh, OrientedTets};
+use crate::mesh::{Mesh, OrientedTets, Spread};
 
 /// The distribution of the EAS of a set of tets, and the mean of their mean ratios. All values are 1 if there
 /// are no tets.
@@ -66,17 +66,7 @@ impl Qualities {
     /// if there are no tets.
     pub fn of_values(eas: &mut [f64], ratios: f64) -> Option<Self> {
         let n = eas.len() as f64;
-        let mean = eas.iter().sum::<f64>() / n;
-        // Each selection needs only the part below the previous, higher percentile.
-        let (mut low, places) = (eas, [0.5, 0.05, 0.01, 0.0]);
-        let mut values = [1.0; 4];
-        let n_last = low.len().checked_sub(1)?;
-        for (value, part) in values.iter_mut().zip(places) {
-            let place = (part * n_last as f64) as usize;
-            *value = *low.select_nth_unstable_by(place, f64::total_cmp).1;
-            low = &mut low[..=place];
-        }
-        let [median, p5, p1, worst] = values;
+        let Spread { worst, p1, p5, median, mean } = Spread::of_values(eas, true)?;
         Some(Self { worst, p1, p5, median, mean, mean_ratio: ratios / n })
     }
 }

@@ -124,6 +124,14 @@ pub struct QualitySummary {
     pub dihedral_deg: Range,
     /// `12 (3V)^(2/3) / sum of squared edge lengths`.
     pub mean_ratio: MinMean,
+    /// Scaled Jacobian, as in Verdict: 1 regular, 0 flat.
+    pub scaled_jacobian: MinMean,
+    /// Radius of the circumsphere over three times that of the insphere, as in Verdict: 1 regular, larger
+    /// otherwise.
+    pub radius_ratio: MaxMean,
+    /// Longest edge over the radius of the insphere, divided by `2 sqrt(6)`, as in Verdict: 1 regular, larger
+    /// otherwise.
+    pub aspect_ratio: MaxMean,
     /// Quality statistics over all tets.
     pub distribution: Qualities,
     /// The shortest, the median and the longest edge length.
@@ -171,6 +179,36 @@ pub struct MinMean {
     pub min: f64,
     /// The mean.
     pub mean: f64,
+}
+
+/// The largest value and the mean.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct MaxMean {
+    /// The largest.
+    pub max: f64,
+    /// The mean.
+    pub mean: f64,
+}
+
+impl MinMean {
+    const NOTHING: Self = Self { min: f64::INFINITY, mean: 0.0 };
+
+    /// Adds a value; the mean is a sum until it is divided.
+    fn add(&mut self, value: f64) {
+        self.min = self.min.min(value);
+        self.mean += value;
+    }
+}
+
+impl MaxMean {
+    const NOTHING: Self = Self { max: f64::NEG_INFINITY, mean: 0.0 };
+
+    /// Adds a value; the mean is a sum until it is divided.
+    fn add(&mut self, value: f64) {
+        self.max = self.max.max(value);
+        self.mean += value;
+    }
 }
 
 impl Summary {
@@ -336,14 +374,22 @@ impl QualitySummary {
             histogram: [0; 11],
         };
         let dihedral_deg = Range { min: f64::INFINITY, max: f64::NEG_INFINITY };
-        let mean_ratio = MinMean { min: f64::INFINITY, mean: 0.0 };
-        Self { eas, dihedral_deg, mean_ratio, distribution: Qualities::default(), edges: [0.0; 3] }
+        Self {
+            eas,
+            dihedral_deg,
+            mean_ratio: MinMean::NOTHING,
+            scaled_jacobian: MinMean::NOTHING,
+            radius_ratio: MaxMean::NOTHING,
+            aspect_ratio: MaxMean::NOTHING,
+            distribution: Qualities::default(),
+            edges: [0.0; 3],
+        }
     }
 
-    /// Adds a tet and returns its EAS. Until [`Self::finished`] is called, the mean ratio is a sum, angles
-    /// are in radians, and the distribution is not set.
+    /// Adds a tet and returns its EAS. Until [`Self::finished`] is called, means are sums, angles are in
+    /// radians, and the distribution is not set.
     fn add(&mut self, cell: CellId, tet: [Point; 4]) -> f64 {
-        let (eas, mean_ratio) = (quality::eas(tet), quality::mean_ratio(tet));
+        let eas = quality::eas(tet);
         if eas < self.eas.min {
             self.eas.min = eas;
             self.eas.worst_cell = cell;
@@ -353,13 +399,20 @@ impl QualitySummary {
         let [low, high] = quality::dihedral::min_max(tet);
         self.dihedral_deg.min = self.dihedral_deg.min.min(low);
         self.dihedral_deg.max = self.dihedral_deg.max.max(high);
-        self.mean_ratio.min = self.mean_ratio.min.min(mean_ratio);
-        self.mean_ratio.mean += mean_ratio;
+        self.mean_ratio.add(quality::mean_ratio(tet));
+        self.scaled_jacobian.add(quality::scaled_jacobian(tet));
+        self.radius_ratio.add(quality::radius_ratio(tet));
+        self.aspect_ratio.add(quality::aspect_ratio(tet));
         eas
     }
 
     /// Completes the summary. `all` holds the EAS of all tets, and is reordered.
     fn finished(mut self, all: &mut [f64], judged: &Judged) -> Self {
+        let n = all.len() as f64;
+        for mean in [&mut self.scaled_jacobian.mean, &mut self.radius_ratio.mean, &mut self.aspect_ratio.mean]
+        {
+            *mean /= n;
+        }
         let all = Qualities::of_values(all, self.mean_ratio.mean).unwrap_or_default();
         self.eas.percentiles = [all.p1, all.p5, all.median];
         (self.eas.bad, self.eas.layers) = (judged.bad.len(), judged.layers.len());

@@ -4,7 +4,7 @@ use crate::base::Point;
 use crate::geometry::quality::scaled::Scaled;
 
 /// The value for "infinite", as in Verdict (`VERDICT_DBL_MAX`).
-const LARGEST: f64 = 1e30;
+pub(super) const LARGEST: f64 = 1e30;
 
 /// The ratio of the longest edge to the shortest: 1 for the regular tet, at most `1e30`, which also stands
 /// for a tet with an edge of no length.
