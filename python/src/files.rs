@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use motet::geometry::quality::{dihedral, eas, edge_ratio, mean_ratio, volume};
+use motet::base::Names as _;
+use motet::geometry::quality::Measure;
 use motet::io::{self, WriteOptions};
 use motet::mesh::{CellKind, LabelNames, Labels, Summary};
 use numpy::PyArray1;
@@ -13,7 +14,7 @@ use pyo3::types::PyDict;
 use crate::convert::{MeshArg, parts};
 use crate::error::call;
 use crate::report::report;
-use crate::words::{one_of, threads};
+use crate::words::{name_of, threads};
 
 /// Reads a mesh from a file; also returns notes on what the reader skipped.
 #[pyfunction]
@@ -88,16 +89,7 @@ pub(crate) fn summary(py: Python<'_>, mesh: MeshArg) -> PyResult<Bound<'_, PyAny
 /// A quality measure of each tet; NaN for other cells.
 #[pyfunction]
 pub(crate) fn quality<'py>(py: Python<'py>, mesh: MeshArg, measure: &str) -> PyResult<Bound<'py, PyAny>> {
-    type Measure = fn([[f64; 3]; 4]) -> f64;
-    let known: [(&str, Measure); 6] = [
-        ("eas", eas),
-        ("mean_ratio", mean_ratio),
-        ("min_dihedral_deg", |tet| dihedral::min(tet).to_degrees()),
-        ("max_dihedral_deg", |tet| dihedral::max(tet).to_degrees()),
-        ("edge_ratio", edge_ratio),
-        ("volume", volume),
-    ];
-    let of = one_of("measure", measure, &known)?;
-    let field = call(py, || Ok(mesh.0.tet_field(measure, of)))?;
+    let measure: Measure = name_of(measure)?;
+    let field = call(py, || Ok(mesh.0.tet_field(measure.as_str(), |tet| measure.of_tet(tet))))?;
     Ok(PyArray1::from_vec(py, field.values.to_f64().unwrap_or_default()).into_any())
 }

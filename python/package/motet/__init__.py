@@ -14,6 +14,7 @@ from ._motet import __version__, formats
 from ._cap import cap
 from ._changing import Changed, History, implant, mesh, remesh
 from ._contact import Ahead, Body, Contact, Gaps
+from ._frames import read_log, to_frame
 from .errors import Error, FileError, InputError, InternalError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, read
 from ._motion import Moved, Mover, PointMover, mesh_velocity, move
@@ -24,6 +25,6 @@ from ._series import SeriesWriter, read_nodal, read_series, write_nodal
 
 __all__ = [
     "Ahead", "Body", "Changed", "Contact", "Error", "FileError", "Gaps", "History", "InputError", "InternalError", "Mesh", "MeshLike", "Moved", "Mover",
-    "MovingMesh", "OptionsError", "PointMover", "Refinement", "Report", "SeriesWriter", "as_mesh", "cap", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_nodal",
-    "read_series", "refine", "remesh", "shapes", "write_nodal", "__version__",
+    "MovingMesh", "OptionsError", "PointMover", "Refinement", "Report", "SeriesWriter", "as_mesh", "cap", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_log", "read_nodal",
+    "read_series", "refine", "remesh", "shapes", "to_frame", "write_nodal", "__version__",
 ]  # fmt: skip

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _motet
 from ._mesh import Mesh, MeshLike, as_mesh, named, point
-from ._report import Progress, Report, report
+from ._progress import Progress
+from ._report import Report, report
 from ._keywords import checked, checked_class
 
 Carry = Literal["mean", "linear", "inherit", "drop"]
@@ -183,7 +184,7 @@ def remesh(
     rounds: int = 20,
     carry: Mapping[str, Carry] | None = None,
     threads: int = 0,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> Changed:
     """Repair the bad tets of a mesh and leave all other tets unchanged (after Moyle and Ventikos 2008).
 
@@ -219,8 +220,9 @@ def remesh(
         removes the array.
     threads : int, default 0
         Number of threads; 0 uses all cores. The result does not depend on it.
-    progress : callable, optional
-        Called as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+    progress : callable or True, optional
+        True shows a bar for each stage (by tqdm, if it is installed). A function is called
+        as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
         exception that it raises, or Ctrl-C, ends the call.
 
     Returns
@@ -257,7 +259,7 @@ def implant(
     values: Mapping[str, ArrayLike] | None = None,
     carry: Mapping[str, Carry] | None = None,
     threads: int = 0,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> Changed:
     """Insert devices into a mesh of tets and return one conforming mesh.
 
@@ -305,8 +307,9 @@ def implant(
         removes the array.
     threads : int, default 0
         Number of threads; 0 uses all cores. The result does not depend on it.
-    progress : callable, optional
-        Called as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+    progress : callable or True, optional
+        True shows a bar for each stage (by tqdm, if it is installed). A function is called
+        as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
         exception that it raises, or Ctrl-C, ends the call.
 
     Returns
@@ -368,7 +371,7 @@ def mesh(
     cut: bool = False,
     voids: bool = False,
     threads: int = 0,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> Changed:
     """Fill closed surfaces with tets.
 
@@ -418,8 +421,9 @@ def mesh(
         Whether to leave empty what is enclosed by closed surfaces that are turned inward.
     threads : int, default 0
         Number of threads; 0 uses all cores. The result does not depend on it.
-    progress : callable, optional
-        Called as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+    progress : callable or True, optional
+        True shows a bar for each stage (by tqdm, if it is installed). A function is called
+        as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
         exception that it raises, or Ctrl-C, ends the call.
 
     Returns

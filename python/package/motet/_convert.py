@@ -1,6 +1,6 @@
-"""Conversion from and to meshes of meshio and PyVista, which are imported only here.
+"""Conversion from and to meshes of meshio, PyVista and trimesh, which are imported only here.
 
-Neither library stores names of labels. They are passed as field data ``region:NAME`` and ``patch:NAME`` with
+None of them stores names of labels. They are passed as field data ``region:NAME`` and ``patch:NAME`` with
 the label as value, as in files that motet writes, and to meshio also as cell sets. Names of Gmsh's physical
 groups (field data ``NAME: [label, dimension]``) are read from meshio meshes.
 """
@@ -30,6 +30,30 @@ def from_meshio(mesh: Any) -> Mesh:
     _take_field_data(new, field_data)
     _take_sets(new, mesh)
     return new
+
+
+def from_trimesh(mesh: Any) -> Mesh:
+    def arrays(attributes: Any) -> dict[str, Any]:
+        found = {name: np.asarray(values) for name, values in attributes.items()}
+        return {name: values for name, values in found.items() if values.dtype.kind in "biuf"}
+
+    return Mesh(
+        mesh.vertices, np.asarray(mesh.faces), point_data=arrays(mesh.vertex_attributes), cell_data=arrays(mesh.face_attributes)
+    )
+
+
+def to_trimesh(mesh: Mesh) -> Any:
+    import trimesh
+
+    of_triangles = mesh.kinds == KINDS["triangle"]
+    used, faces = np.unique(mesh.triangles, return_inverse=True)
+    return trimesh.Trimesh(
+        mesh.points[used],
+        faces.reshape(-1, 3),
+        vertex_attributes={name: np.asarray(values)[used] for name, values in mesh.point_data.items()},
+        face_attributes={name: np.asarray(values)[of_triangles] for name, values in mesh.cell_data.items()},
+        process=False,
+    )
 
 
 def to_meshio(mesh: Mesh) -> Any:

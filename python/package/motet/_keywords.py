@@ -7,14 +7,18 @@ import inspect
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from ._progress import shown
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 Class = TypeVar("Class", bound=type)
 
 
 def checked(function: Function) -> Function:
-    """Decorate a function so that unknown keywords raise a TypeError that suggests the closest known one."""
+    """Decorate a function: unknown keywords raise a TypeError that suggests the closest known one, and
+    ``progress`` may be True; see :func:`motet._progress.shown`."""
     known = [p.name for p in inspect.signature(function).parameters.values() if p.kind is not p.POSITIONAL_ONLY and p.name not in ("self", "cls")]
     allowed = frozenset(known)
+    shows_progress = "progress" in allowed
 
     @functools.wraps(function)
     def call(*args: Any, **kwargs: Any) -> Any:
@@ -24,7 +28,10 @@ def checked(function: Function) -> Function:
             nearest = difflib.get_close_matches(unknown, known, n=1, cutoff=0.5)
             hint = f"did you mean {nearest[0]!r}?" if nearest else f"it takes {', '.join(known) or 'none'}"
             raise TypeError(f"{name}() has no keyword {unknown!r}: {hint}")
-        return function(*args, **kwargs)
+        if not shows_progress:
+            return function(*args, **kwargs)
+        with shown(function.__qualname__.removesuffix(".__init__"), kwargs.get("progress")) as kwargs["progress"]:
+            return function(*args, **kwargs)
 
     return call  # type: ignore[return-value]
 

@@ -198,8 +198,9 @@ class Mesh:
         ----------
         measure : str, default "eas"
             ``"eas"`` (equi-angle quality: 1 regular, 0 flat, negative inverted; bad below 0.2),
-            ``"mean_ratio"``, ``"min_dihedral_deg"``, ``"max_dihedral_deg"``, ``"edge_ratio"`` or
-            ``"volume"``.
+            ``"scaled_jacobian"``, ``"radius_ratio"``, ``"aspect_ratio"`` (as in Verdict), ``"mean_ratio"``
+            (12 (3 V)^(2/3) over the sum of squared edge lengths), ``"edge_ratio"``, ``"min_dihedral_deg"``,
+            ``"max_dihedral_deg"`` or ``"volume"``.
 
         Returns
         -------
@@ -251,6 +252,19 @@ class Mesh:
 
         return from_meshio(mesh)
 
+    @classmethod
+    def from_trimesh(cls, mesh: Any) -> Mesh:
+        """Create a surface from a ``trimesh.Trimesh``, with its ``vertex_attributes`` and ``face_attributes``."""
+        from ._convert import from_trimesh
+
+        return from_trimesh(mesh)
+
+    def to_trimesh(self) -> Any:
+        """Convert the triangles of the mesh to a ``trimesh.Trimesh``."""
+        from ._convert import to_trimesh
+
+        return to_trimesh(self)
+
     def to_meshio(self) -> Any:
         """Convert the mesh to a ``meshio.Mesh``."""
         from ._convert import to_meshio
@@ -288,7 +302,7 @@ class Mesh:
 
 
 MeshLike = Any
-"""A :class:`Mesh`, a file path, a ``meshio.Mesh``, or a PyVista or VTK data set."""
+"""A :class:`Mesh`, a file path, a ``meshio.Mesh``, a PyVista or VTK data set, or a ``trimesh.Trimesh``."""
 
 
 @checked
@@ -330,8 +344,8 @@ def as_mesh(mesh: MeshLike) -> Mesh:
     Parameters
     ----------
     mesh : MeshLike
-        A :class:`Mesh`, which is returned as it is, a file path, a ``meshio.Mesh``, or a PyVista or VTK data
-        set.
+        A :class:`Mesh`, which is returned as it is, a file path, a ``meshio.Mesh``, a PyVista or VTK data set,
+        or a ``trimesh.Trimesh``.
 
     Returns
     -------
@@ -342,7 +356,7 @@ def as_mesh(mesh: MeshLike) -> Mesh:
     InputError
         If the object is not a mesh, or cannot be converted.
     """
-    from ._convert import from_meshio, from_pyvista
+    from ._convert import from_meshio, from_pyvista, from_trimesh
 
     if isinstance(mesh, Mesh):
         return mesh
@@ -352,7 +366,9 @@ def as_mesh(mesh: MeshLike) -> Mesh:
         return from_pyvista(mesh)
     if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
         return from_meshio(mesh)
-    raise InputError(f"{type(mesh).__name__} is not a mesh: expected a motet.Mesh, a path, a meshio.Mesh or a PyVista data set")
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+        return from_trimesh(mesh)
+    raise InputError(f"{type(mesh).__name__} is not a mesh: expected a motet.Mesh, a path, a meshio.Mesh, a PyVista data set or a trimesh.Trimesh")
 
 
 def named(meshes: Any, default: str) -> Mapping[str, Any]:

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from . import _motet
 from .errors import InputError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, ids, point
-from ._report import Progress, Report, report
+from ._progress import Progress
+from ._report import Report, report
 from ._keywords import NotPickled, checked, checked_class
 
 Patch = Union[str, int, ArrayLike]
@@ -125,8 +126,9 @@ class Mover(NotPickled):
         Maximum number of sub-steps in :meth:`advance`.
     threads : int, default 1
         Number of threads; 0 uses all cores. The result does not depend on it.
-    progress : callable, optional
-        Called during the set-up as ``progress(stage, done, total)`` several times per second; ``total`` is 0
+    progress : callable or True, optional
+        True shows a bar for each stage (by tqdm, if it is installed). A function is called
+        during the set-up as ``progress(stage, done, total)`` several times per second; ``total`` is 0
         if unknown. An exception that it raises, or Ctrl-C, ends the call.
 
     Raises
@@ -157,7 +159,7 @@ class Mover(NotPickled):
         factor_gib: float = 0.0,
         substeps: int = 50,
         threads: int = 1,
-        progress: Progress | None = None,
+        progress: Progress | bool | None = None,
     ):
         self._mover = _motet.Mover(as_mesh(mesh), _request(locals()), threads, progress)
         self._method = method
@@ -385,7 +387,7 @@ def move(
     factor_gib: float = 0.0,
     substeps: int = 50,
     threads: int = 0,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> Moved:
     """Move a mesh once so that it follows its boundary. For repeated motion use a :class:`Mover`.
 
@@ -416,8 +418,9 @@ def move(
         Options of :class:`Mover`.
     threads : int, default 0
         Number of threads; 0 uses all cores. The result does not depend on it.
-    progress : callable, optional
-        Called as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+    progress : callable or True, optional
+        True shows a bar for each stage (by tqdm, if it is installed). A function is called
+        as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
         exception that it raises, or Ctrl-C, ends the call.
 
     Returns
@@ -460,7 +463,7 @@ def move(
     points = first.reference.copy()
     certificate = Report()
     for k, frame in enumerate(frames):
-        if progress is not None:
+        if callable(progress):
             progress("moving in steps", k, len(frames))
         points, certificate = first.advance(frame, points)
         if not certificate.complete:

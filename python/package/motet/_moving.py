@@ -13,7 +13,8 @@ from . import _motet
 from ._changing import Carry, History
 from ._mesh import Mesh, MeshLike, as_mesh
 from ._refinement import _criteria, several
-from ._report import Progress, Report, report
+from ._progress import Progress
+from ._report import Report, report
 from ._keywords import NotPickled, checked_class
 from .errors import OptionsError
 
@@ -151,8 +152,9 @@ class MovingMesh(NotPickled):
         Number of changes remembered for :meth:`history_since`.
     threads : int, default 0
         Number of threads; 0 uses all cores. The result does not depend on it.
-    progress : callable, optional
-        Called during the set-up as ``progress(stage, done, total)`` several times per second; ``total`` is 0
+    progress : callable or True, optional
+        True shows a bar for each stage (by tqdm, if it is installed). A function is called
+        during the set-up as ``progress(stage, done, total)`` several times per second; ``total`` is 0
         if unknown. An exception that it raises, or Ctrl-C, ends the call.
     """
 
@@ -192,7 +194,7 @@ class MovingMesh(NotPickled):
         hold: float | None = None,
         remembered: int = 64,
         threads: int = 0,
-        progress: Progress | None = None,
+        progress: Progress | bool | None = None,
     ):
         self._native = _motet.MovingMesh(as_mesh(mesh), _Request.of(locals()), threads, progress)
         self._mesh: Mesh | None = None
@@ -323,7 +325,7 @@ class MovingMesh(NotPickled):
         self._native.set_array(name, np.asarray(array), on)
         self._mesh = None
 
-    def advance(self, time: float, displacement: ArrayLike, *, progress: Progress | None = None) -> Report:
+    def advance(self, time: float, displacement: ArrayLike, *, progress: Progress | bool | None = None) -> Report:
         """Move the walls to their positions at `time`; the mesh follows and is repaired where necessary.
 
         An incomplete motion is not an error: see ``complete`` in the report.
@@ -334,8 +336,9 @@ class MovingMesh(NotPickled):
             The new time, later than :attr:`time`.
         displacement : array_like, shape (k, 3)
             Displacement of each of :attr:`driven_places` from there.
-        progress : callable, optional
-            Called as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+        progress : callable or True, optional
+            True shows a bar for each stage (by tqdm, if it is installed). A function is called
+            as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
             exception that it raises, or Ctrl-C, ends the call; the mesh is then as before.
 
         Returns

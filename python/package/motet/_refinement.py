@@ -12,7 +12,8 @@ from . import _motet
 from ._changing import Carry, Changed, History, _changed
 from .errors import InputError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, ids, point
-from ._report import Progress, Report, report
+from ._progress import Progress
+from ._report import Report, report
 from ._keywords import checked, checked_class
 
 
@@ -61,7 +62,7 @@ def refine(
     carry: Mapping[str, Carry] | None = None,
     forget: bool = False,
     threads: int = 0,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> Changed:
     """Refine tets by regular division without loss of quality, and coarsen them again.
 
@@ -123,8 +124,9 @@ def refine(
         Discard previous divisions: the given mesh becomes the initial one.
     threads : int, default 0
         Number of threads; 0 uses all cores. The result does not depend on it.
-    progress : callable, optional
-        Called as ``progress(stage, done, total)`` between generations; ``total`` is 0 if unknown. An
+    progress : callable or True, optional
+        True shows a bar for each stage (by tqdm, if it is installed). A function is called
+        as ``progress(stage, done, total)`` between generations; ``total`` is 0 if unknown. An
         exception that it raises, or Ctrl-C, ends the call.
 
     Returns

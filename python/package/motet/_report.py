@@ -2,11 +2,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable
 from typing import Any
-
-Progress = Callable[[str, int, int], object]
-"""A function ``progress(stage, done, total)``; ``total`` is 0 if unknown."""
 
 
 class Report(dict):
@@ -27,6 +23,12 @@ class Report(dict):
 
     def __repr__(self) -> str:
         return "\n".join(lines(self)) or "Report()"
+
+    def to_frame(self) -> Any:
+        """Return the report as a pandas.DataFrame of one row; see :func:`motet.to_frame`."""
+        from ._frames import to_frame
+
+        return to_frame(self)
 
     def _repr_html_(self) -> str:
         return table(self)
