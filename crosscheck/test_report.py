@@ -92,6 +92,15 @@ class Page:
         """Return the picture as the bytes of a PNG file."""
         return base64.b64decode(self.js("return document.getElementById('view').toDataURL().split(',')[1]"))
 
+    def thumbnail(self):
+        """Return the colours of a small copy of the picture, for comparison but for the last digits."""
+        return self.js("""
+            const view = document.getElementById("view"), copy = document.createElement("canvas");
+            [copy.width, copy.height] = [100, 60];
+            const pen = copy.getContext("2d");
+            pen.drawImage(view, 0, 0, 100, 60);
+            return [...pen.getImageData(0, 0, 100, 60).data];""")
+
     def colours(self):
         """Return the approximate number of colours of the picture, and the fraction that is not
         background."""
@@ -232,6 +241,7 @@ def test_what_is_inside_is_seen_through_what_is_around_it(page, moved):
 
 def test_a_link_shows_the_same_again(page, moved):
     page.open(moved)
+    at_first = page.thumbnail()
     arrays = page.js("return [...document.getElementById('array').options].map(o => [o.value, o.text])")
     page.put("array", next(value for value, name in arrays if name == "length of displacement"))
     page.put("high", 2)
@@ -247,11 +257,12 @@ def test_a_link_shows_the_same_again(page, moved):
     page.settle()
     page.click("copy")
     _until(lambda: page.element("done").text == "Link copied.")
-    picture, address = page.picture(), page.js("return location.href")
+    picture, address = page.thumbnail(), page.js("return location.href")
     page.driver.get("about:blank")
     page.driver.get(address)
     page.settle()
-    assert page.picture() == picture
+    # The link has five digits of the camera.
+    assert _difference(page.thumbnail(), picture) < 0.5 < 5 < _difference(at_first, picture)
     assert page.opacities() == {"box": 35, "sphere": 100}
     shown = page.js("return ['frame', 'high', 'cut', 'part', 'mode'].map((id) => document.getElementById(id).value)")
     assert shown == ["7", "2", "0", "400", "slice"]
@@ -343,6 +354,11 @@ def test_every_control_has_a_name_and_is_reached_by_the_tab_key(page, moved):
         page.driver.switch_to.active_element.send_keys(Keys.TAB)
         reached.add(page.driver.switch_to.active_element)
     assert all(control in reached for control in wanted)
+
+
+def _difference(a, b):
+    """The mean difference of two lists of colours, of 255."""
+    return sum(abs(x - y) for x, y in zip(a, b)) / len(a)
 
 
 def _until(is_so, seconds=30):

@@ -25,10 +25,11 @@ class Camera {
     this.shift = [0, 0];
     this.zoom = 1;
   }
-  // From nine numbers of the turn, two of the shift, and the zoom.
+  // From nine numbers of the turn, two of the shift, and the zoom, if they are a look at all.
   restore(numbers) {
     const rows = orthonormal([0, 3, 6].map((i) => numbers.slice(i, i + 3)));
-    if (rows.flat().every(Number.isFinite)) this.rows = rows;
+    if (!(rows.flat().every(Number.isFinite) && numbers[11] > 0)) return;
+    this.rows = rows;
     this.shift = numbers.slice(9, 11);
     this.zoom = 1;
     this.approach(numbers[11]);
