@@ -182,7 +182,10 @@ fn charts(shown: &Shown) -> Vec<Drawn> {
     };
     let tets = chart("Number of tets", vec![line("tets", quality(|q| q.tets as f64))]);
     let gap = shown.facts.iter().map(|facts| facts.least_gap.map(|gap| gap.0)).collect();
-    let gap = Chart { from_zero: true, ..chart(&words::title_of("least_gap"), vec![line("gap", gap)]) };
+    let gap = Chart {
+        from_zero: true,
+        ..chart("Least gap between bodies, in units of the mesh", vec![line("gap", gap)])
+    };
     let varies = |chart: &Chart| chart.lines[0].y.windows(2).any(|w| w[0] != w[1]);
     let tets = Some(tets).filter(varies);
     let all = [eas, bad, angle].into_iter().chain(tets).chain([gap]);

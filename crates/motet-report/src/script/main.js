@@ -170,7 +170,10 @@ class View {
     if (!shown.length) return;
     const style = getComputedStyle(canvas);
     const colour = (name) => style.getPropertyValue(name).trim().split(/[\s,]+/).map((x) => x / 255);
-    const look = { ...this.state, isLabel: this.isLabel, ground: colour("--ground"), none: colour("--none"), edgeColour: colour("--edge"), arrowColour: colour("--arrow") };
+    const look = {
+      ...this.state, isLabel: this.isLabel, ground: colour("--ground"), none: colour("--none"),
+      edgeColour: colour("--edge"), arrowColour: colour("--arrow"),
+    };
     this.drawing.draw(this.camera, look, scenes.slice(0, shown.length));
     showAxes(this.camera);
     canvas.dataset.drawn = Number(canvas.dataset.drawn ?? 0) + 1;
@@ -264,13 +267,17 @@ class View {
       await this.go(k);
       this.draw();
     };
-    const film = await recordVideo(this.canvas, this.input.frames.length, showFrame, () => this.isRecording);
+    try {
+      const film = await recordVideo(this.canvas, this.input.frames.length, showFrame, () => this.isRecording);
+      const address = URL.createObjectURL(film);
+      download(address, `${this.input.name}.webm`);
+      setTimeout(() => URL.revokeObjectURL(address), 60000);
+      byId("done").textContent = `Video of ${Math.round(film.size / 1000)} kB saved.`;
+    } catch (error) {
+      byId("done").textContent = `No video: ${error.message}`;
+    }
     this.isRecording = false;
     button.textContent = "Save video";
-    const address = URL.createObjectURL(film);
-    download(address, `${this.input.name}.webm`);
-    setTimeout(() => URL.revokeObjectURL(address), 60000);
-    byId("done").textContent = `Video of ${Math.round(film.size / 1000)} kB saved.`;
     this.go(first);
   }
 }
