@@ -62,6 +62,28 @@ class Page:
                 "e.dispatchEvent(new Event(arguments[2], { bubbles: true }))", name, str(value), event)
         self.settle()
 
+    def part(self, name, visible=None, opacity=None):
+        """Show or hide a patch or region, or set its opacity, by the controls of its row."""
+        self.js("""
+            const [name, visible, opacity] = arguments;
+            const row = [...document.querySelectorAll("#part-lists li")].find((li) => li.textContent === name);
+            const [box, knob] = row.querySelectorAll("input");
+            if (visible !== null && box.checked !== visible) box.click();
+            if (opacity !== null) {
+              knob.value = opacity;
+              knob.dispatchEvent(new Event("input", { bubbles: true }));
+            }""", name, visible, opacity)
+        self.settle()
+
+    def opacities(self):
+        """Return the opacity of each part in percent, as the panel shows it."""
+        return self.js("""return Object.fromEntries([...document.querySelectorAll("#part-lists li")]
+            .map((li) => [li.textContent, Number(li.querySelector("[type=range]").value)]))""")
+
+    def downloads(self, folder):
+        """Have the browser put downloads into `folder`."""
+        self.driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
+
     def click(self, name):
         self.js("document.getElementById(arguments[0]).click()", name)
         self.settle()
@@ -69,6 +91,15 @@ class Page:
     def picture(self):
         """Return the picture as the bytes of a PNG file."""
         return base64.b64decode(self.js("return document.getElementById('view').toDataURL().split(',')[1]"))
+
+    def thumbnail(self):
+        """Return the colours of a small copy of the picture, for comparison but for the last digits."""
+        return self.js("""
+            const view = document.getElementById("view"), copy = document.createElement("canvas");
+            [copy.width, copy.height] = [100, 60];
+            const pen = copy.getContext("2d");
+            pen.drawImage(view, 0, 0, 100, 60);
+            return [...pen.getImageData(0, 0, 100, 60).data];""")
 
     def colours(self):
         """Return the approximate number of colours of the picture, and the fraction that is not
@@ -184,6 +215,159 @@ def test_each_control_changes_the_picture_without_network_requests(page, moved):
     assert page.requests() == []
 
 
+def test_what_is_inside_is_seen_through_what_is_around_it(page, moved):
+    page.open(moved)
+    assert page.opacities() == {"box": 20, "sphere": 100}
+    start = page.picture()
+    page.part("sphere", visible=False)
+    assert page.picture() != start, "the sphere is not seen through the box"
+    page.part("sphere", visible=True)
+    assert page.picture() == start
+    page.part("box", opacity=100)
+    opaque = page.picture()
+    page.part("sphere", visible=False)
+    assert page.picture() == opaque, "an opaque box hides the sphere"
+    page.part("box", visible=False)
+    assert page.colours()[1] < 0.01, "nothing is left"
+    page.click("opaque")
+    assert page.picture() == start and page.opacities() == {"box": 20, "sphere": 100}
+    # With the box open, what was hidden is also cut.
+    page.part("box", visible=False)
+    page.put("cut", 1)
+    page.put("mode", "slice")
+    assert page.colours()[1] > 0.01
+    assert page.errors() == []
+
+
+def test_a_link_shows_the_same_again(page, moved):
+    page.open(moved)
+    at_first = page.thumbnail()
+    arrays = page.js("return [...document.getElementById('array').options].map(o => [o.value, o.text])")
+    page.put("array", next(value for value, name in arrays if name == "length of displacement"))
+    page.put("high", 2)
+    page.put("frame", 7, "input")
+    page.put("cut", 0)
+    page.put("part", 400, "input")
+    page.put("mode", "slice")
+    page.click("flip")
+    page.click("edges")
+    page.click("arrows")
+    page.part("box", opacity=35)
+    page.element("view").send_keys(Keys.ARROW_LEFT, Keys.ARROW_UP, "+", "+", Keys.SHIFT + Keys.ARROW_RIGHT)
+    page.settle()
+    page.click("copy")
+    _until(lambda: page.element("done").text == "Link copied.")
+    picture, address = page.thumbnail(), page.js("return location.href")
+    page.driver.get("about:blank")
+    page.driver.get(address)
+    page.settle()
+    # The link has five digits of the camera.
+    assert _difference(page.thumbnail(), picture) < 0.5 < 5 < _difference(at_first, picture)
+    assert page.opacities() == {"box": 35, "sphere": 100}
+    shown = page.js("return ['frame', 'high', 'cut', 'part', 'mode'].map((id) => document.getElementById(id).value)")
+    assert shown == ["7", "2", "0", "400", "slice"]
+    assert page.js("return ['flip', 'edges', 'arrows'].map((id) => document.getElementById(id).checked)") == [True, False, True]
+    # A link to what is not there, and one that says nothing, show the page as it is at first.
+    for link in ["#input=7&frame=-1&array=99&range=2,1&camera=" + ",".join(["0"] * 12) + "&cut=5,1,slice,2&part=1,7,x", "#s1"]:
+        page.driver.get("about:blank")
+        page.driver.get(moved.as_uri() + link)
+        page.settle()
+        assert page.colours()[1] > 0.1 and page.element("frame").get_attribute("value") == "0"
+    assert page.errors() == []
+
+
+def test_arrows_are_there_for_vectors_only(page, moved):
+    page.open(moved)
+    assert not page.element("arrow-row").is_displayed()
+    arrays = page.js("return [...document.getElementById('array').options].map(o => [o.value, o.text])")
+    page.put("array", next(value for value, name in arrays if name == "length of displacement"))
+    page.put("frame", 10, "input")
+    assert page.element("arrow-row").is_displayed()
+    assert "in units of the mesh" in page.element("scale").text
+    without = page.picture()
+    page.click("arrows")
+    drawn = page.picture()
+    assert drawn != without
+    page.part("sphere", visible=False)
+    page.part("box", visible=False)
+    assert page.colours()[1] < 0.01, "arrows of what is hidden are hidden"
+    assert page.errors() == []
+
+
+def test_two_meshes_are_shown_side_by_side(page, motet, sphere, tmp_path):
+    folder = sphere[0]
+    motet("report", folder / "moved.pvd", folder / "box.vtu", "-o", tmp_path / "two.html")
+    page.open(tmp_path / "two.html")
+    half = """
+        const view = document.getElementById("view"), copy = document.createElement("canvas");
+        [copy.width, copy.height] = [view.width / 2, view.height];
+        copy.getContext("2d").drawImage(view, -arguments[0] * view.width / 2, 0);
+        return copy.toDataURL();"""
+    page.put("beside", 1)
+    assert page.element("names").text.split() == ["moved.pvd", "box.vtu"]
+    left, right = page.js(half, 0), page.js(half, 1)
+    page.put("frame", 10, "input")
+    assert page.js(half, 0) != left and page.js(half, 1) == right, "only the series moves"
+    for change in (lambda: page.element("view").send_keys(Keys.ARROW_LEFT), lambda: page.put("cut", 0), lambda: page.part("box", opacity=60)):
+        left, right = page.js(half, 0), page.js(half, 1)
+        change()
+        page.settle()
+        assert page.js(half, 0) != left and page.js(half, 1) != right, "both follow"
+    page.put("beside", -1)
+    assert page.element("names").text == ""
+    assert page.errors() == []
+
+
+def test_frames_are_saved_as_a_video_and_the_picture_as_png(page, moved, tmp_path):
+    page.open(moved)
+    page.downloads(tmp_path)
+    page.click("save")
+    _until(lambda: list(tmp_path.glob("*.png")))
+    page.click("video")
+    _until(lambda: "Video of" in page.element("done").text)
+    _until(lambda: list(tmp_path.glob("*.webm")))
+    film = (tmp_path / "moved.pvd.webm").read_bytes()
+    assert film[:4] == bytes.fromhex("1a45dfa3") and len(film) > 5000
+    assert page.element("frame").get_attribute("value") == "0"
+    # A second press ends it.
+    page.click("video")
+    time.sleep(0.5)
+    page.click("video")
+    _until(lambda: page.element("video").text == "Save video")
+    assert page.errors() == []
+
+
+def test_without_a_recorder_the_button_for_videos_says_why(page, moved):
+    page.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": "delete window.MediaRecorder"})
+    page.open(moved)
+    assert not page.element("video").is_enabled() and "MediaRecorder" in page.element("video").get_attribute("title")
+
+
+def test_every_control_has_a_name_and_is_reached_by_the_tab_key(page, moved):
+    page.open(moved)
+    controls = page.driver.find_elements("css selector", "#viewer :is(input, select, button, canvas)")
+    wanted = [control for control in controls if control.is_displayed() and control.is_enabled()]
+    assert len(wanted) > 25
+    assert all(control.accessible_name for control in wanted)
+    reached = set()
+    for _ in range(3 * len(wanted)):
+        page.driver.switch_to.active_element.send_keys(Keys.TAB)
+        reached.add(page.driver.switch_to.active_element)
+    assert all(control in reached for control in wanted)
+
+
+def _difference(a, b):
+    """The mean difference of two lists of colours, of 255."""
+    return sum(abs(x - y) for x, y in zip(a, b)) / len(a)
+
+
+def _until(is_so, seconds=30):
+    end = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < end, "it does not happen"
+        time.sleep(0.05)
+
+
 def test_charts_follow_a_series_that_plays(page, moved):
     page.open(moved)
     first = page.picture()
@@ -255,12 +439,12 @@ const done = arguments[arguments.length - 1], [name, axis, part] = arguments;
   };
   const results = [], none = { skin: null, inside: null, isOnPoints: false };
   for (const frame of window.parts.manifest.inputs.find((input) => input.name === name).frames) {
-    const loaded = await window.parts.loadFrame(frame), { low, step } = frame.skin;
+    const loaded = await window.parts.loadFrame(frame, []), { low, step } = frame.skin;
     const wanted = low[axis] + part * 1048575 * step[axis], planes = loaded.inside.planes[axis];
     const nearer = (a, b) => (Math.abs(b - wanted) < Math.abs(a - wanted) ? b : a);
     const at = planes.length ? planes.reduce(nearer) : wanted, cut = { axis, at, sign: 1, mode: "slice" };
-    const cells = window.parts.crinkle(loaded, none, { ...cut, mode: "cells" });
-    const slice = window.parts.slice(loaded, none, cut);
+    const cells = window.parts.crinkle(loaded, none, { ...cut, mode: "cells" }, () => 1);
+    const slice = window.parts.slice(loaded, none, cut, () => 1);
     results.push({ frame: frame.frame, at, slice: area(slice), box: box(slice), cells: box(cells) });
   }
   done(results);
@@ -353,7 +537,7 @@ def test_without_scripts_the_page_shows_tables_and_charts(moved):
         page.driver.get(moved.as_uri())
         texts = [e.text for e in page.driver.find_elements("css selector", "noscript, summary, figcaption")]
         assert any("Certificate of each frame" in text for text in texts)
-        assert any("EAS quality: worst, 1 % and mean" in text for text in texts)
+        assert any("EAS (quality of a tet): worst, 1 % and mean" in text for text in texts)
         assert not page.element("viewer").is_displayed()
     finally:
         page.close()

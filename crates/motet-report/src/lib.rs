@@ -8,9 +8,11 @@
 //! |---|---|
 //! | `input`, `log` | inputs: meshes, read one at a time; JSON, whatever its keys |
 //! | `quality`, `arrays` | what is reported of a mesh, and by what it can be coloured |
+//! | `labels` | patches and regions, and which of them are transparent at first |
 //! | `skin`, `layout`, `layouts` | what is visible from outside; the order of everything on the page, shared by frames of the same cells |
 //! | `codec`, `store` | compact tables of numbers, each stored once |
 //! | `part`, `plan`, `shown` | packing one frame; how much of which frame fits; the result |
+//! | `words` | titles of arrays and columns, with units |
 //! | `charts`, `sections`, `page` | lines, tables, the page |
 //! | `script/`, `style.css`, `page.html` | the part that runs in the browser |
 
@@ -18,6 +20,7 @@ mod arrays;
 mod charts;
 mod codec;
 mod input;
+mod labels;
 mod layout;
 mod layouts;
 mod log;
@@ -30,6 +33,7 @@ mod sections;
 mod shown;
 mod skin;
 mod store;
+mod words;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -10,24 +10,32 @@ use motet::{Error, Result};
 use serde_json::{Value, json};
 
 use crate::Options;
+use crate::labels::{self, Label};
 use crate::log::Log;
 use crate::numbers::megabytes;
 use crate::sections::{self, Section};
 use crate::shown::{Shown, ShownFrame};
 use crate::store::{BlockId, Store};
+use crate::words;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 /// The parts of the script; together they form one function of the page.
-const SCRIPT: [&str; 9] = [
+const SCRIPT: [&str; 15] = [
     include_str!("script/unpack.js"),
     include_str!("script/colour.js"),
     include_str!("script/geometry.js"),
+    include_str!("script/arrows.js"),
     include_str!("script/camera.js"),
     include_str!("script/draw.js"),
     include_str!("script/pointer.js"),
     include_str!("script/histogram.js"),
     include_str!("script/controls.js"),
+    include_str!("script/parts.js"),
+    include_str!("script/scene.js"),
+    include_str!("script/save.js"),
+    include_str!("script/link.js"),
+    include_str!("script/panel.js"),
     include_str!("script/main.js"),
 ];
 
@@ -124,8 +132,21 @@ fn described(part: &Part) -> Option<Value> {
         .keys
         .iter()
         .zip(&shown.names)
-        .map(|(key, names)| json!({ "name": key.name, "on": key.on, "is_label": key.is_label, "names": names }))
+        .map(|(key, names)| {
+            let (title, unit) = words::title_and_unit(key);
+            json!({
+                "name": key.name,
+                "title": title,
+                "unit": unit,
+                "on": key.on,
+                "is_label": key.is_label,
+                "is_vector": key.is_vector,
+                "names": names,
+            })
+        })
         .collect();
+    let is_distinct = |label: &&Label| shown.with_arrays && shown.keys[label.array].is_label;
+    let parts: Vec<&Label> = labels::listed(&shown.labels).filter(is_distinct).collect();
     let frame = |shown_frame: &ShownFrame| {
         let facts = &shown.facts[shown_frame.frame];
         let bars = facts.quality.as_ref().map(|q| json!({ "eas": q.eas_bars, "angle": q.angle_bars }));
@@ -146,6 +167,7 @@ fn described(part: &Part) -> Option<Value> {
         "is_series": shown.is_series,
         "n_frames": shown.facts.len(),
         "arrays": arrays,
+        "parts": parts,
         "frames": frames,
     }))
 }

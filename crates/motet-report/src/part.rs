@@ -29,6 +29,13 @@ pub(crate) struct Values {
 /// Values by the index of their array in the list of all arrays.
 pub(crate) type ValuesByArray = BTreeMap<usize, Values>;
 
+/// The vectors of one array at a sample of points or triangles of the skin: `step * (n - 32767)`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Vectors {
+    block: BlockId,
+    step: f64,
+}
+
 /// What is visible of a frame from outside.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct SkinPart {
@@ -39,6 +46,8 @@ pub(crate) struct SkinPart {
     triangles: BlockId,
     edges: BlockId,
     pub(crate) values: ValuesByArray,
+    /// Vectors by the index of their array.
+    pub(crate) vectors: BTreeMap<usize, Vectors>,
 }
 
 /// The volume cells of a frame, or some of them.
@@ -78,8 +87,13 @@ pub(crate) enum Holds {
 impl SkinPart {
     /// All blocks, with those of arrays if requested.
     pub(crate) fn blocks(&self, with_arrays: bool) -> Vec<BlockId> {
-        let values = self.values.values().filter(|_| with_arrays).map(|v| v.block);
-        [self.points, self.triangles, self.edges].into_iter().chain(values).collect()
+        let arrays = self.values.values().map(|v| v.block).chain(self.vectors.values().map(|v| v.block));
+        [self.points, self.triangles, self.edges].into_iter().chain(arrays.filter(|_| with_arrays)).collect()
+    }
+
+    pub(crate) fn clear_arrays(&mut self) {
+        self.values.clear();
+        self.vectors.clear();
     }
 }
 
@@ -129,7 +143,29 @@ impl Frame<'_> {
             triangles: store.put(Block::of(Kind::Ids, &layout.triangles)),
             edges: store.put(Block::column(Kind::Plain, &layout.edges)),
             values,
+            vectors: self.vectors(store),
         }
+    }
+
+    /// Packs the vectors of each array that has some, at a sample of the skin.
+    fn vectors(&self, store: &mut Store) -> BTreeMap<usize, Vectors> {
+        let layout = self.layout;
+        let of_array = |array: &Array| -> Vec<[f64; 3]> {
+            match array.key.on {
+                arrays::Place::Cell => arrays::sample(layout.triangles.len())
+                    .map(|i| array.vector_of_triangle(layout.triangle_cells[i]))
+                    .collect(),
+                arrays::Place::Point => {
+                    arrays::sample(layout.n_skin).map(|i| array.vectors[layout.vertices[i].index()]).collect()
+                }
+            }
+        };
+        let with_vectors = self.arrays.iter().filter(|(_, array)| array.key.is_vector);
+        let packed = with_vectors.filter_map(|(id, array)| {
+            let (block, step) = arrays::pack_vectors(&of_array(array))?;
+            Some((*id, Vectors { block: store.put(block), step }))
+        });
+        packed.collect()
     }
 
     /// Packs the inside; `None` where it contains no cells of the requested kind.

@@ -8,6 +8,7 @@ use motet::{Mesh, Result};
 
 use crate::arrays::{self, Array};
 use crate::input::Meshes;
+use crate::labels;
 use crate::layout::Layout;
 use crate::layouts::Layouts;
 use crate::numbers::{count, counted};
@@ -108,6 +109,7 @@ impl Plan<'_> {
             self.note();
             let arrays = self.reader.arrays(&mut self.shown);
             let packed = self.reader.frame(&arrays);
+            labels::add(&mut self.shown.labels, &packed);
             let (n_solids, skin) = (packed.n_solids(), packed.skin(self.store));
             let mut shown_frame = ShownFrame { frame, skin, inside: None, n_solids };
             if left > 0 && n_solids > 0 {
@@ -160,7 +162,7 @@ impl Plan<'_> {
         }
         let kept = even(n, low);
         if !with_arrays {
-            self.shown.frames.iter_mut().for_each(|frame| frame.skin.values.clear());
+            self.shown.frames.iter_mut().for_each(|frame| frame.skin.clear_arrays());
         }
         let mut frame = 0..;
         self.shown.frames.retain(|_| frame.next().is_some_and(|i| kept.contains(&i)));

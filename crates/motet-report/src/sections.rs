@@ -7,6 +7,7 @@ use crate::input::name_of;
 use crate::log::{Cell, Column, Log, Table};
 use crate::numbers::{count, counted, short, time};
 use crate::shown::{Facts, Shown};
+use crate::words::{self, EAS_TITLE};
 
 /// The maximum number of charts of one table; the other columns are in the table only.
 const MAX_CHARTS: usize = 12;
@@ -160,7 +161,7 @@ fn charts(shown: &Shown) -> Vec<Drawn> {
         threshold: Some((motet::mesh::BAD_EAS, "bad below 0.2")),
         from_zero: true,
         ..chart(
-            "EAS quality: worst, 1 % and mean",
+            &format!("{EAS_TITLE}: worst, 1 % and mean"),
             vec![
                 line("worst", quality(|q| q.eas_min)),
                 line("1 % below", quality(|q| q.all.p1)),
@@ -171,7 +172,7 @@ fn charts(shown: &Shown) -> Vec<Drawn> {
     let bad = Chart {
         from_zero: true,
         ..chart(
-            "Bad and inverted tets",
+            "Number of bad and inverted tets",
             vec![line("bad", quality(|q| q.bad as f64)), line("inverted", quality(|q| q.inverted as f64))],
         )
     };
@@ -179,9 +180,12 @@ fn charts(shown: &Shown) -> Vec<Drawn> {
         from_zero: true,
         ..chart("Smallest dihedral angle, degrees", vec![line("smallest", quality(|q| q.angle_min))])
     };
-    let tets = chart("Tets", vec![line("tets", quality(|q| q.tets as f64))]);
+    let tets = chart("Number of tets", vec![line("tets", quality(|q| q.tets as f64))]);
     let gap = shown.facts.iter().map(|facts| facts.least_gap.map(|gap| gap.0)).collect();
-    let gap = Chart { from_zero: true, ..chart("Least gap", vec![line("gap", gap)]) };
+    let gap = Chart {
+        from_zero: true,
+        ..chart("Least gap between bodies, in units of the mesh", vec![line("gap", gap)])
+    };
     let varies = |chart: &Chart| chart.lines[0].y.windows(2).any(|w| w[0] != w[1]);
     let tets = Some(tets).filter(varies);
     let all = [eas, bad, angle].into_iter().chain(tets).chain([gap]);
@@ -285,7 +289,7 @@ fn quality_chart(table: &Table, (x_name, x): &(String, Vec<f64>)) -> Option<Char
     };
     let lines: Vec<Line> = QUALITIES.into_iter().filter_map(line).collect();
     (lines.len() == QUALITIES.len()).then(|| Chart {
-        title: "EAS of all tets".to_owned(),
+        title: format!("{EAS_TITLE}, of all tets"),
         x_name: x_name.clone(),
         x: x.clone(),
         lines,
@@ -318,7 +322,8 @@ fn table_charts(table: &Table) -> (Vec<Drawn>, usize) {
         from_zero: columns.len() > 1,
         ..Chart::default()
     };
-    let single = others.iter().take(MAX_CHARTS).map(|column| chart(column.name.clone(), &[*column]));
+    let single =
+        others.iter().take(MAX_CHARTS).map(|column| chart(words::title_of(&column.name), &[*column]));
     let mut charts: Vec<Chart> = qualities.iter().cloned().chain(single).collect();
     if !seconds.is_empty() {
         charts.push(chart("seconds by stage".to_owned(), &seconds[..seconds.len().min(8)]));

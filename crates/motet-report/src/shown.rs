@@ -8,6 +8,7 @@ use motet::base::Point;
 
 use crate::arrays::{Array, EAS, Key};
 use crate::input::{Meshes, name_of};
+use crate::labels::Label;
 use crate::numbers::{count, counted};
 use crate::part::{Holds, InsidePart, SkinPart};
 use crate::quality::Quality;
@@ -21,6 +22,8 @@ pub(crate) struct Shown {
     pub(crate) keys: Vec<Key>,
     /// Names of labels, by array.
     pub(crate) names: Vec<BTreeMap<i32, String>>,
+    /// Patches and regions of all frames.
+    pub(crate) labels: Vec<Label>,
     pub(crate) facts: Vec<Facts>,
     /// The frames with a picture.
     pub(crate) frames: Vec<ShownFrame>,
@@ -86,6 +89,7 @@ impl Shown {
             self.keys.len() - 1
         });
         self.keys[place].is_label &= array.key.is_label;
+        self.keys[place].is_vector |= array.key.is_vector;
         self.names[place].extend(array.names.iter().map(|(id, name)| (*id, name.clone())));
         place
     }

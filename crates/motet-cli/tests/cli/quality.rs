@@ -118,7 +118,8 @@ fn a_page_has_the_distribution_of_meshes_and_logs() {
     folder.write("run.jsonl", (line(0, 0.2) + &line(1, 0.25)).as_bytes());
     folder.motet(["report", "box.vtu", "run.jsonl", "-o", "page.html"]).assert().success();
     let page = String::from_utf8(folder.read("page.html")).unwrap();
-    for what in ["EAS of all tets", "1 % below", "5 % below", "median EAS", "mean ratio"] {
+    for what in ["EAS (quality of a tet), of all tets", "1 % below", "5 % below", "median EAS", "mean ratio"]
+    {
         assert!(page.contains(what), "{what}");
     }
 }

@@ -25,6 +25,15 @@ class Camera {
     this.shift = [0, 0];
     this.zoom = 1;
   }
+  // From nine numbers of the turn, two of the shift, and the zoom, if they are a look at all.
+  restore(numbers) {
+    const rows = orthonormal([0, 3, 6].map((i) => numbers.slice(i, i + 3)));
+    if (!(rows.flat().every(Number.isFinite) && numbers[11] > 0)) return;
+    this.rows = rows;
+    this.shift = numbers.slice(9, 11);
+    this.zoom = 1;
+    this.approach(numbers[11]);
+  }
   look(view) {
     this.rows = VIEWS[view].map((row) => [...row]);
   }
@@ -80,10 +89,13 @@ function product(a, b) {
   return out;
 }
 
+function cross(a, b) {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
 // Rounding errors of many small turns are taken out.
 function orthonormal([r, u, f]) {
   const unit = (a) => a.map((x) => x / Math.hypot(...a));
-  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
   const front = unit(f), right = unit(cross(u, front));
   return [right, cross(front, right), front];
 }

@@ -14,11 +14,11 @@ function fill(select, options, chosen) {
   select.replaceChildren(...options.map(([value, text]) => new Option(text, value, false, String(value) === String(chosen))));
 }
 
-// The least and the largest value of an array over all frames.
-function rangeOfArray(input, array) {
+// The least and the largest value of arrays over all frames, given as pairs of an input and an array of it.
+function rangeOfArrays(pairs) {
   let low = Infinity, high = -Infinity;
-  for (const frame of input.frames) {
-    for (const part of [frame.skin, frame.inside]) {
+  for (const [input, array] of pairs) {
+    for (const part of input.frames.flatMap((frame) => [frame.skin, frame.inside])) {
       const values = part && part.values[array];
       if (values) [low, high] = [Math.min(low, values.low), Math.max(high, values.high)];
     }
@@ -27,31 +27,37 @@ function rangeOfArray(input, array) {
 }
 
 function arrayName(input, i) {
-  const { name, on } = input.arrays[i];
+  const { title, name, on } = input.arrays[i];
   const isTwice = input.arrays.filter((array) => array.name === name).length > 1;
-  return isTwice ? `${name} (${on}s)` : name;
+  return isTwice ? `${title} (${on}s)` : title;
 }
 
-// The scale of an array: a bar with its range, or a list of labels.
-function showScale(drawing, input, state) {
-  const scale = byId("scale");
+// The array of another input that is the same as one of this; -1 if there is none.
+function sameArray(input, i, other) {
+  const { name, on } = input.arrays[i] ?? {};
+  return other.arrays.findIndex((array) => array.name === name && array.on === on);
+}
+
+// The scale of an array: a bar with its range, or a list of labels. `pairs`: an input and its array, for each mesh shown.
+function showScale(pairs, state) {
+  const scale = byId("scale"), [[input, array]] = pairs;
   scale.replaceChildren();
-  if (state.array < 0) return;
-  const title = document.createElement("strong");
-  title.textContent = arrayName(input, state.array);
+  if (array < 0) return;
+  const title = document.createElement("strong"), { unit, is_label: isLabel } = input.arrays[array];
+  title.textContent = arrayName(input, array) + (unit ? `, ${unit}` : "");
   scale.append(title);
-  if (input.arrays[state.array].is_label) showLabels(scale, input, state);
+  if (isLabel) showLabels(scale, pairs, state);
   else showBar(scale, state.range);
 }
 
-function showLabels(scale, input, state) {
-  const [low, high] = rangeOfArray(input, state.array), { names } = input.arrays[state.array];
+function showLabels(scale, pairs, { range: [low], seen }) {
+  // The same number may have another name in the mesh beside.
+  const nameOf = (id) => [...new Set(pairs.map(([input, array]) => input.arrays[array]?.names[id]).filter(Boolean))].join(" / ");
   const colours = labelColours(), list = document.createElement("ul");
-  const seen = state.seen.filter((id) => id >= low && id <= high);
   for (const id of seen.slice(0, 24)) {
     const item = document.createElement("li"), patch = document.createElement("i");
     patch.style.background = css(colours, (id - low) % MAX_LABELS);
-    item.append(patch, names[id] ?? String(id));
+    item.append(patch, nameOf(id) || String(id));
     list.append(item);
   }
   if (seen.length > 24) list.append(Object.assign(document.createElement("li"), { textContent: `and ${seen.length - 24} more` }));
@@ -70,6 +76,12 @@ function showBar(scale, [low, high]) {
   scale.append(bar, ends);
 }
 
+// The names of meshes side by side.
+function showNames(inputs) {
+  const names = inputs.length < 2 ? [] : inputs.map(({ name }) => Object.assign(document.createElement("span"), { textContent: name }));
+  byId("names").replaceChildren(...names);
+}
+
 // The axes in the corner, as the camera sees them.
 function showAxes(camera) {
   const parts = [];
@@ -79,46 +91,4 @@ function showAxes(camera) {
     parts.push(svg("text", { x: 30 * x, y: 30 * y + 4, "text-anchor": "middle" }, "xyz"[k]));
   }
   byId("axes").replaceChildren(...parts);
-}
-
-// The picture with its scale, as a file.
-function savePicture(canvas, name) {
-  const out = document.createElement("canvas"), scale = byId("scale");
-  [out.width, out.height] = [canvas.width, canvas.height];
-  const pen = out.getContext("2d"), ratio = canvas.width / canvas.clientWidth;
-  pen.drawImage(canvas, 0, 0);
-  pen.scale(ratio, ratio);
-  pen.font = "13px sans-serif";
-  pen.fillStyle = getComputedStyle(scale).color;
-  let y = 22;
-  const left = 14, title = scale.querySelector("strong"), bar = scale.querySelector(".bar");
-  if (title) pen.fillText(title.textContent, left, y);
-  if (bar) {
-    const colours = valueColours(), texts = [...scale.querySelectorAll("span")].map((e) => e.textContent);
-    const ink = pen.fillStyle;
-    for (let i = 0; i < 180; i++) {
-      pen.fillStyle = css(colours, Math.floor((i * 255) / 179));
-      pen.fillRect(left + i, y + 8, 1.5, 12);
-    }
-    pen.fillStyle = ink;
-    ["left", "center", "right"].forEach((side, i) => {
-      pen.textAlign = side;
-      pen.fillText(texts[i], left + 90 * i, y + 36);
-    });
-  }
-  for (const item of scale.querySelectorAll("li")) {
-    y += 18;
-    const patch = item.querySelector("i");
-    if (patch) {
-      const ink = pen.fillStyle;
-      pen.fillStyle = patch.style.background;
-      pen.fillRect(left, y - 10, 12, 12);
-      pen.fillStyle = ink;
-    }
-    pen.fillText(item.textContent, left + 18, y);
-  }
-  const link = document.createElement("a");
-  link.href = out.toDataURL("image/png");
-  link.download = name;
-  link.click();
 }

@@ -1,12 +1,16 @@
 // What is to be drawn of a frame: its skin, cut or not, the cells at a cut, and its bad tets, as triangles with values.
 
 // Stands for "no number" among values; the shader knows it.
-const NO_VALUE = 3e38;
+const NO_VALUE = Math.fround(3e38);
+// Beside the three bits of edges: the triangle lies in the plane of a cut, which does not cut it.
+const IN_CUT = 8;
 
-// Triangles that grow: places, a value at each corner, and which sides are edges.
+// Triangles that grow: places, a value at each corner, which sides are edges, and how opaque it is.
 class Triangles {
   constructor(room = 1024) {
     this.count = 0;
+    // That of the triangles that are added next.
+    this.opacity = 1;
     this.grow(room);
   }
   grow(room) {
@@ -18,21 +22,26 @@ class Triangles {
     this.room = room;
     this.places = copy(Float32Array, 9 * room, this.places);
     this.values = copy(Float32Array, 3 * room, this.values);
-    this.edges = copy(Uint8Array, 3 * room, this.edges);
+    // Two bytes a corner: edges, and opacity in parts of 255.
+    this.bytes = copy(Uint8Array, 6 * room, this.bytes);
   }
   // Three vertices by their ids, with their values.
   add(points, a, b, c, va, vb, vc, edges) {
     if (this.count === this.room) this.grow(2 * this.room);
-    const i = this.count++, p = this.places, v = this.values, e = this.edges;
+    const i = this.count++, p = this.places, v = this.values, opacity = Math.round(255 * this.opacity);
     for (let k = 0; k < 3; k++) {
       p[9 * i + k] = points[3 * a + k];
       p[9 * i + 3 + k] = points[3 * b + k];
       p[9 * i + 6 + k] = points[3 * c + k];
-      e[3 * i + k] = edges;
+      this.bytes[6 * i + 2 * k] = edges;
+      this.bytes[6 * i + 2 * k + 1] = opacity;
     }
     v[3 * i] = va;
     v[3 * i + 1] = vb;
     v[3 * i + 2] = vc;
+  }
+  isOpaque(i) {
+    return this.bytes[6 * i + 1] === 255;
   }
 }
 
@@ -51,13 +60,13 @@ async function valuesOf(values) {
   return out;
 }
 
-// A frame without values: places of all its vertices, ids of triangles and cells.
-async function loadFrame(frame) {
+// A frame without values: places of all its vertices, ids of triangles and cells, and the labels of its `parts`.
+async function loadFrame(frame, parts) {
   const { skin, inside } = frame;
-  const [skinPlaces, triangles, edges] = await Promise.all([
-    placesOf(skin.points, skin.low, skin.step), unpack(skin.triangles), unpack(skin.edges),
+  const [skinPlaces, triangles, edges, labels] = await Promise.all([
+    placesOf(skin.points, skin.low, skin.step), unpack(skin.triangles), unpack(skin.edges), loadLabels(frame, parts),
   ]);
-  const loaded = { frame, points: skinPlaces, nSkin: skinPlaces.length / 3, triangles, edges, inside: null };
+  const loaded = { frame, points: skinPlaces, nSkin: skinPlaces.length / 3, triangles, edges, labels, inside: null };
   if (!inside) return loaded;
   const [innerPlaces, bad] = await Promise.all([placesOf(inside.points, skin.low, skin.step), unpack(inside.bad)]);
   loaded.points = new Float32Array(skinPlaces.length + innerPlaces.length);
@@ -66,6 +75,12 @@ async function loadFrame(frame) {
   const solids = inside.tets === undefined ? await loadFacets(inside.facets) : { tets: await unpack(inside.tets) };
   loaded.inside = { ...solids, bad, planes: inside.planes, canCut: inside.holds !== "bad", isWhole: inside.holds === "all" };
   return loaded;
+}
+
+// The labels of triangles and cells in each array that parts are told apart by.
+async function loadLabels(frame, parts) {
+  const arrays = [...new Set(parts.map((part) => part.array))];
+  return Promise.all(arrays.map(async (array) => ({ array, ...await loadValues(frame, array, false) })));
 }
 
 async function loadFacets([counts, triangles, edges]) {
@@ -95,13 +110,16 @@ function depthOf(loaded, cut) {
 }
 
 // The skin: all of it, or with a cut through whole cells those triangles that have a vertex behind it.
-function skinTriangles(loaded, values, cut) {
+// `opacity` is that of each triangle.
+function skinTriangles(loaded, values, cut, opacity) {
   const { triangles: t, edges } = loaded;
   const out = new Triangles(Math.max(16, t.length / 3));
   const depth = cut && cut.mode === "cells" ? depthOf(loaded, cut) : null;
   for (let i = 0; i < edges.length; i++) {
     const a = t[3 * i], b = t[3 * i + 1], c = t[3 * i + 2];
     if (depth && !(depth(a) < 0 || depth(b) < 0 || depth(c) < 0)) continue;
+    out.opacity = opacity(i);
+    if (out.opacity === 0) continue;
     if (values.isOnPoints) {
       const at = (v) => valueAtVertex(loaded, values, v);
       out.add(loaded.points, a, b, c, at(a), at(b), at(c), edges[i]);
@@ -141,12 +159,14 @@ function eachCrossed(loaded, cut, see) {
 }
 
 // Whole cells stay that have a vertex behind the cut: of those that it goes through, the facets in front of it are seen.
-function crinkle(loaded, values, cut) {
-  const out = new Triangles();
+// `opacity` is that of each cell.
+function crinkle(loaded, values, cut, opacity, out = new Triangles()) {
   if (!loaded.inside || !loaded.inside.canCut) return out;
   const depth = depthOf(loaded, cut);
   eachCrossed(loaded, cut, (cell, a, b, c, edges) => {
     if (depth(a) < 0 || depth(b) < 0 || depth(c) < 0) return;
+    out.opacity = opacity(cell);
+    if (out.opacity === 0) return;
     if (values.isOnPoints) {
       const at = (v) => valueAtVertex(loaded, values, v);
       out.add(loaded.points, a, b, c, at(a), at(b), at(c), edges);
@@ -159,7 +179,7 @@ function crinkle(loaded, values, cut) {
 }
 
 // The cut through cells itself: of each the sides where its facets meet the plane, joined to their middle.
-function slice(loaded, values, cut, out = new Triangles(), only = null) {
+function slice(loaded, values, cut, opacity, out = new Triangles()) {
   if (!loaded.inside || !loaded.inside.canCut) return out;
   const depth = depthOf(loaded, cut);
   let cell = -1, sides = [];
@@ -172,11 +192,11 @@ function slice(loaded, values, cut, out = new Triangles(), only = null) {
     return [...place, value];
   };
   const finish = () => {
-    if (sides.length >= 3) fan(out, sides, values.isOnPoints ? null : values.inside ? values.inside[cell] : NO_VALUE);
+    if (cell >= 0) out.opacity = opacity(cell);
+    if (sides.length >= 3 && out.opacity > 0) fan(out, sides, values.isOnPoints ? null : values.inside ? values.inside[cell] : NO_VALUE);
     sides = [];
   };
   eachCrossed(loaded, cut, (i, a, b, c, edges) => {
-    if (only && !only.has(i)) return;
     if (i !== cell) finish();
     cell = i;
     const ends = [];
@@ -196,22 +216,23 @@ function fan(out, sides, value) {
   for (const [p, q] of sides) {
     const points = [...middle.slice(0, 3), ...p.slice(0, 3), ...q.slice(0, 3)];
     const [x, y, z] = value === null ? [middle[3], p[3], q[3]] : [value, value, value];
-    out.add(points, 0, 1, 2, x, y, z, 2);
+    out.add(points, 0, 1, 2, x, y, z, 2 | IN_CUT);
   }
 }
 
-// All facets of the bad tets, those behind the cut where there is one.
-function badTriangles(loaded, cut) {
+// All facets of the bad tets, those behind the cut where there is one; none of those that are hidden.
+function badTriangles(loaded, cut, opacity) {
   const out = new Triangles(16);
   const { inside, points } = loaded;
   if (!inside) return out;
   const depth = cut ? depthOf(loaded, cut) : null;
-  for (const cell of inside.bad) {
+  const shown = Array.from(inside.bad).filter((cell) => opacity(cell) > 0), isShown = new Set(shown);
+  for (const cell of shown) {
     const ids = inside.tets ? TET_FACETS.map((k) => inside.tets[4 * cell + k])
       : inside.ids.subarray(3 * inside.starts[cell], 3 * inside.starts[cell + 1]);
     if (depth && !Array.from(ids).some((v) => depth(v) < 0)) continue;
     for (let i = 0; i < ids.length; i += 3) out.add(points, ids[i], ids[i + 1], ids[i + 2], 0, 0, 0, 7);
   }
-  if (cut && cut.mode === "slice") slice(loaded, { isOnPoints: false }, cut, out, new Set(inside.bad));
+  if (cut && cut.mode === "slice") slice(loaded, { isOnPoints: false }, cut, (cell) => (isShown.has(cell) ? 1 : 0), out);
   return out;
 }

@@ -1,17 +1,27 @@
 // The view: its state, and what follows from each change of it.
 
-const SLIDER = 1000;
+const EAS = "EAS quality";
+// The address follows the view once it has been at rest for so long.
+const REST_MS = 400;
 
 class View {
   constructor() {
     this.canvas = byId("view");
     this.drawing = new Drawing(this.canvas);
     this.camera = new Camera();
-    this.state = { input: 0, frame: 0, array: -1, range: [0, 1], seen: [], edges: true, bad: false, cut: null, part: 0.5 };
+    this.parts = new Parts(() => this.rebuildSoon());
+    this.state = {
+      input: 0, beside: -1, frame: 0, array: -1, range: [0, 1], seen: [], edges: true, bad: false, arrows: false, cut: null, part: 0.5,
+    };
+    // What is shown, one mesh or two: the frames as unpacked, and their scenes.
+    this.shown = [];
+    this.scenes = [new Scene(this.drawing.gl)];
     this.token = 0;
     this.timer = null;
-    this.listen();
-    this.chooseInput(manifest.inputs.findIndex((input) => input.frames.length > 0));
+    this.isRecording = false;
+    listenToPanel(this);
+    if (!this.followLink()) this.chooseInput(this.firstInput());
+    addEventListener("hashchange", () => this.followLink());
   }
 
   get input() {
@@ -20,61 +30,82 @@ class View {
   get frame() {
     return this.input.frames[this.state.frame];
   }
+  get inputs() {
+    const { beside } = this.state;
+    return beside < 0 ? [this.input] : [this.input, manifest.inputs[beside]];
+  }
+  get isLabel() {
+    return this.state.array >= 0 && this.input.arrays[this.state.array].is_label;
+  }
+  firstInput() {
+    return manifest.inputs.findIndex(({ frames }) => frames.length > 0);
+  }
 
   chooseInput(i) {
     this.pause();
-    Object.assign(this.state, { input: i, frame: 0 });
-    const { input } = this, corners = input.frames.map(({ skin }) => [skin.low, skin.low.map((x, k) => x + 1048575 * skin.step[k])]);
-    this.low = [0, 1, 2].map((k) => Math.min(...corners.map(([low]) => low[k])));
-    this.high = [0, 1, 2].map((k) => Math.max(...corners.map(([, high]) => high[k])));
-    this.camera.aim(this.low, this.high);
-    const has = (array) => input.frames.some((frame) => frame.skin.values[array]);
-    this.arrays = input.arrays.map((_, i) => i).filter(has);
-    this.state.array = this.firstArray();
-    fill(byId("array"), [...this.arrays.map((i) => [i, arrayName(input, i)]), [-1, "one colour"]], this.state.array);
-    const isSeries = input.frames.length > 1;
-    byId("player").hidden = !isSeries;
-    byId("frame").max = input.frames.length - 1;
-    const bad = input.frames.some((frame) => frame.inside && frame.bad > 0);
-    byId("bad").disabled = !bad;
-    byId("bad").checked = this.state.bad = bad && this.state.bad;
-    this.resetRange();
+    this.setInputs(i, -1);
     return this.show();
+  }
+  chooseBeside(i) {
+    this.setInputs(this.state.input, i);
+    return this.show();
+  }
+
+  // The meshes to show, and what depends on them; the array and the frame stay where the first mesh stays.
+  setInputs(i, beside) {
+    const { state } = this, isNew = i !== state.input || this.arrays === undefined;
+    Object.assign(state, { input: i, beside });
+    const { input } = this;
+    [this.low, this.high] = boxOf(this.inputs);
+    this.camera.aim(this.low, this.high);
+    if (isNew) {
+      const has = (array) => input.frames.some((frame) => frame.skin.values[array]);
+      this.arrays = input.arrays.map((_, k) => k).filter(has);
+      Object.assign(state, { frame: 0, array: this.firstArray() });
+    }
+    state.bad &&= this.hasBad();
+    this.resetRange();
+    putChoices(this);
   }
 
   // Quality where there is some, else gaps.
   firstArray() {
     const { arrays } = this.input;
     const find = (name) => this.arrays.find((i) => arrays[i].name === name);
-    return find("EAS quality") ?? find("gap") ?? this.arrays[0] ?? -1;
+    return find(EAS) ?? find("gap") ?? this.arrays[0] ?? -1;
+  }
+  hasBad() {
+    return this.inputs.some((input) => input.frames.some((frame) => frame.inside && frame.bad > 0));
+  }
+  hasArrows() {
+    const { array } = this.state;
+    return array >= 0 && this.input.frames.some(({ skin }) => skin.vectors[array]);
+  }
+
+  // The array of each input that is shown.
+  arraysShown() {
+    return this.inputs.map((input) => [input, input === this.input ? this.state.array : sameArray(this.input, this.state.array, input)]);
   }
 
   resetRange() {
     const { state, input } = this;
     if (state.array < 0) return;
-    const isEas = input.arrays[state.array].name === "EAS quality" && state.array === 0;
-    const [low, high] = rangeOfArray(input, state.array);
+    const isEas = input.arrays[state.array].name === EAS && state.array === 0;
+    const [low, high] = rangeOfArrays(this.arraysShown());
     state.range = isEas ? [Math.min(0, low), 1] : [low, high];
-    byId("low").value = short(state.range[0]);
-    byId("high").value = short(state.range[1]);
-    byId("range").hidden = input.arrays[state.array].is_label;
   }
 
   // Loads what is chosen, then draws it; what was asked for since is shown instead.
   async show() {
-    const token = ++this.token, { state, frame, input } = this;
+    const token = ++this.token;
     document.documentElement.dataset.busy = "1";
     byId("busy").hidden = false;
     try {
-      const onPoints = state.array >= 0 && input.arrays[state.array].on === "point";
-      if (!this.loaded || this.loaded.frame !== frame) {
-        const loaded = await loadFrame(frame);
-        if (token !== this.token) return;
-        this.loaded = loaded;
-      }
-      const values = state.array < 0 ? { skin: null, inside: null } : await loadValues(frame, state.array, onPoints);
+      const frameOf = (input) => (input === this.input ? this.frame : frameAt(input, this.frame.time));
+      const wanted = this.arraysShown().map(([input, array], i) => unpackedFrame(this.shown[i], input, frameOf(input), array));
+      const shown = await Promise.all(wanted);
       if (token !== this.token) return;
-      this.values = values;
+      this.shown = shown;
       this.rebuild();
       this.tell();
     } catch (error) {
@@ -85,34 +116,43 @@ class View {
     document.documentElement.dataset.busy = "0";
   }
 
-  // Triangles anew, as the cut wants them.
+  // Triangles anew, as cut, parts and arrows want them.
   rebuild() {
-    const { state, loaded, values, drawing } = this, cut = this.cutOf();
-    const isLabel = state.array >= 0 && this.input.arrays[state.array].is_label;
-    drawing.layers.skin.put(skinTriangles(loaded, values, cut));
-    const inside = !cut ? new Triangles(1) : cut.mode === "slice" ? slice(loaded, values, cut) : crinkle(loaded, values, cut);
-    drawing.layers.cut.put(inside);
-    drawing.layers.bad.put(state.bad ? badTriangles(loaded, cut) : new Triangles(1));
-    if (isLabel) state.seen = this.labelsSeen();
-    showScale(drawing, this.input, state);
+    const { state, shown, scenes, drawing } = this;
+    while (scenes.length < shown.length) scenes.push(new Scene(drawing.gl));
+    const longest = Math.max(...this.arraysShown().map(([input, array]) => longestVector(input, array)));
+    const arrowScale = state.arrows && longest > 0 ? (LONGEST_ARROW * this.camera.radius) / longest : 0;
+    shown.forEach((mesh, i) => scenes[i].build(mesh, this.cutOf(mesh), this.parts, state.bad, arrowScale));
+    byId("place").textContent = scenes[0].cut ? `${"xyz"[scenes[0].cut.axis]} = ${short(scenes[0].cut.at)}` : "";
+    if (this.isLabel) state.seen = this.labelsSeen();
+    showScale(this.arraysShown(), state);
+    showNames(this.inputs);
     this.redraw();
+  }
+  // Once a picture: the hand is faster than a million cells.
+  rebuildSoon() {
+    this.soon ??= requestAnimationFrame(() => {
+      this.soon = null;
+      if (this.shown.length) this.rebuild();
+    });
   }
 
   labelsSeen() {
     const seen = new Set();
-    for (const list of [this.values.skin, this.values.inside]) if (list) for (const x of list) if (x !== NO_VALUE) seen.add(Math.round(x));
+    for (const list of this.shown.flatMap(({ values }) => [values.skin, values.inside])) {
+      if (list) for (const x of list) if (x !== NO_VALUE) seen.add(Math.round(x));
+    }
     return [...seen].sort((a, b) => a - b);
   }
 
   // Where the cut is: at one of the planes, where the frame has no more.
-  cutOf() {
+  cutOf({ loaded }) {
     const { cut, part } = this.state;
     if (!cut) return null;
     const { axis } = cut, low = this.low[axis], high = this.high[axis];
     let at = low + part * (high - low);
-    const planes = this.loaded.inside && this.loaded.inside.planes[axis];
+    const planes = loaded.inside && loaded.inside.planes[axis];
     if (planes && planes.length) at = planes.reduce((a, b) => (Math.abs(b - at) < Math.abs(a - at) ? b : a));
-    byId("place").textContent = `${"xyz"[axis]} = ${short(at)}`;
     return { ...cut, at };
   }
 
@@ -126,23 +166,52 @@ class View {
   }
 
   draw() {
-    if (!this.loaded) return;
-    const { state } = this, style = getComputedStyle(this.canvas);
+    const { shown, scenes, canvas } = this;
+    if (!shown.length) return;
+    const style = getComputedStyle(canvas);
     const colour = (name) => style.getPropertyValue(name).trim().split(/[\s,]+/).map((x) => x / 255);
-    this.drawing.draw(this.camera, {
-      ...state, cut: this.cutOf(), isLabel: state.array >= 0 && this.input.arrays[state.array].is_label,
-      ground: colour("--ground"), none: colour("--none"), edgeColour: colour("--edge"),
-    });
+    const look = {
+      ...this.state, isLabel: this.isLabel, ground: colour("--ground"), none: colour("--none"),
+      edgeColour: colour("--edge"), arrowColour: colour("--arrow"),
+    };
+    this.drawing.draw(this.camera, look, scenes.slice(0, shown.length));
     showAxes(this.camera);
-    this.canvas.dataset.drawn = Number(this.canvas.dataset.drawn ?? 0) + 1;
+    canvas.dataset.drawn = Number(canvas.dataset.drawn ?? 0) + 1;
+    clearTimeout(this.rest);
+    this.rest = setTimeout(() => this.keepLink(), REST_MS);
+  }
+
+  keepLink() {
+    history.replaceState(null, "", linkOf(this));
+  }
+
+  // Shows what the page's address says; false if it says nothing of the view.
+  followLink() {
+    const link = stateOfLink(location.hash), { state, camera } = this;
+    if (!link.isLink) return false;
+    const isShowable = (i) => manifest.inputs[i]?.frames.length > 0;
+    this.pause();
+    const input = isShowable(link.input) ? link.input : this.firstInput();
+    this.setInputs(input, isShowable(link.beside) && link.beside !== input ? link.beside : -1);
+    if (this.arrays.includes(link.array) || link.array === -1) state.array = link.array;
+    this.resetRange();
+    if (link.range && link.range[0] < link.range[1]) state.range = link.range;
+    if (this.input.frames[link.frame]) state.frame = link.frame;
+    const { cut, part, edges, arrows } = link;
+    Object.assign(state, { cut, part, edges, arrows, bad: link.bad && this.hasBad() });
+    camera.restore(link.camera);
+    this.parts.set = new Map(link.parts);
+    putChoices(this);
+    this.show();
+    return true;
   }
 
   // What is said of the frame that is shown.
   tell() {
-    const { state, frame, input, loaded } = this, said = [];
+    const { state, frame, input } = this, [{ loaded }] = this.shown, said = [];
     if (input.is_series) said.push(`Frame ${frame.frame + 1} of ${input.n_frames}, time ${short(frame.time)}.`);
     if (frame.tets !== null) {
-      said.push(`Worst EAS ${short(frame.worst.eas)}, ${withThousands(frame.bad)} of ${withThousands(frame.tets)} tets bad.`);
+      said.push(`Worst EAS (quality of a tet) ${short(frame.worst.eas)}, ${withThousands(frame.bad)} of ${withThousands(frame.tets)} tets bad.`);
     }
     if (state.cut && loaded.inside && loaded.inside.canCut && !loaded.inside.isWhole) {
       const n = loaded.inside.planes[0].length;
@@ -154,8 +223,11 @@ class View {
     byId("frame").value = state.frame;
     byId("frame").setAttribute("aria-valuetext", `time ${short(frame.time)}`);
     byId("time").textContent = `time ${short(frame.time)}`;
-    showHistograms(state.input, frame);
-    markTime(state.input, frame.time);
+    for (const mesh of this.shown) {
+      const view = manifest.inputs.indexOf(mesh.input);
+      showHistograms(view, mesh.frame);
+      markTime(view, mesh.frame.time);
+    }
   }
 
   go(k) {
@@ -176,85 +248,37 @@ class View {
     byId("play").setAttribute("aria-pressed", "true");
     const step = async () => {
       await this.go(this.state.frame + 1);
-      if (this.timer) this.timer = setTimeout(step, 160);
+      if (this.timer) this.timer = setTimeout(step, FRAME_MS);
     };
     this.timer = setTimeout(step, 0);
   }
 
-  changeCut() {
-    const axis = byId("cut").value;
-    this.state.cut = axis === "" ? null : { axis: Number(axis), sign: byId("flip").checked ? -1 : 1, mode: byId("mode").value };
-    for (const id of ["part", "flip", "mode"]) byId(id).disabled = !this.state.cut;
-    if (!this.state.cut) byId("place").textContent = "";
-    this.rebuild();
-    this.tell();
-  }
-
-  listen() {
-    const { camera, canvas, state } = this, redraw = () => this.redraw();
-    listenToHand(canvas, camera, redraw);
-    listenToKeys(canvas, camera, redraw, {
-      " ": () => this.play(), ".": () => this.go(state.frame + 1), ",": () => this.go(state.frame - 1),
-    });
-    const on = (id, event, act) => byId(id).addEventListener(event, act);
-    fill(byId("input"), manifest.inputs.map((input, i) => [i, input.name]).filter(([i]) => manifest.inputs[i].frames.length), 0);
-    byId("inputs").hidden = byId("input").options.length < 2;
-    on("input", "change", () => this.chooseInput(Number(byId("input").value)));
-    on("array", "change", () => {
-      state.array = Number(byId("array").value);
-      this.resetRange();
-      this.show();
-    });
-    for (const id of ["low", "high"]) on(id, "change", () => this.changeRange());
-    on("whole", "click", () => {
-      this.resetRange();
-      this.rebuild();
-    });
-    on("edges", "change", () => {
-      state.edges = byId("edges").checked;
-      this.redraw();
-    });
-    on("bad", "change", () => {
-      state.bad = byId("bad").checked;
-      this.rebuild();
-    });
-    for (const id of ["cut", "flip", "mode"]) on(id, "change", () => this.changeCut());
-    on("part", "input", () => {
-      state.part = byId("part").value / SLIDER;
-      // Once a picture: the hand is faster than a million cells.
-      this.soon ??= requestAnimationFrame(() => {
-        this.soon = null;
-        if (state.cut) this.rebuild();
-      });
-    });
-    on("frame", "input", () => {
-      this.pause();
-      this.go(Number(byId("frame").value));
-    });
-    on("play", "click", () => this.play());
-    on("back", "click", () => this.go(state.frame - 1));
-    on("on", "click", () => this.go(state.frame + 1));
-    on("save", "click", () => savePicture(canvas, `${this.input.name}-${this.frame.frame}.png`));
-    on("reset", "click", () => {
-      camera.reset();
-      redraw();
-    });
-    for (const button of document.querySelectorAll("[data-look]")) {
-      button.addEventListener("click", () => {
-        camera.look(button.dataset.look);
-        redraw();
-      });
+  // Records all frames; a second call ends it before the last, with what was recorded.
+  async saveVideo() {
+    if (this.isRecording) {
+      this.isRecording = false;
+      return;
     }
-    new ResizeObserver(redraw).observe(canvas);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-  }
-
-  changeRange() {
-    const [low, high] = ["low", "high"].map((id) => Number(byId(id).value.replace("\u2212", "-")));
-    if (Number.isFinite(low) && Number.isFinite(high) && low < high) this.state.range = [low, high];
-    else [byId("low").value, byId("high").value] = this.state.range.map(short);
-    showScale(this.drawing, this.input, this.state);
-    this.redraw();
+    const button = byId("video"), first = this.state.frame;
+    this.pause();
+    this.isRecording = true;
+    button.textContent = "Stop video";
+    const showFrame = async (k) => {
+      await this.go(k);
+      this.draw();
+    };
+    try {
+      const film = await recordVideo(this.canvas, this.input.frames.length, showFrame, () => this.isRecording);
+      const address = URL.createObjectURL(film);
+      download(address, `${this.input.name}.webm`);
+      setTimeout(() => URL.revokeObjectURL(address), 60000);
+      byId("done").textContent = `Video of ${Math.round(film.size / 1000)} kB saved.`;
+    } catch (error) {
+      byId("done").textContent = `No video: ${error.message}`;
+    }
+    this.isRecording = false;
+    button.textContent = "Save video";
+    this.go(first);
   }
 }
 

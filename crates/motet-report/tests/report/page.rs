@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use motet::base::VertexId;
 use motet::io::{self, SeriesWriter, WriteOptions};
-use motet::mesh::shapes::{ball, box_grid, mixed, quadratic};
+use motet::mesh::shapes::{ball, box_grid, mixed, quadratic, sphere_in_box};
 use motet::mesh::{CellKind, Cells, Field};
 use motet::{ErrorKind, Mesh};
 use motet_report::{Options, Report, write};
@@ -111,9 +111,40 @@ fn a_series_may_change_its_cells_and_its_arrays() {
     let u = input["arrays"].as_array().expect("arrays").iter().position(|a| a["name"] == "u").expect("u");
     assert_eq!(input["frames"][1]["skin"]["values"][u.to_string()]["low"], 5.0);
     assert!(input["frames"][0]["skin"]["values"].get(u.to_string()).is_none());
+    assert_eq!(
+        (&input["arrays"][u]["is_vector"], &input["arrays"][u]["title"]),
+        (&true.into(), &"length of u".into())
+    );
+    assert!(
+        input["frames"][1]["skin"]["vectors"][u.to_string()]["step"].as_f64().is_some_and(|step| step > 0.0)
+    );
+    assert!(input["frames"][0]["skin"]["vectors"].get(u.to_string()).is_none());
     assert!(
         input["frames"][1]["inside"]["facets"].is_array() && input["frames"][0]["inside"]["tets"].is_u64()
     );
+}
+
+#[test]
+fn patches_are_parts_and_what_is_around_another_is_transparent() {
+    let folder = Folder::new();
+    let inputs = [folder.mesh("box.vtu", &sphere_in_box(3, 2)), folder.mesh("ball.vtu", &ball(3, 2))];
+    let (_, page, manifest) = folder.page(&inputs, Options::BUDGET);
+    let input = &manifest["inputs"][0];
+    let opacity = |name: &str| {
+        let parts = input["parts"].as_array().expect("parts");
+        let is_it = |part: &&Value| {
+            let names = &input["arrays"][part["array"].as_u64().expect("an array") as usize]["names"];
+            names[part["id"].to_string()] == name
+        };
+        parts.iter().find(is_it).expect("the part")["opacity"].as_f64().expect("a number")
+    };
+    assert!(opacity("box") < 0.5 && opacity("sphere") == 1.0);
+    assert_eq!(manifest["inputs"][1]["parts"].as_array().map(Vec::len), Some(0), "one patch needs no list");
+    assert!(page.contains("EAS (quality of a tet)"));
+    // Without arrays there are no labels to tell parts apart by.
+    let (report, _, manifest) = folder.page(&inputs, 1);
+    assert!(report.inputs[0].left_out.iter().any(|what| what.contains("Arrays are left out")));
+    assert_eq!(manifest["inputs"][0]["parts"].as_array().map(Vec::len), Some(0));
 }
 
 #[test]
