@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use motet::Mesh;
-use motet::base::{Csr, VertexId};
+use motet::base::{Csr, Threads, VertexId};
 use motet::io::{self, Compression, Encoding, WriteOptions};
 use motet::mesh::{Cells, Field, Values, shapes};
 
@@ -14,13 +14,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
     let mut n_files = BTreeMap::new();
     for format in io::formats() {
-        let (Some(write), Some(extension)) = (format.write, format.extensions.first()) else { continue };
+        let (Some(_), Some(extension)) = (format.write, format.extensions.first()) else { continue };
         let target = extension.trim_start_matches('.').replace('.', "_");
         let folder = corpus.join(&target);
         fs::create_dir_all(&folder)?;
         for (name, mesh) in meshes() {
             for (k, options) in options().enumerate() {
-                let Ok(written) = write(&mesh, &options) else { continue };
+                let Ok(written) = format.to_files(&mesh, &options, &Threads::single()) else { continue };
                 fs::write(folder.join(format!("{name}_{k}")), &written.files[0].1)?;
                 *n_files.entry(target.clone()).or_insert(0) += 1;
                 if target == "vtu" {

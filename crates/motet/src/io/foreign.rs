@@ -44,7 +44,6 @@ const FOREIGN: &[ForeignFormat] = &[
     },
     ForeignFormat { name: "a MED file (Salome, Code_Aster)", extensions: &[".med"], remedy: MESHIO_HDF },
     ForeignFormat { name: "a MOAB file", extensions: &[".h5m"], remedy: MESHIO_HDF },
-    ForeignFormat { name: "an SU2 mesh", extensions: &[".su2"], remedy: MESHIO },
     ForeignFormat { name: "a Netgen mesh", extensions: &[".vol", ".vol.gz"], remedy: MESHIO },
     ForeignFormat { name: "a UGRID file", extensions: &[".ugrid"], remedy: MESHIO },
     ForeignFormat { name: "a FLAC3D grid", extensions: &[".f3grid"], remedy: MESHIO },

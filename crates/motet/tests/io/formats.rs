@@ -1,4 +1,4 @@
-//! MSH, STL, OBJ, Medit, TetGen and DOLFIN files: written files are read back; damage is reported.
+//! MSH, STL, OBJ, Medit, TetGen, SU2 and DOLFIN files: written files are read back; damage is reported.
 
 use std::fs;
 use std::path::Path;
@@ -96,6 +96,16 @@ const ABAQUS_KINDS: &[CellKind] = &[
     CellKind::QUADRATIC_WEDGE,
     CellKind::QUADRATIC_HEXAHEDRON,
     CellKind::TRIQUADRATIC_HEXAHEDRON,
+];
+
+/// Volume cells, then those of patches.
+const SU2_KINDS: &[CellKind] = &[
+    CellKind::TETRA,
+    CellKind::HEXAHEDRON,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
 ];
 
 fn coordinate() -> impl Strategy<Value = f64> {
@@ -201,6 +211,27 @@ proptest! {
     }
 
     #[test]
+    fn su2_comes_back((mut mesh, labels) in meshes(SU2_KINDS, true)) {
+        let on_sides = labels.iter().zip(mesh.cells.kinds()).map(|(&l, kind)| if kind.dim() == Some(2) { l + 1 } else { 0 });
+        let mut tags: Vec<i32> = on_sides.collect();
+        // SU2 groups cells by patch.
+        tags.sort_unstable();
+        // A surface in the plane z = 0 would have two dimensions.
+        mesh.points[0][2] = 1.0;
+        let is_labelled = tags.iter().any(|&tag| tag != 0);
+        mesh.set_cell_field(Field::scalars("su2:tag", tags));
+        mesh.label_names.patches.insert(2, "wall".into());
+        let (bytes, lost) = print(".su2", &mesh, &WriteOptions::default());
+        prop_assert!(lost.iter().all(|l| l.contains("numbers of patches")), "{lost:?}");
+        let back = parse(".su2", &bytes).unwrap();
+        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+        prop_assert_eq!(&back.cells, &mesh.cells);
+        if is_labelled {
+            prop_assert_eq!(patch_names(&back), patch_names(&mesh));
+        }
+    }
+
+    #[test]
     fn tetgen_comes_back(
         (mut mesh, labels) in meshes(&[CellKind::TETRA, CellKind::TRIANGLE, CellKind::LINE], true),
         quadratic in any::<bool>(),
@@ -279,6 +310,7 @@ proptest! {
             (".mesh", WriteOptions::default()),
             (".meshb", WriteOptions::default()),
             (".inp", WriteOptions::default()),
+            (".su2", WriteOptions::default()),
             (".obj", WriteOptions::default()),
             (".stl", WriteOptions::default()),
             (".stl", WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() }),

@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
-use super::names::{PATCH, REGION, bare_number, numbers};
+use super::names::{PATCH, REGION};
 use super::sets::Runs;
 use super::{ELSET, SURFACE};
 use crate::io::format::Notes;
+use crate::io::label_numbers::{bare_number, numbers};
 use crate::mesh::{Field, Labels, Mesh, Values, unused_name};
 
 /// A set or surface, as indices of points or cells of the mesh.

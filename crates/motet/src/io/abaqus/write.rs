@@ -4,12 +4,13 @@ use std::collections::{BTreeMap, HashMap};
 use std::io::Write as _;
 
 use super::kinds::{faces, vtk_to_abaqus, written_as};
-use super::names::{PATCH, REGION, numbers, one_line, written};
-use super::surfaces::{FacetKey, facet_key};
+use super::names::{PATCH, REGION, one_line, written};
 use super::{ELSET, NSET, SURFACE};
 use crate::base::{Result, VertexId};
 use crate::io::cell_labels::{cell_labels, labels_cover};
+use crate::io::facet_key::{FacetKey, facet_key, have_same_orientation};
 use crate::io::format::WriteOptions;
+use crate::io::label_numbers::numbers;
 use crate::io::output::{Output, write_all};
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::io::text::push_float;
@@ -252,11 +253,6 @@ fn sides_of(mesh: &Mesh) -> HashMap<FacetKey, (usize, Option<Side>)> {
         }
     }
     sides
-}
-
-/// Whether two rings of the same vertices have the same orientation.
-fn have_same_orientation(a: &[VertexId], b: &[VertexId]) -> bool {
-    b.iter().position(|v| *v == a[0]).is_some_and(|at| b[(at + 1) % b.len()] == a[1])
 }
 
 fn report_losses(mesh: &Mesh, lost: &mut Vec<String>) {
