@@ -44,6 +44,11 @@ const FOREIGN: &[ForeignFormat] = &[
     },
     ForeignFormat { name: "a MED file (Salome, Code_Aster)", extensions: &[".med"], remedy: MESHIO_HDF },
     ForeignFormat { name: "a MOAB file", extensions: &[".h5m"], remedy: MESHIO_HDF },
+    ForeignFormat {
+        name: "an openCARP mesh in binary form",
+        extensions: &[".bpts", ".belem", ".blon"],
+        remedy: "convert it to text with meshtool: meshtool convert -imsh=FILE -ifmt=carp_bin -omsh=mesh -ofmt=carp_txt",
+    },
     ForeignFormat { name: "a Netgen mesh", extensions: &[".vol", ".vol.gz"], remedy: MESHIO },
     ForeignFormat { name: "a UGRID file", extensions: &[".ugrid"], remedy: MESHIO },
     ForeignFormat { name: "a FLAC3D grid", extensions: &[".f3grid"], remedy: MESHIO },

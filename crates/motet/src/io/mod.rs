@@ -24,6 +24,7 @@ mod nodal;
 mod node_order;
 mod obj;
 mod off;
+mod opencarp;
 mod output;
 mod ply;
 mod polygonal;
