@@ -49,7 +49,6 @@ const FOREIGN: &[ForeignFormat] = &[
         extensions: &[".bpts", ".belem", ".blon"],
         remedy: "convert it to text with meshtool: meshtool convert -imsh=FILE -ifmt=carp_bin -omsh=mesh -ofmt=carp_txt",
     },
-    ForeignFormat { name: "a Netgen mesh", extensions: &[".vol", ".vol.gz"], remedy: MESHIO },
     ForeignFormat { name: "a UGRID file", extensions: &[".ugrid"], remedy: MESHIO },
     ForeignFormat { name: "a FLAC3D grid", extensions: &[".f3grid"], remedy: MESHIO },
     ForeignFormat { name: "a Kratos model part", extensions: &[".mdpa"], remedy: MESHIO },
@@ -138,7 +137,7 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xfd7zXZ\x00") || bytes.starts_with(b"BZh") {
         return named("a compressed file", "decompress it first");
     }
-    if bytes.starts_with(b"\x1f\x8b") && !is(".xml.gz") {
+    if bytes.starts_with(b"\x1f\x8b") && !extensions.iter().any(|e| e.ends_with(".gz")) {
         return named("a gzip file", "decompress it first: gunzip -c FILE");
     }
     if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && !is(".cgns") && !is(".vtkhdf") {

@@ -20,6 +20,7 @@ mod lock;
 mod medit;
 mod memory_budget;
 mod msh;
+mod netgen;
 mod nodal;
 mod node_order;
 mod obj;

@@ -7,8 +7,8 @@ use crate::io::format::{Format, Notes, Write, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{replace_all, replace_folder, replace_with};
 use crate::io::{
-    abaqus, cgns, dolfin, foreign, legacy, medit, msh, obj, off, opencarp, ply, polymesh, simvascular, stl,
-    su2, tetgen, vtkhdf, vtkxml,
+    abaqus, cgns, dolfin, foreign, legacy, medit, msh, netgen, obj, off, opencarp, ply, polymesh,
+    simvascular, stl, su2, tetgen, vtkhdf, vtkxml,
 };
 use crate::mesh::Mesh;
 
@@ -37,6 +37,8 @@ const FORMATS: &[Format] = &[
     tetgen::FORMAT,
     su2::FORMAT,
     opencarp::FORMAT,
+    netgen::VOL,
+    netgen::VOL_GZ,
     dolfin::FORMAT,
     polymesh::FORMAT,
     simvascular::FORMAT,
