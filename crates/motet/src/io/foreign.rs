@@ -70,11 +70,6 @@ const FOREIGN: &[ForeignFormat] = &[
         remedy: PARAVIEW,
     },
     ForeignFormat {
-        name: "an I-DEAS universal file",
-        extensions: &[".unv"],
-        remedy: "open it in Gmsh or Salome: gmsh -3 -format msh41 FILE -o mesh.msh",
-    },
-    ForeignFormat {
         name: "an Ansys Mechanical archive",
         extensions: &[".cdb", ".rst"],
         remedy: "convert it with ansys-mapdl-reader (pip install ansys-mapdl-reader), which saves .vtk",

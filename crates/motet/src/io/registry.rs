@@ -8,7 +8,7 @@ use crate::io::reading::{checked, read_file};
 use crate::io::replace::{replace_all, replace_folder, replace_with};
 use crate::io::{
     abaqus, cgns, dolfin, foreign, legacy, medit, msh, netgen, obj, off, opencarp, ply, polymesh,
-    simvascular, stl, su2, tetgen, vtkhdf, vtkxml,
+    simvascular, stl, su2, tetgen, unv, vtkhdf, vtkxml,
 };
 use crate::mesh::Mesh;
 
@@ -39,6 +39,7 @@ const FORMATS: &[Format] = &[
     opencarp::FORMAT,
     netgen::VOL,
     netgen::VOL_GZ,
+    unv::FORMAT,
     dolfin::FORMAT,
     polymesh::FORMAT,
     simvascular::FORMAT,

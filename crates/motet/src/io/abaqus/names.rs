@@ -1,7 +1,4 @@
-//! Conversion between the numbers of labels and the names of sets.
-
-pub(super) const REGION: &str = "REGION_";
-pub(super) const PATCH: &str = "PATCH_";
+//! Names of sets as the file has them.
 
 /// A name as written to a file: quoted where it is not a plain word, or where quotes distinguish it from
 /// another.

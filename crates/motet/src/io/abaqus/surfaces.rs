@@ -5,10 +5,11 @@ use std::collections::{HashMap, HashSet};
 use super::kinds::faces;
 use super::line::Target;
 use super::scope::SurfaceDefinition;
-use super::sets::{Context, MAX_RUNS, Runs, merged, no_set};
+use super::sets::{Context, MAX_RUNS, no_set};
 use crate::base::{Error, Result, VertexId};
 use crate::io::facet_key::{FacetKey, facet_key};
 use crate::io::format::Notes;
+use crate::io::named_sets::{Runs, merged};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{Boundary, CellKind, Cells, corners};
 
