@@ -9,7 +9,8 @@
 //! boxes for free-form deformation and other keys are skipped with a note.
 //!
 //! Layout: SU2's documentation, "Mesh File" (su2code.github.io/docs_v7/Mesh-File). Elements have VTK's
-//! numbers and its order of nodes.
+//! numbers and its order of nodes; the triangles of prisms have the orientation of VTK's older documentation,
+//! as in files of Gmsh.
 
 mod read;
 #[cfg(test)]
@@ -39,3 +40,12 @@ const KINDS: [&[CellKind]; 4] = [
     &[CellKind::TRIANGLE, CellKind::QUAD],
     &[CellKind::TETRA, CellKind::HEXAHEDRON, CellKind::WEDGE, CellKind::PYRAMID],
 ];
+
+/// For each node of a cell, its position in the file.
+fn order_of(kind: CellKind) -> &'static [usize] {
+    const AS_HERE: &[usize; 8] = &[0, 1, 2, 3, 4, 5, 6, 7];
+    match kind {
+        CellKind::WEDGE => &[0, 2, 1, 3, 5, 4],
+        _ => &AS_HERE[..kind.n_vertices().unwrap_or(0)],
+    }
+}

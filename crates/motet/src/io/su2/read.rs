@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{KINDS, TAG};
+use super::{KINDS, TAG, order_of};
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::{Input, Notes};
 use crate::io::label_numbers::{bare_number, numbers};
@@ -160,12 +160,12 @@ impl File<'_> {
                     kinds.iter().copied().flatten().map(|k| format!("{} ({})", k.0, k.label())).collect();
                 self.text.error(format!("expected an element type {}, found {number}", known.join(", ")))
             })?;
-            let n_vertices = kind.n_vertices().unwrap_or(0);
-            for vertex in &mut vertices[..n_vertices] {
+            let order = order_of(kind);
+            for vertex in &mut vertices[..order.len()] {
                 *vertex = self.text.vertex_in_line(0, n_points)?;
             }
             self.end_row()?;
-            cells.push(kind, vertices[..n_vertices].iter().copied());
+            cells.push(kind, order.iter().map(|&place| vertices[place]));
         }
         Ok(())
     }

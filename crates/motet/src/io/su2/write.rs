@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::Write as _;
 
-use super::{KINDS, UNLABELLED};
+use super::{KINDS, UNLABELLED, order_of};
 use crate::base::Result;
 use crate::io::cell_labels::{cell_labels, lost_cell_arrays};
 use crate::io::format::WriteOptions;
@@ -110,9 +110,12 @@ fn cells(output: &mut Output<'_>, mesh: &Mesh, key: &str, places: &[usize]) -> R
     write_all(output, format!("{key}= {}\n", places.len()).as_bytes())?;
     output.rows(places.len(), |rows, mut out| {
         for &i in &places[rows] {
-            let _ = write!(out, "{}", mesh.cells.kinds()[i].0);
-            for v in mesh.cells.connectivity().list(i) {
-                let _ = write!(out, " {v}");
+            let kind = mesh.cells.kinds()[i];
+            let vertices = mesh.cells.connectivity().list(i);
+            let _ = write!(out, "{}", kind.0);
+            // The order is its own inverse.
+            for &place in order_of(kind) {
+                let _ = write!(out, " {}", vertices[place]);
             }
             out.push(b'\n');
         }
