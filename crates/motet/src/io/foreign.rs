@@ -32,11 +32,7 @@ const FOREIGN: &[ForeignFormat] = &[
         extensions: &[".e", ".ex2", ".exo", ".exii", ".g", ".gen"],
         remedy: MESHIO_HDF,
     },
-    ForeignFormat {
-        name: "an XDMF file",
-        extensions: &[".xdmf", ".xmf", ".xdmf2", ".xdmf3"],
-        remedy: MESHIO_HDF,
-    },
+    ForeignFormat { name: "an XDMF file of version 2", extensions: &[".xdmf2"], remedy: MESHIO_HDF },
     ForeignFormat {
         name: "a Nastran file",
         extensions: &[".bdf", ".nas", ".fem", ".nastran"],
@@ -149,8 +145,8 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     }
     let head = &start[..start.len().min(400)];
     let has = |word: &[u8]| head.windows(word.len()).any(|w| w.eq_ignore_ascii_case(word));
-    if has(b"<xdmf") {
-        return named("an XDMF file", MESHIO_HDF);
+    if has(b"<xdmf") && !is(".xdmf") {
+        return named("an XDMF file", "give it the extension of its format: .xdmf");
     }
     if is(".mesh") && (start.starts_with(b"<") || start.starts_with(b"$MeshFormat")) {
         return Err(Error::input("is not a Medit mesh")
@@ -172,7 +168,7 @@ mod tests {
                 && of("a/Wing.EXO").contains("meshio convert Wing.EXO mesh.vtu")
         );
         assert!(
-            of("x.xdmf").contains("XDMF")
+            of("x.xdmf2").contains("XDMF")
                 && of("x.step").contains("gmsh")
                 && of("x.cas.h5").contains("ParaView")
         );

@@ -49,6 +49,7 @@ mod unv;
 mod vtkhdf;
 mod vtkxml;
 mod weld;
+mod xdmf;
 
 pub use format::{Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written};
 pub use lock::OutputLock;
