@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::read::Names;
-use super::{INDEX, NO_NAME};
-use crate::mesh::{Field, Mesh};
+use super::{INDEX, NO_NAME, Names};
+use crate::mesh::{CellKind, Field, Mesh};
 
 /// Sets the array of the numbers, and names of regions and patches. Where numbers share a name, an array
 /// more has the first of them.
@@ -18,7 +17,7 @@ pub(super) fn set_labels(mesh: &mut Mesh, indices: Vec<i32>, names: [Names; 2]) 
             .map(|(&number, name)| (number, *first_of.entry(name.as_str()).or_insert(number)))
             .collect();
         if first.iter().any(|(number, first)| number != first) {
-            let of_cell = |(&index, kind): (&i32, &crate::mesh::CellKind)| match kind.dim() == Some(dim) {
+            let of_cell = |(&index, kind): (&i32, &CellKind)| match kind.dim() == Some(dim) {
                 true => first.get(&index).copied().unwrap_or(index),
                 false => 0,
             };

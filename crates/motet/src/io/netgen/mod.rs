@@ -6,7 +6,7 @@
 //! numbers have one name, arrays `region` and `patch` have the first of them, so that a name is one label.
 //!
 //! Netgen lists the pieces of an edge once for each face beside it; each is one line. In meshes of two
-//! dimensions surface cells have materials, and lines have boundary conditions, which are read as numbers.
+//! dimensions surface cells have materials, and lines the numbers of boundary conditions.
 //! Meshes without volume cells in the plane z = 0 are written in two dimensions. Parameters of points on the
 //! geometry, names of edges, identifications and colours are skipped, with a note where there are any.
 //!
@@ -22,6 +22,8 @@ mod read;
 #[cfg(test)]
 mod tests;
 mod write;
+
+use std::collections::BTreeMap;
 
 use crate::io::{Format, Write};
 
@@ -43,3 +45,6 @@ const INDEX: &str = "netgen:index";
 
 /// The name that stands for none.
 const NO_NAME: &str = "default";
+
+/// Names of numbers.
+type Names = BTreeMap<i32, String>;

@@ -1,7 +1,8 @@
 //! Reads the sections of a file.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 
+use super::Names;
 use super::kinds::{MAX_NODES, element};
 use super::labels::set_labels;
 use crate::base::{Error, Point, Result, VertexId};
@@ -35,9 +36,6 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     }
     content.into_mesh()
 }
-
-/// Names of numbers.
-pub(super) type Names = BTreeMap<i32, String>;
 
 #[derive(Default)]
 struct Content {

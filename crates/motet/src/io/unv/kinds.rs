@@ -24,13 +24,13 @@ const ELEMENTS: &[Element] = &[
     (CellKind::QUADRATIC_TETRA, 118, &[0, 4, 1, 5, 2, 6, 7, 8, 9, 3]),
 ];
 
-/// Whether elements with this descriptor are rods or beams, of which a record of their own tells the section.
+/// Whether elements with this descriptor are rods or beams, whose section has a record of its own.
 pub(super) fn is_beam(descriptor: i64) -> bool {
     matches!(descriptor, 11 | 21..=24)
 }
 
-/// The element with this descriptor and number of nodes; `None` if it is no cell here. Plane, plate, membrane,
-/// axisymmetric and shell elements of the same number of nodes are the same cell.
+/// The element with this descriptor and number of nodes; `None` if it is no cell here. Plane, plate,
+/// membrane, axisymmetric and shell elements of the same number of nodes are the same cell.
 pub(super) fn element(descriptor: i64, n_nodes: usize) -> Option<&'static Element> {
     let dim = match descriptor {
         11 | 21..=24 => 1,

@@ -24,7 +24,7 @@ impl Data {
 
     /// Number of values in a row.
     pub(super) fn n_columns(&self) -> usize {
-        self.shape.iter().skip(1).product()
+        self.shape.iter().skip(1).fold(1, |n, &d| n.saturating_mul(d))
     }
 }
 

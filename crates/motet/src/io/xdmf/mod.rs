@@ -1,5 +1,5 @@
-//! XDMF (`.xdmf`, `.xmf`): meshes and arrays described in XML, with the numbers in the same file or in an HDF5
-//! file beside it, as FEniCS, dolfinx and meshio write them.
+//! XDMF (`.xdmf`, `.xmf`): meshes and arrays described in XML, with the numbers in the same file or in an
+//! HDF5 file beside it, as FEniCS, dolfinx and meshio write them.
 //!
 //! The mesh is the first uniform grid of the domain. Grids of the same points that follow add to it: their
 //! arrays, or their cells where they have some of their own. So the tags of dolfinx become labels: those of

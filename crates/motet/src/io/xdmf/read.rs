@@ -2,7 +2,7 @@
 
 use super::data::Source;
 use super::grid::{Center, attributes, cells, either, points};
-use super::tags::add_tags;
+use super::tags::{add_tags, extend};
 use crate::base::{Error, Result};
 use crate::io::format::{Input, Notes};
 use crate::io::text::quoted;
@@ -22,6 +22,8 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     }
     let mut source = Source::new(input.path);
     let mut mesh: Option<Mesh> = None;
+    // Those of the first grid; tags of facets come after them.
+    let mut n_cells = 0;
     let domain = root.child("Domain");
     for grid in domain.into_iter().flat_map(|domain| domain.children_named("Grid")) {
         let Some(grid) = uniform(grid, input.notes)? else { continue };
@@ -29,8 +31,9 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
             (None, Some(topology), Some(geometry)) => {
                 let points = points(geometry, &mut source)?;
                 let mut first = Mesh::new(points, cells(topology, &mut source)?);
+                n_cells = first.cells.len();
                 names(&mut first, grid);
-                add_arrays(&mut first, grid, &mut source, input.notes)?;
+                add_arrays(&mut first, n_cells, grid, &mut source, input.notes)?;
                 mesh = Some(first);
             }
             (Some(mesh), Some(topology), None) => {
@@ -39,7 +42,7 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
                 let fields = attributes(grid, &mut source, n, input.notes)?;
                 add_tags(mesh, &cells, fields, input.notes);
             }
-            (Some(mesh), None, None) => add_arrays(mesh, grid, &mut source, input.notes)?,
+            (Some(mesh), None, None) => add_arrays(mesh, n_cells, grid, &mut source, input.notes)?,
             (Some(_), ..) => {
                 let name = grid.attribute("Name").unwrap_or_default();
                 input.notes.add(format!("grid {} is skipped: it is another mesh", quoted(name.as_bytes())));
@@ -93,12 +96,21 @@ fn names(mesh: &mut Mesh, grid: &Element<'_>) {
     }
 }
 
-fn add_arrays(mesh: &mut Mesh, grid: &Element<'_>, source: &mut Source<'_>, notes: &Notes) -> Result<()> {
-    let n = [mesh.points.len(), mesh.cells.len()];
-    for (center, field) in attributes(grid, source, n, notes)? {
+/// Adds the arrays of a grid whose cells are the first `n_cells` of the mesh.
+fn add_arrays(
+    mesh: &mut Mesh,
+    n_cells: usize,
+    grid: &Element<'_>,
+    source: &mut Source<'_>,
+    notes: &Notes,
+) -> Result<()> {
+    for (center, mut field) in attributes(grid, source, [mesh.points.len(), n_cells], notes)? {
         match center {
             Center::Node => mesh.set_point_field(field),
-            Center::Cell => mesh.set_cell_field(field),
+            Center::Cell => {
+                extend(&mut field, mesh.cells.len());
+                mesh.set_cell_field(field);
+            }
             Center::Grid => mesh.field_data.push(field),
         }
     }

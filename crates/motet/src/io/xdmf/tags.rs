@@ -44,7 +44,7 @@ pub(super) fn add_tags(mesh: &mut Mesh, cells: &Cells, fields: Vec<(Center, Fiel
 }
 
 /// Fills an array up to `n` rows with zeros.
-fn extend(field: &mut Field, n: usize) {
+pub(super) fn extend(field: &mut Field, n: usize) {
     let missing = n * field.components - field.values.len();
     let zeros = match &field.values {
         Values::Text(_) => Values::Text(vec![String::new(); missing]),

@@ -51,7 +51,8 @@ const TAGGED: &str = r#"<?xml version="1.0"?>
 <Grid Name="u" GridType="Collection" CollectionType="Temporal">
 <Grid Name="u"><xi:include xpointer="xpointer(/Xdmf/Domain/Grid/*)"/><Time Value="0"/>
 <Attribute Name="u" AttributeType="Vector" Center="Node">
-<DataItem Dimensions="5 3" Format="XML">1 2 3 4 5 6 7 8 9 10 11 12 13 14 15</DataItem></Attribute></Grid>
+<DataItem Dimensions="5 3" Format="XML">1 2 3 4 5 6 7 8 9 10 11 12 13 14 15</DataItem></Attribute>
+<Attribute Name="p0" Center="Cell"><DataItem Dimensions="2 1" NumberType="Float" Precision="8">3 4</DataItem></Attribute></Grid>
 <Grid Name="u"><Time Value="1"/></Grid>
 </Grid>
 </Domain></Xdmf>
@@ -67,6 +68,7 @@ fn grids_of_the_same_points_form_one_mesh() {
     assert_eq!(mesh.regions().unwrap().ids, [0, 5, 0, 0]);
     assert_eq!(mesh.cell_field("rho").unwrap().values, vec![1.5f32, 2.5, 0.0, 0.0].into());
     assert_eq!(mesh.point_field("u").unwrap().to_vectors().unwrap()[4], [13.0, 14.0, 15.0]);
+    assert_eq!(mesh.cell_field("p0").unwrap().values, vec![3.0, 4.0, 0.0, 0.0].into());
     assert_eq!(notes, ["`u` has 2 steps over time: the first is read"]);
 }
 
@@ -203,6 +205,8 @@ fn damage_is_reported_with_its_line() {
             }
         }
     }
+    let wide = TAGGED.replacen("\"2 1\" Format", "\"0 99999999999 99999999999\" Format", 1);
+    assert!(parse_noted(&wide).0.is_err());
     let error = parse_noted("<Xdmf><Domain/></Xdmf>").0.unwrap_err().to_string();
     assert!(error.contains("there is no grid"), "{error}");
     let error = parse_noted("<VTKFile/>").0.unwrap_err().to_string();
