@@ -202,6 +202,10 @@ pub fn write_on(
             return Ok(lost);
         }
         Write::Files(write) => write(mesh, options, threads).map_err(|e| e.in_file(path))?,
+        Write::Linked { linked, .. } => {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            linked(mesh, options, threads, &stem).map_err(|e| e.in_file(path))?
+        }
     };
     if format.is_folder() {
         refuse_full_folder(path)?;

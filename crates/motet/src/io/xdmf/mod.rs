@@ -7,7 +7,8 @@
 //! the first grid is read, with a note. Names of labels are those that meshio puts into `Information`.
 //! Structured grids, functions of arrays and other collections are refused or skipped with a note.
 //!
-//! Files are written in version 3, with the numbers as text in the file itself.
+//! Files are written in version 3, with the numbers in `NAME.h5` beside `NAME.xdmf`, or as text in the file
+//! itself for the encoding `ascii` and without the feature `hdf5`.
 //!
 //! Layout: "XDMF Model and Format" (xdmf.org). The nodes of cells are in VTK's order.
 
@@ -26,5 +27,5 @@ pub(super) const FORMAT: Format = Format {
     name: "XDMF",
     extensions: &[".xdmf", ".xmf", ".xdmf3"],
     read: Some(read::read),
-    write: Some(Write::File(write::write)),
+    write: Some(Write::Linked { alone: write::write_text_file, linked: write::write_files }),
 };

@@ -152,6 +152,28 @@ fn numbers_in_hdf5_files_are_read() {
 }
 
 #[test]
+#[cfg(feature = "hdf5")]
+fn numbers_are_written_to_an_hdf5_file_of_the_same_name() {
+    use crate::io::{Compression, Encoding, read, write};
+    let folder = tempfile::tempdir().unwrap();
+    let mut empty = Mesh::new(vec![[0.5; 3]; 2], Cells::new());
+    empty.set_cell_field(Field::scalars("q", Vec::<f64>::new()));
+    for (mesh, name) in [(shapes::mixed(2), "a.b.xdmf"), (parse(TAGGED), "<c>.xmf"), (empty, "d.xdmf")] {
+        let path = folder.path().join(name);
+        for (compression, encoding) in [
+            (Compression::Zlib, Encoding::Binary),
+            (Compression::None, Encoding::Binary),
+            (Compression::None, Encoding::Ascii),
+        ] {
+            let options = WriteOptions { compression, encoding, ..WriteOptions::default() };
+            assert!(write(&path, &mesh, &options).unwrap().is_empty());
+            assert_eq!(path.with_extension("h5").is_file(), !name.contains('<'));
+            assert_eq!(read(&path).unwrap(), mesh, "{name}");
+        }
+    }
+}
+
+#[test]
 fn what_cannot_be_held_is_reported() {
     let mut mesh = Mesh::new(vec![[0.0; 3]; 20], Cells::new());
     mesh.cells.push(CellKind::QUADRATIC_HEXAHEDRON, (0..20).map(VertexId));

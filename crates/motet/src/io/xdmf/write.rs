@@ -1,38 +1,113 @@
-//! Writes a uniform grid with the numbers as text.
+//! Writes a uniform grid, with the numbers in an HDF5 file or as text.
 
 use std::fmt::Write as _;
 
-use bytemuck::cast_slice;
-
 use super::kinds::Topology;
-use crate::base::Result;
-use crate::io::format::WriteOptions;
+use crate::base::{Result, Threads};
+use crate::io::format::{Compression, Encoding, WriteOptions, Written};
+use crate::io::hdf::{Node, Storage};
 use crate::io::labels::label_fields;
 use crate::io::output::{Output, write_all};
-use crate::io::scalar::{write_lines, write_text};
+use crate::io::scalar::write_text;
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::io::vtkxml::escape_attribute;
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh, Values};
 
-pub(super) fn write(mesh: &Mesh, _: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
+/// Writes one file with the numbers as text.
+pub(super) fn write_text_file(mesh: &Mesh, _: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
+    write(mesh, &mut Sink { output, heavy: None })
+}
+
+/// Writes a file that refers to `STEM.h5`, which holds the numbers; one with text for that encoding.
+pub(super) fn write_files(
+    mesh: &Mesh,
+    options: &WriteOptions,
+    threads: &Threads,
+    stem: &str,
+) -> Result<Written> {
+    let mut bytes = Vec::new();
+    // Readers take a colon as the end of the name, and some do not resolve entities.
+    let is_plain = !stem.contains(['&', '<', '>', ':']);
+    let is_text = options.encoding == Encoding::Ascii || cfg!(not(feature = "hdf5")) || !is_plain;
+    let storage = match options.compression {
+        Compression::None => Storage::Plain,
+        _ => Storage::Zlib,
+    };
+    let heavy = Heavy { file: format!("{stem}.h5"), storage, root: Node::new(""), n_arrays: 0 };
+    let output = &mut Output::to_memory(&mut bytes, threads);
+    let mut sink = Sink { output, heavy: (!is_text).then_some(heavy) };
+    let lost = write(mesh, &mut sink)?;
+    let heavy = sink.heavy.map(|heavy| heavy.root.into_file()).transpose()?;
+    let mut files = vec![(String::new(), bytes)];
+    files.extend(heavy.map(|bytes| (".h5".to_owned(), bytes)));
+    Ok(Written { files, lost })
+}
+
+/// Where the XML goes, and where the numbers go if not into it.
+struct Sink<'s, 'o> {
+    output: &'s mut Output<'o>,
+    heavy: Option<Heavy>,
+}
+
+/// An HDF5 file to be written.
+struct Heavy {
+    file: String,
+    storage: Storage,
+    root: Node,
+    n_arrays: usize,
+}
+
+impl Sink<'_, '_> {
+    fn put(&mut self, xml: &str) -> Result<()> {
+        write_all(self.output, xml.as_bytes())
+    }
+
+    /// Writes a data item of numbers of the given shape.
+    fn item(&mut self, values: &Values, shape: &[usize]) -> Result<()> {
+        let [kind, bytes] = number_type(values).unwrap_or_default();
+        let dimensions = shape.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
+        let format = if self.heavy.is_some() { "HDF" } else { "XML" };
+        self.put(&format!(
+            "<DataItem Dimensions=\"{dimensions}\" NumberType=\"{kind}\" Precision=\"{bytes}\" Format=\"{format}\">"
+        ))?;
+        match &mut self.heavy {
+            None => {
+                self.put("\n")?;
+                write_text(self.output, values)?;
+            }
+            Some(heavy) => {
+                let name = format!("data{}", heavy.n_arrays);
+                heavy.n_arrays += 1;
+                // Chunks cannot be empty.
+                let storage = if values.is_empty() { Storage::Plain } else { heavy.storage };
+                heavy.root.array(&name, values.clone(), shape, storage);
+                let place = format!("{}:/{name}", heavy.file);
+                self.put(&place)?;
+            }
+        }
+        self.put("</DataItem>\n")
+    }
+}
+
+fn write(mesh: &Mesh, sink: &mut Sink<'_, '_>) -> Result<Vec<String>> {
     let (mesh, mut lost) = keep_cells(mesh, "XDMF", |kind| Topology::of(kind).is_some());
-    write_all(output, b"<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n<Grid Name=\"mesh\" GridType=\"Uniform\">\n")?;
-    names(output, &mesh.label_names, &mut lost)?;
-    write_all(output, b"<Geometry GeometryType=\"XYZ\">\n")?;
-    item(output, ["Float", "8"], &[mesh.points.len(), 3])?;
-    write_lines(output, mesh.points.as_flattened())?;
-    write_all(output, b"</DataItem>\n</Geometry>\n")?;
-    topology(output, &mesh.cells)?;
+    sink.put("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n")?;
+    sink.put("<Grid Name=\"mesh\" GridType=\"Uniform\">\n")?;
+    names(sink, &mesh.label_names, &mut lost)?;
+    sink.put("<Geometry GeometryType=\"XYZ\">\n")?;
+    sink.item(&Values::F64(mesh.points.as_flattened().to_vec()), &[mesh.points.len(), 3])?;
+    sink.put("</Geometry>\n")?;
+    topology(sink, &mesh.cells)?;
     let (labels, _) = label_fields(&mesh);
-    arrays(output, "Node", mesh.point_data.iter(), &mut lost)?;
-    arrays(output, "Cell", mesh.cell_data.iter().chain(&labels), &mut lost)?;
-    arrays(output, "Grid", mesh.field_data.iter(), &mut lost)?;
-    write_all(output, b"</Grid>\n</Domain>\n</Xdmf>\n")?;
+    arrays(sink, "Node", mesh.point_data.iter(), &mut lost)?;
+    arrays(sink, "Cell", mesh.cell_data.iter().chain(&labels), &mut lost)?;
+    arrays(sink, "Grid", mesh.field_data.iter(), &mut lost)?;
+    sink.put("</Grid>\n</Domain>\n</Xdmf>\n")?;
     Ok(lost)
 }
 
 /// Writes the names of labels as meshio reads them.
-fn names(output: &mut Output<'_>, names: &LabelNames, lost: &mut Vec<String>) -> Result<()> {
+fn names(sink: &mut Sink<'_, '_>, names: &LabelNames, lost: &mut Vec<String>) -> Result<()> {
     let all = [(3, &names.regions), (2, &names.patches)];
     let mut maps = String::new();
     for (dim, (label, name)) in
@@ -44,46 +119,31 @@ fn names(output: &mut Output<'_>, names: &LabelNames, lost: &mut Vec<String>) ->
     if maps.is_empty() {
         return Ok(());
     }
-    let text = format!("<Information Name=\"Information\"><![CDATA[<main>{maps}</main>]]></Information>\n");
-    write_all(output, text.as_bytes())
-}
-
-/// Begins a data item of numbers of a type and size, of the given shape.
-fn item(output: &mut Output<'_>, [kind, bytes]: [&str; 2], shape: &[usize]) -> Result<()> {
-    let shape: Vec<String> = shape.iter().map(usize::to_string).collect();
-    let dimensions = shape.join(" ");
-    let tag = format!(
-        "<DataItem Dimensions=\"{dimensions}\" NumberType=\"{kind}\" Precision=\"{bytes}\" Format=\"XML\">\n"
-    );
-    write_all(output, tag.as_bytes())
+    sink.put(&format!("<Information Name=\"Information\"><![CDATA[<main>{maps}</main>]]></Information>\n"))
 }
 
 /// Writes the cells: as rows of ids if all are of one kind with a fixed number of nodes, otherwise mixed.
-fn topology(output: &mut Output<'_>, cells: &Cells) -> Result<()> {
+fn topology(sink: &mut Sink<'_, '_>, cells: &Cells) -> Result<()> {
     let n = cells.len();
     let first = cells.kinds().first().copied().unwrap_or(CellKind::TETRA);
     let uniform = Topology::of(first).filter(|_| cells.kinds().iter().all(|&kind| kind == first));
     match uniform.zip(first.n_vertices()) {
         Some((topology, n_nodes)) => {
             let name = topology.names[0];
-            let tag = format!(
+            sink.put(&format!(
                 "<Topology TopologyType=\"{name}\" NumberOfElements=\"{n}\" NodesPerElement=\"{n_nodes}\">\n"
-            );
-            write_all(output, tag.as_bytes())?;
-            item(output, ["UInt", "4"], &[n, n_nodes])?;
-            write_lines::<u32>(output, cast_slice(cells.connectivity().items()))?;
+            ))?;
+            let ids = cells.connectivity().items().iter().map(|v| v.0);
+            sink.item(&Values::U32(ids.collect()), &[n, n_nodes])?;
         }
         None => {
-            write_all(
-                output,
-                format!("<Topology TopologyType=\"Mixed\" NumberOfElements=\"{n}\">\n").as_bytes(),
-            )?;
+            sink.put(&format!("<Topology TopologyType=\"Mixed\" NumberOfElements=\"{n}\">\n"))?;
             let numbers = mixed(cells);
-            item(output, ["UInt", "4"], &[numbers.len()])?;
-            write_lines(output, &numbers)?;
+            let n = numbers.len();
+            sink.item(&Values::U32(numbers), &[n])?;
         }
     }
-    write_all(output, b"</DataItem>\n</Topology>\n")
+    sink.put("</Topology>\n")
 }
 
 /// For each cell the number of its topology, the number of its nodes if that varies, and its nodes.
@@ -101,17 +161,13 @@ fn mixed(cells: &Cells) -> Vec<u32> {
 }
 
 fn arrays<'f>(
-    output: &mut Output<'_>,
+    sink: &mut Sink<'_, '_>,
     center: &str,
     fields: impl Iterator<Item = &'f Field>,
     lost: &mut Vec<String>,
 ) -> Result<()> {
-    let mut texts = Vec::new();
+    let (fields, texts): (Vec<&Field>, Vec<&Field>) = fields.partition(|f| number_type(&f.values).is_some());
     for field in fields {
-        let Some(number_type) = number_type(&field.values) else {
-            texts.push(field);
-            continue;
-        };
         let shape = match field.components {
             1 => "Scalar",
             3 => "Vector",
@@ -120,14 +176,12 @@ fn arrays<'f>(
             _ => "Matrix",
         };
         let name = escape_attribute(&field.name, lost);
-        let tag = format!("<Attribute Name=\"{name}\" AttributeType=\"{shape}\" Center=\"{center}\">\n");
-        write_all(output, tag.as_bytes())?;
+        sink.put(&format!("<Attribute Name=\"{name}\" AttributeType=\"{shape}\" Center=\"{center}\">\n"))?;
         match field.components {
-            1 => item(output, number_type, &[field.n_rows()])?,
-            n => item(output, number_type, &[field.n_rows(), n])?,
+            1 => sink.item(&field.values, &[field.n_rows()])?,
+            n => sink.item(&field.values, &[field.n_rows(), n])?,
         }
-        write_text(output, &field.values)?;
-        write_all(output, b"</DataItem>\n</Attribute>\n")?;
+        sink.put("</Attribute>\n")?;
     }
     lost.extend(lost_arrays("XDMF", "text", texts));
     Ok(())
