@@ -1,5 +1,5 @@
-"""MSH, STL, OBJ, Medit, Abaqus, TetGen, DOLFIN XML and SimVascular folders compared with Gmsh, meshio and
-VTK."""
+"""MSH, STL, OBJ, Medit, Abaqus, TetGen, SU2, Netgen, UNV, XDMF, DOLFIN XML and SimVascular folders
+compared with Gmsh, meshio, Netgen and VTK."""
 import gzip
 import itertools
 import os
@@ -12,7 +12,7 @@ import pytest
 import pyvista
 import vtk
 from conftest import data_folder
-from meshes import assert_same_array, assert_same_mesh, cells_of, tet_set, volumes
+from meshes import assert_same_array, assert_same_mesh, cell_array_of, cells_of, tet_set, volumes
 from vtk.util.numpy_support import vtk_to_numpy
 
 MSH_FORMS = list(itertools.product(["2.2", "4.1"], ["ascii", "binary"]))
@@ -613,6 +613,188 @@ def test_meshio_reads_its_own_tetgen_mesh_from_a_copy(motet, tmp_path):
         motet("convert", source.with_suffix(copy.suffix), copy)
         found, expected = meshio.read(copy), meshio.read(source)
         assert_same_mesh(found, expected, cell_data=["tetgen:ref"])
+
+
+@pytest.mark.parametrize("dim", [3, 2])
+def test_meshio_reads_an_su2_mesh_from_a_copy(motet, tmp_path, dim):
+    """In three dimensions and in two, with numbers of markers as labels, which are all that meshio reads."""
+    mesh = mixed_mesh(["tetra", "hexahedron", "wedge", "pyramid"] if dim == 3 else ["triangle", "quad"])
+    sides = mixed_mesh(["triangle", "quad"] if dim == 3 else ["line"], seed=1)
+    source, copy, other = tmp_path / "source.su2", tmp_path / "copy.su2", tmp_path / "other.msh"
+    types = {"line": 3, "triangle": 5, "quad": 9, "tetra": 10, "hexahedron": 12, "wedge": 13, "pyramid": 14}
+
+    def rows(blocks):
+        return "".join(" ".join(map(str, [types[b.type], *row])) + "\n" for b in blocks for row in b.data)
+
+    points = "".join(" ".join(map(repr, map(float, p[:dim]))) + "\n" for p in mesh.points)
+    markers = "".join(f"MARKER_TAG= {7 + i}\nMARKER_ELEMS= {len(b.data)}\n{rows([b])}" for i, b in enumerate(sides.cells))
+    source.write_text(f"NDIME= {dim}\nNELEM= {4 * len(mesh.cells)}\n{rows(mesh.cells)}NPOIN= 60\n{points}NMARK= {len(sides.cells)}\n{markers}")
+    motet("convert", source, copy)
+    expected = meshio.read(source)
+    assert_same_mesh(meshio.read(copy), expected)
+    motet("convert", source, other)
+    found = meshio.read(other)
+    assert_same_array(found.points[:, :dim], expected.points, "points")
+    for kind, cells in cells_of(expected).items():
+        # meshio takes prisms as they are; Gmsh and motet turn them.
+        assert_same_array(cells_of(found)[kind], cells[:, [0, 2, 1, 3, 5, 4]] if kind == "wedge" else cells, kind)
+        assert_same_array(cell_array_of(found, "gmsh:physical")[kind], cell_array_of(expected, "su2:tag")[kind], kind)
+
+
+@pytest.mark.parametrize("build", ["tets", "hexahedra", "prisms"])
+def test_su2_markers_are_the_groups_of_gmsh(motet, gmsh_session, tmp_path, build):
+    """Gmsh writes groups of surfaces as markers with their names."""
+    BUILDS[build]()
+    # Gmsh does not write all digits.
+    for tag, x in zip(*(part.reshape(-1, n) for part, n in zip(gmsh.model.mesh.getNodes()[:2], (1, 3)))):
+        gmsh.model.mesh.setNode(int(tag[0]), (x.round(9) + 0.0).tolist(), [])
+    points, elements, names = gmsh_content()
+    source, again, copy = (tmp_path / name for name in ("source.su2", "again.su2", "copy.msh"))
+    gmsh.write(str(source))
+    motet("convert", source, again)
+    motet("convert", again, copy)
+    copy_points, copy_elements, copy_names = opened(copy)
+
+    def located(points, elements, names):
+        return sorted((kind, tuple(map(tuple, points[list(nodes)])), [names[2, g].replace(" ", "_") for g in groups if kind in (2, 3)])
+                      for kind in set(elements) & {2, 3, 4, 5, 6} for nodes, _, groups in elements[kind] if groups or kind > 3)
+
+    ours, theirs = located(copy_points, copy_elements, copy_names), located(points, elements, names)
+    assert len(theirs) > 0
+    assert ours == theirs
+
+
+NETGEN_KINDS = ["line", "triangle", "quad", "triangle6", "quad8", "tetra", "pyramid", "wedge", "hexahedron", "tetra10"]
+
+
+@pytest.mark.parametrize("ending", ["vol", "vol.gz"])
+def test_meshio_reads_its_own_netgen_mesh_from_a_copy(motet, tmp_path, ending):
+    """All kinds on which Netgen and meshio agree: meshio has the nodes of second-order bricks in another order."""
+    mesh = mixed_mesh(NETGEN_KINDS)
+    mesh.cell_data = {"netgen:index": [np.arange(4) // 2 + 1 + i for i in range(len(mesh.cells))]}
+    mesh.field_data = {"blood": np.array([5, 3]), "wall": np.array([1, 2])}
+    source, copy, other = tmp_path / f"source.{ending}", tmp_path / f"copy.{ending}", tmp_path / "other.msh"
+    mesh.write(source)
+    motet("convert", source, copy)
+    found, expected = meshio.read(copy), meshio.read(source)
+    assert_same_mesh(found, expected)
+    for name, (number, dim) in mesh.field_data.items():
+        assert list(found.field_data[name]) == [number, dim]
+    motet("convert", source, other)
+    found = meshio.read(other)
+    for kind, cells in cells_of(expected).items():
+        assert_same_array(cells_of(found)[kind], cells_of(mesh)[kind], kind)
+        assert_same_array(cell_array_of(found, "gmsh:physical")[kind], cell_array_of(mesh, "netgen:index")[kind], kind)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_netgen_reads_its_own_mesh_from_a_copy(motet, tmp_path, order):
+    csg = pytest.importorskip("netgen.csg")
+    from netgen.meshing import Mesh
+    geometry = csg.CSGeometry()
+    left = csg.OrthoBrick(csg.Pnt(0, 0, 0), csg.Pnt(1, 1, 1)).bc("left wall").mat("left half")
+    geometry.Add(left)
+    geometry.Add(csg.OrthoBrick(csg.Pnt(1, 0, 0), csg.Pnt(2, 1, 1)).bc("right").mat("right"))
+    mesh = geometry.GenerateMesh(maxh=0.6)
+    if order == 2:
+        mesh.SecondOrder()
+    source, vtu, copy = tmp_path / "source.vol.gz", tmp_path / "mesh.vtu", tmp_path / "copy.vol"
+    mesh.Save(str(source))
+    motet("convert", source, vtu)
+    motet("convert", vtu, copy)
+
+    def content(path):
+        mesh = Mesh()
+        mesh.Load(str(path))
+        faces = [mesh.FaceDescriptor(e.index) for e in mesh.Elements2D()]
+        return ([p.p for p in mesh.Points()],
+                [(tuple(v.nr for v in e.points), mesh.GetMaterial(e.index)) for e in mesh.Elements3D()],
+                [(tuple(v.nr for v in e.points), f.bcname, f.domin, f.domout) for e, f in zip(mesh.Elements2D(), faces)],
+                {tuple(sorted(v.nr for v in e.points)[:2]) for e in mesh.Elements1D()})
+
+    for ours, theirs in zip(content(copy)[:3], content(source)[:3]):
+        assert ours == theirs
+    grid = pyvista.read(vtu)
+    assert (grid.compute_cell_sizes(length=False, area=False)["Volume"][grid.celltypes > 9] > 0).any()
+    if order == 1:
+        tets = grid.cells_dict[10]
+        assert (volumes(grid.points, tets) > 0).all()
+
+
+@pytest.mark.parametrize("build", BUILDS)
+def test_gmsh_reads_its_own_unv_mesh_from_a_copy(motet, gmsh_session, tmp_path, build):
+    """The copy has the same nodes and cells; groups of volume and surface cells are labels with names and numbers."""
+    gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 1)
+    BUILDS[build]()
+    points, elements, names = gmsh_content()
+    source, again, copy = (tmp_path / name for name in ("source.unv", "again.unv", "copy.msh"))
+    gmsh.write(str(source))
+    motet("convert", source, again)
+    motet("convert", again, copy)
+    copy_points, copy_elements, copy_names = opened(copy)
+    dims = dict.fromkeys([4, 5, 6, 11, 17, 18], 3) | dict.fromkeys([2, 3, 9, 16], 2)
+
+    def located(points, elements):
+        return sorted((kind, tuple(map(tuple, points[list(nodes)])), groups)
+                      for kind in set(elements) & set(dims) for nodes, _, groups in elements[kind] if groups)
+
+    ours, theirs = located(copy_points, copy_elements), located(points, elements)
+    assert len(theirs) > 0
+    assert ours == theirs
+    # Gmsh replaces blanks in names.
+    assert {key: name for key, name in copy_names.items() if key[0] > 1} == {
+        key: name.replace(" ", "_") for key, name in names.items() if key[0] > 1}
+    gmsh.clear()
+    gmsh.open(str(again))
+    found_points, found, _ = gmsh_content()
+    assert len(found_points) == len(points)
+    # Gmsh writes only elements in groups.
+    grouped = {kind: sum(bool(groups) for *_, groups in rows) for kind, rows in elements.items()}
+    for kind in set(found) & set(dims):
+        assert len(found[kind]) == grouped[kind]
+
+
+@pytest.mark.parametrize("data_format", ["XML", "HDF"])
+@pytest.mark.parametrize("kinds", [["tetra"], ["triangle"], ["tetra10"], ["line", "triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"]])
+def test_meshio_reads_its_own_xdmf_mesh_from_a_copy(motet, tmp_path, kinds, data_format):
+    if data_format == "HDF":
+        pytest.importorskip("h5py")
+    mesh = mixed_mesh(kinds)
+    rng = np.random.default_rng(4)
+    mesh.point_data = {"u": rng.normal(size=(60, 3)), "n": np.arange(60, dtype=np.int32)}
+    mesh.cell_data = {"q": [rng.normal(size=4) for _ in kinds], "t": [rng.normal(size=(4, 9)) for _ in kinds]}
+    source, copy = tmp_path / "source.xdmf", tmp_path / "copy.xdmf"
+    meshio.write(source, mesh, data_format=data_format)
+    motet("convert", source, copy)
+    assert_same_mesh(meshio.read(copy), meshio.read(source))
+
+
+def test_meshio_reads_names_of_labels_from_xdmf_files(motet, tmp_path):
+    source, copy = tmp_path / "source.msh", tmp_path / "copy.xdmf"
+    mesh = mixed_mesh(["triangle", "tetra"])
+    mesh.cell_data = {"gmsh:physical": [np.full(4, 3), np.full(4, 7)], "gmsh:geometrical": [np.full(4, 3), np.full(4, 7)]}
+    mesh.field_data = {"a <wall>": np.array([3, 2]), "blood": np.array([7, 3])}
+    meshio.write(source, mesh, file_format="gmsh22", binary=False)
+    motet("convert", source, copy)
+    found = meshio.read(copy)
+    assert {name: list(map(int, value)) for name, value in found.field_data.items()} == {"a <wall>": [3, 2], "blood": [7, 3]}
+
+
+@pytest.mark.parametrize("kinds", [["tetra"], ["triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"]])
+def test_vtk_reads_xdmf_files_of_motet(motet, tmp_path, kinds):
+    mesh = mixed_mesh(kinds)
+    mesh.point_data = {"u": np.random.default_rng(6).normal(size=(60, 3))}
+    source, copy = tmp_path / "source.vtu", tmp_path / "copy.xdmf"
+    mesh.write(source)
+    motet("convert", source, copy)
+    reader = vtk.vtkXdmfReader()
+    reader.SetFileName(str(copy))
+    reader.Update()
+    ours, theirs = pyvista.wrap(reader.GetOutputDataObject(0)), pyvista.read(source)
+    assert_same_array(np.asarray(ours.points, float), np.asarray(theirs.points, float), "points")
+    assert_same_array(ours.celltypes, theirs.celltypes, "kinds of cells")
+    assert_same_array(ours.cell_connectivity, theirs.cell_connectivity, "cells")
+    assert_same_array(ours.point_data["u"], theirs.point_data["u"], "u")
 
 
 @pytest.mark.parametrize("ending", ["stl", "obj", "ply", "off"])

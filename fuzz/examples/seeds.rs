@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use motet::Mesh;
-use motet::base::{Csr, VertexId};
+use motet::base::{Csr, Threads, VertexId};
 use motet::io::{self, Compression, Encoding, WriteOptions};
 use motet::mesh::{Cells, Field, Values, shapes};
 
@@ -14,13 +14,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
     let mut n_files = BTreeMap::new();
     for format in io::formats() {
-        let (Some(write), Some(extension)) = (format.write, format.extensions.first()) else { continue };
+        let (Some(_), Some(extension)) = (format.write, format.extensions.first()) else { continue };
         let target = extension.trim_start_matches('.').replace('.', "_");
         let folder = corpus.join(&target);
         fs::create_dir_all(&folder)?;
         for (name, mesh) in meshes() {
             for (k, options) in options().enumerate() {
-                let Ok(written) = write(&mesh, &options) else { continue };
+                let Ok(written) = format.to_files(&mesh, &options, &Threads::single()) else { continue };
                 fs::write(folder.join(format!("{name}_{k}")), &written.files[0].1)?;
                 *n_files.entry(target.clone()).or_insert(0) += 1;
                 if target == "vtu" {
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         }
     }
-    for (target, text) in [("pvd", PVD), ("dolfin", DOLFIN), ("tetgen", TETGEN)] {
+    for (target, text) in [("pvd", PVD), ("dolfin", DOLFIN), ("tetgen", TETGEN), ("opencarp", OPENCARP)] {
         let folder = corpus.join(target);
         fs::create_dir_all(&folder)?;
         fs::write(folder.join("two"), text)?;
@@ -92,6 +92,9 @@ const DOLFIN: &str = r#"<?xml version="1.0"?>
 /// The .node, .ele and .face files, separated by zero bytes.
 const TETGEN: &str = "5 3 1 1\n0 0 0 0 2 -1\n1 1 0 0 2 -1\n2 0 1 0 2 -1\n3 0 0 1 2 -1\n4 1 1 1 2 -1 # a comment\n\
     \02 4 1\n0 0 1 2 3 7\n1 1 2 3 4 8\n\02 1\n0 0 1 2 -1\n1 2 3 4 -2\n";
+
+/// The .pts, .elem and .lon files, separated by zero bytes.
+const OPENCARP: &str = "5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n\02\nTt 0 1 2 3 7\nPy 0 1 2 3 4\n\02\n1 0 0 0 1 0\n0 0 1 0.5 0 0\n";
 
 /// Small meshes with everything that a file may contain.
 fn meshes() -> Vec<(&'static str, Mesh)> {

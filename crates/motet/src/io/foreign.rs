@@ -32,11 +32,7 @@ const FOREIGN: &[ForeignFormat] = &[
         extensions: &[".e", ".ex2", ".exo", ".exii", ".g", ".gen"],
         remedy: MESHIO_HDF,
     },
-    ForeignFormat {
-        name: "an XDMF file",
-        extensions: &[".xdmf", ".xmf", ".xdmf2", ".xdmf3"],
-        remedy: MESHIO_HDF,
-    },
+    ForeignFormat { name: "an XDMF file of version 2", extensions: &[".xdmf2"], remedy: MESHIO_HDF },
     ForeignFormat {
         name: "a Nastran file",
         extensions: &[".bdf", ".nas", ".fem", ".nastran"],
@@ -44,8 +40,11 @@ const FOREIGN: &[ForeignFormat] = &[
     },
     ForeignFormat { name: "a MED file (Salome, Code_Aster)", extensions: &[".med"], remedy: MESHIO_HDF },
     ForeignFormat { name: "a MOAB file", extensions: &[".h5m"], remedy: MESHIO_HDF },
-    ForeignFormat { name: "an SU2 mesh", extensions: &[".su2"], remedy: MESHIO },
-    ForeignFormat { name: "a Netgen mesh", extensions: &[".vol", ".vol.gz"], remedy: MESHIO },
+    ForeignFormat {
+        name: "an openCARP mesh in binary form",
+        extensions: &[".bpts", ".belem", ".blon"],
+        remedy: "convert it to text with meshtool: meshtool convert -imsh=FILE -ifmt=carp_bin -omsh=mesh -ofmt=carp_txt",
+    },
     ForeignFormat { name: "a UGRID file", extensions: &[".ugrid"], remedy: MESHIO },
     ForeignFormat { name: "a FLAC3D grid", extensions: &[".f3grid"], remedy: MESHIO },
     ForeignFormat { name: "a Kratos model part", extensions: &[".mdpa"], remedy: MESHIO },
@@ -65,11 +64,6 @@ const FOREIGN: &[ForeignFormat] = &[
         name: "an LS-DYNA file",
         extensions: &[".k", ".key", ".dyn", ".d3plot"],
         remedy: PARAVIEW,
-    },
-    ForeignFormat {
-        name: "an I-DEAS universal file",
-        extensions: &[".unv"],
-        remedy: "open it in Gmsh or Salome: gmsh -3 -format msh41 FILE -o mesh.msh",
     },
     ForeignFormat {
         name: "an Ansys Mechanical archive",
@@ -134,7 +128,7 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xfd7zXZ\x00") || bytes.starts_with(b"BZh") {
         return named("a compressed file", "decompress it first");
     }
-    if bytes.starts_with(b"\x1f\x8b") && !is(".xml.gz") {
+    if bytes.starts_with(b"\x1f\x8b") && !extensions.iter().any(|e| e.ends_with(".gz")) {
         return named("a gzip file", "decompress it first: gunzip -c FILE");
     }
     if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && !is(".cgns") && !is(".vtkhdf") {
@@ -151,8 +145,8 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     }
     let head = &start[..start.len().min(400)];
     let has = |word: &[u8]| head.windows(word.len()).any(|w| w.eq_ignore_ascii_case(word));
-    if has(b"<xdmf") {
-        return named("an XDMF file", MESHIO_HDF);
+    if has(b"<xdmf") && !is(".xdmf") {
+        return named("an XDMF file", "give it the extension of its format: .xdmf");
     }
     if is(".mesh") && (start.starts_with(b"<") || start.starts_with(b"$MeshFormat")) {
         return Err(Error::input("is not a Medit mesh")
@@ -174,7 +168,7 @@ mod tests {
                 && of("a/Wing.EXO").contains("meshio convert Wing.EXO mesh.vtu")
         );
         assert!(
-            of("x.xdmf").contains("XDMF")
+            of("x.xdmf2").contains("XDMF")
                 && of("x.step").contains("gmsh")
                 && of("x.cas.h5").contains("ParaView")
         );

@@ -1,8 +1,10 @@
-//! Decompresses gzip files, up to a memory limit.
+//! Compresses gzip files, and decompresses them up to a memory limit.
 
-use std::io::Read as _;
+use std::io::{Read as _, Write as _};
 
+use flate2::Compression;
 use flate2::read::MultiGzDecoder;
+use flate2::write::GzEncoder;
 
 use crate::base::{Error, Result};
 use crate::io::memory_budget::MemoryBudget;
@@ -25,4 +27,12 @@ pub(super) fn decompress(bytes: &[u8]) -> Result<Vec<u8>> {
             .remedy("the file is truncated or damaged: get a new copy")
     })?;
     if content.len() as u64 > limit { Err(budget.exceeded()) } else { Ok(content) }
+}
+
+/// The content of a gzip file that holds `bytes`.
+pub(super) fn compress(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+    let infallible = "writing into memory does not fail";
+    encoder.write_all(bytes).expect(infallible);
+    encoder.finish().expect(infallible)
 }

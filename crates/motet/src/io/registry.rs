@@ -7,8 +7,8 @@ use crate::io::format::{Format, Notes, Write, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{can_have_folder, replace_all, replace_folder, replace_with};
 use crate::io::{
-    abaqus, cgns, dolfin, foreign, legacy, medit, msh, obj, off, ply, polymesh, simvascular, stl, tetgen,
-    vtkhdf, vtkxml,
+    abaqus, cgns, dolfin, foreign, legacy, medit, msh, netgen, obj, off, opencarp, ply, polymesh,
+    simvascular, stl, su2, tetgen, unv, vtkhdf, vtkxml, xdmf,
 };
 use crate::mesh::Mesh;
 
@@ -35,6 +35,12 @@ const FORMATS: &[Format] = &[
     medit::SOLB,
     abaqus::FORMAT,
     tetgen::FORMAT,
+    su2::FORMAT,
+    opencarp::FORMAT,
+    netgen::VOL,
+    netgen::VOL_GZ,
+    unv::FORMAT,
+    xdmf::FORMAT,
     dolfin::FORMAT,
     polymesh::FORMAT,
     simvascular::FORMAT,
@@ -190,6 +196,10 @@ pub fn write_on(
             return Ok(lost);
         }
         Write::Files(write) => write(mesh, options, threads).map_err(|e| e.in_file(path))?,
+        Write::Linked { linked, .. } => {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            linked(mesh, options, threads, &stem).map_err(|e| e.in_file(path))?
+        }
     };
     if format.is_folder() {
         refuse_full_folder(path)?;

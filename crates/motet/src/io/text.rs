@@ -2,7 +2,7 @@
 //!
 //! Lines are counted only when an error occurs, so that reading millions of numbers costs nothing extra.
 
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, VertexId};
 
 /// A position in a text, from which words are read.
 #[derive(Clone, Debug)]
@@ -129,6 +129,49 @@ impl<'a> Text<'a> {
             Some(x) => Ok(x),
             None => Err(self.unexpected(what, "a number in double precision", word)),
         }
+    }
+
+    /// Reads an integer from this line.
+    pub(super) fn int_in_line(&mut self, what: &str) -> Result<i64> {
+        let word = self.expect_in_line(what)?;
+        parse_int(word).ok_or_else(|| self.unexpected(what, "a whole number", word))
+    }
+
+    /// Reads a number from this line.
+    pub(super) fn float_in_line(&mut self, what: &str) -> Result<f64> {
+        let word = self.expect_in_line(what)?;
+        parse_float(word).ok_or_else(|| self.unexpected(what, "a number in double precision", word))
+    }
+
+    /// Reads a vertex of a cell from this line: one of `n_points` numbers from `first` on.
+    pub(super) fn vertex_in_line(&mut self, first: i64, n_points: usize) -> Result<VertexId> {
+        let id = self.int_in_line("vertex of a cell")?;
+        let place = id.checked_sub(first).and_then(|place| usize::try_from(place).ok());
+        place.filter(|&place| place < n_points).map(VertexId::new).ok_or_else(|| {
+            self.error(format!(
+                "a cell refers to vertex {id}, but there are {n_points} vertices, numbered from {first}"
+            ))
+            .remedy("the file is damaged: write it again")
+        })
+    }
+
+    fn expect_in_line(&mut self, what: &str) -> Result<&'a [u8]> {
+        self.word_in_line().ok_or_else(|| {
+            self.error(format!("expected {what}, found the end of the line"))
+                .remedy("the file is truncated or damaged: get a new copy")
+        })
+    }
+
+    /// Moves to the next word, on this or a later line; an error at the end of the text.
+    pub(super) fn start_row(&mut self, what: &str) -> Result<()> {
+        let word = self.expect(what)?;
+        self.at -= word.len();
+        Ok(())
+    }
+
+    /// Skips the rest of this line, up to its break.
+    pub(super) fn skip_line(&mut self) {
+        while self.word_in_line().is_some() {}
     }
 
     /// Reads the coordinates of a point.

@@ -1,4 +1,5 @@
-//! MSH, STL, OBJ, Medit, TetGen and DOLFIN files: written files are read back; damage is reported.
+//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, XDMF and DOLFIN files: written files are read
+//! back; damage is reported.
 
 use std::fs;
 use std::path::Path;
@@ -96,6 +97,73 @@ const ABAQUS_KINDS: &[CellKind] = &[
     CellKind::QUADRATIC_WEDGE,
     CellKind::QUADRATIC_HEXAHEDRON,
     CellKind::TRIQUADRATIC_HEXAHEDRON,
+];
+
+/// Surface cells, then volume cells.
+const NETGEN_KINDS: &[CellKind] = &[
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::QUADRATIC_TRIANGLE,
+    CellKind::QUADRATIC_QUAD,
+    CellKind::TETRA,
+    CellKind::PYRAMID,
+    CellKind::WEDGE,
+    CellKind::HEXAHEDRON,
+    CellKind::QUADRATIC_TETRA,
+    CellKind::QUADRATIC_LINEAR_WEDGE,
+    CellKind::QUADRATIC_PYRAMID,
+    CellKind::QUADRATIC_HEXAHEDRON,
+];
+
+const UNV_KINDS: &[CellKind] = &[
+    CellKind::LINE,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::TETRA,
+    CellKind::HEXAHEDRON,
+    CellKind::WEDGE,
+    CellKind::QUADRATIC_LINE,
+    CellKind::QUADRATIC_TRIANGLE,
+    CellKind::QUADRATIC_QUAD,
+    CellKind::QUADRATIC_TETRA,
+    CellKind::QUADRATIC_WEDGE,
+    CellKind::QUADRATIC_HEXAHEDRON,
+];
+
+const XDMF_KINDS: &[CellKind] = &[
+    CellKind::VERTEX,
+    CellKind::LINE,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::TETRA,
+    CellKind::PYRAMID,
+    CellKind::WEDGE,
+    CellKind::HEXAHEDRON,
+    CellKind::QUADRATIC_LINE,
+    CellKind::QUADRATIC_TRIANGLE,
+    CellKind::QUADRATIC_QUAD,
+    CellKind::BIQUADRATIC_QUAD,
+    CellKind::QUADRATIC_TETRA,
+];
+
+const OPENCARP_KINDS: &[CellKind] = &[
+    CellKind::LINE,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::TETRA,
+    CellKind::PYRAMID,
+    CellKind::WEDGE,
+    CellKind::HEXAHEDRON,
+];
+
+/// Volume cells, then those of patches.
+const SU2_KINDS: &[CellKind] = &[
+    CellKind::TETRA,
+    CellKind::HEXAHEDRON,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
 ];
 
 fn coordinate() -> impl Strategy<Value = f64> {
@@ -201,6 +269,98 @@ proptest! {
     }
 
     #[test]
+    fn su2_comes_back((mut mesh, labels) in meshes(SU2_KINDS, true)) {
+        let on_sides = labels.iter().zip(mesh.cells.kinds()).map(|(&l, kind)| if kind.dim() == Some(2) { l + 1 } else { 0 });
+        let mut tags: Vec<i32> = on_sides.collect();
+        // SU2 groups cells by patch.
+        tags.sort_unstable();
+        // A surface in the plane z = 0 would have two dimensions.
+        mesh.points[0][2] = 1.0;
+        let is_labelled = tags.iter().any(|&tag| tag != 0);
+        mesh.set_cell_field(Field::scalars("su2:tag", tags));
+        mesh.label_names.patches.insert(2, "wall".into());
+        let (bytes, lost) = print(".su2", &mesh, &WriteOptions::default());
+        prop_assert!(lost.iter().all(|l| l.contains("numbers of patches")), "{lost:?}");
+        let back = parse(".su2", &bytes).unwrap();
+        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+        prop_assert_eq!(&back.cells, &mesh.cells);
+        if is_labelled {
+            prop_assert_eq!(patch_names(&back), patch_names(&mesh));
+        }
+    }
+
+    #[test]
+    fn netgen_comes_back((mut mesh, labels) in meshes(NETGEN_KINDS, true)) {
+        // A surface in the plane z = 0 would have two dimensions.
+        mesh.points[0][2] = 1.0;
+        mesh.set_cell_field(Field::scalars("netgen:index", labels.iter().map(|label| label + 1).collect::<Vec<_>>()));
+        mesh.label_names.regions.insert(2, "the blood".into());
+        mesh.label_names.patches.insert(3, "wall".into());
+        for extension in [".vol", ".vol.gz"] {
+            let (bytes, lost) = print(extension, &mesh, &WriteOptions::default());
+            prop_assert!(lost.is_empty(), "{lost:?}");
+            let back = parse(extension, &bytes).unwrap();
+            prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+            prop_assert_eq!(&back.cells, &mesh.cells);
+            prop_assert_eq!(&back.label_names, &mesh.label_names);
+            prop_assert_eq!(back.cell_field("netgen:index"), mesh.cell_field("netgen:index").filter(|_| !labels.is_empty()));
+        }
+    }
+
+    #[test]
+    fn unv_comes_back((mut mesh, labels) in meshes(UNV_KINDS, false)) {
+        for (array, dim, first) in [("region", 3, 1), ("patch", 2, 7)] {
+            let on_dim = |(&label, kind): (&i32, &CellKind)| if kind.dim() == Some(dim) { first + label } else { 0 };
+            let ids: Vec<i32> = labels.iter().zip(mesh.cells.kinds()).map(on_dim).collect();
+            if ids.iter().any(|&id| id != 0) {
+                mesh.set_cell_field(Field::scalars(array, ids));
+            }
+        }
+        let (bytes, lost) = print(".unv", &mesh, &WriteOptions::default());
+        prop_assert!(lost.is_empty(), "{lost:?}");
+        let back = parse(".unv", &bytes).unwrap();
+        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+        prop_assert_eq!(&back.cells, &mesh.cells);
+        prop_assert_eq!(&back.cell_data, &mesh.cell_data);
+        prop_assert_eq!(&back.label_names, &mesh.label_names);
+    }
+
+    #[test]
+    fn xdmf_comes_back((mut mesh, labels) in meshes(XDMF_KINDS, false), seed in any::<u32>()) {
+        let values = |n: usize| (0..n).map(|i| f64::from(seed) / (i as f64 + 3.0)).collect::<Vec<_>>();
+        mesh.set_point_field(Field { name: "u v".into(), components: 3, values: values(3 * mesh.points.len()).into() });
+        mesh.set_cell_field(Field::scalars("region", labels.clone()));
+        mesh.set_cell_field(Field::scalars("patch", labels));
+        mesh.label_names.regions.insert(1, "the <blood>".into());
+        let (bytes, lost) = print(".xdmf", &mesh, &WriteOptions::default());
+        prop_assert!(lost.is_empty(), "{lost:?}");
+        let back = parse(".xdmf", &bytes).unwrap();
+        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+        prop_assert_eq!(&back.cells, &mesh.cells);
+        prop_assert_eq!(&back.point_data, &mesh.point_data);
+        prop_assert_eq!(&back.cell_data, &mesh.cell_data);
+        prop_assert_eq!(&back.label_names, &mesh.label_names);
+    }
+
+    #[test]
+    fn opencarp_comes_back((mut mesh, labels) in meshes(OPENCARP_KINDS, false)) {
+        mesh.set_cell_field(Field::scalars("elemTag", labels));
+        let vectors: Vec<Point> = (0..mesh.cells.len()).map(|i| [0.1, -0.0, i as f64]).collect();
+        mesh.set_cell_field(Field::vectors("fiber", &vectors));
+        let folder = tempfile::tempdir().unwrap();
+        let lost = write(folder.path().join("out.pts"), &mesh, &WriteOptions::default()).unwrap();
+        prop_assert!(lost.is_empty(), "{lost:?}");
+        for name in ["out.pts", "out.elem", "out.lon"] {
+            let back = read(folder.path().join(name)).unwrap();
+            prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+            prop_assert_eq!(&back.cells, &mesh.cells);
+            if !mesh.cells.is_empty() {
+                prop_assert_eq!(&back.cell_data, &mesh.cell_data);
+            }
+        }
+    }
+
+    #[test]
     fn tetgen_comes_back(
         (mut mesh, labels) in meshes(&[CellKind::TETRA, CellKind::TRIANGLE, CellKind::LINE], true),
         quadratic in any::<bool>(),
@@ -279,6 +439,10 @@ proptest! {
             (".mesh", WriteOptions::default()),
             (".meshb", WriteOptions::default()),
             (".inp", WriteOptions::default()),
+            (".su2", WriteOptions::default()),
+            (".vol", WriteOptions::default()),
+            (".unv", WriteOptions::default()),
+            (".xdmf", WriteOptions::default()),
             (".obj", WriteOptions::default()),
             (".stl", WriteOptions::default()),
             (".stl", WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() }),

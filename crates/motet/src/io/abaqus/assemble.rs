@@ -2,15 +2,14 @@
 
 use std::collections::HashMap;
 
-use super::NSET;
-use super::labels::{Named, NamedSets, Rank, set_arrays, set_labels};
 use super::line::Label;
 use super::model::Model;
 use super::scope::{Scope, Set};
-use super::sets::{Context, Members, Numbering, Placed, Runs, SetKind};
+use super::sets::{Context, Members, Numbering, Placed, SetKind};
 use super::surfaces::Facets;
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::Notes;
+use crate::io::named_sets::{NSET, Named, NamedSets, Rank, Runs, set_arrays, set_labels};
 use crate::mesh::{Cells, Mesh};
 
 /// Puts the instances, then the flat file or the assembly, into one mesh.
@@ -129,7 +128,12 @@ impl Collected {
         }
         if let Some(label) = scope.name.as_ref().filter(|_| self.are_several && !here.cells.is_empty()) {
             let name = label.shown.clone();
-            self.of_cells.add(Named { name, runs: vec![here.cells.clone()], rank: Rank::Instance });
+            self.of_cells.add(Named {
+                name,
+                number: 0,
+                runs: vec![here.cells.clone()],
+                rank: Rank::Instance,
+            });
         }
         Ok(())
     }
@@ -154,6 +158,6 @@ impl Collected {
             () if set.is_declared => Rank::Declared,
             () => Rank::OfElements,
         };
-        Some(Named { name: self.name_in(scope, &set.label), runs: runs.clone(), rank })
+        Some(Named { name: self.name_in(scope, &set.label), number: 0, runs: runs.clone(), rank })
     }
 }

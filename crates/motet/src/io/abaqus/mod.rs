@@ -25,7 +25,6 @@
 
 mod assemble;
 mod kinds;
-mod labels;
 mod line;
 mod model;
 mod names;
@@ -45,10 +44,3 @@ pub(super) const FORMAT: Format = Format {
     read: Some(read::read),
     write: Some(Write::File(write::write)),
 };
-
-/// Prefix of the name of an array that stands for a node set.
-const NSET: &str = "nset:";
-/// Prefix of the name of an array that stands for an element set.
-const ELSET: &str = "elset:";
-/// Prefix of the name of an array that stands for a surface.
-const SURFACE: &str = "surface:";

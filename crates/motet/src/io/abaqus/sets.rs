@@ -7,11 +7,9 @@ use super::line::{Reference, Target};
 use super::scope::{Entry, Sets};
 use crate::base::{Error, Result};
 use crate::io::format::Notes;
+use crate::io::named_sets::{Runs, merged};
 use crate::io::tags::Tags;
 use crate::mesh::Cells;
-
-/// Disjoint ascending ranges of indices of points or cells of a mesh.
-pub(super) type Runs = Vec<Range<u32>>;
 
 /// Maximum total number of runs, since sets of sets may repeat each other without limit.
 pub(super) const MAX_RUNS: usize = 1 << 26;
@@ -206,27 +204,9 @@ pub(super) fn no_set(key: &str) -> Error {
     Error::input(format!("set `{key}` is not defined")).remedy("the file is damaged: write it again")
 }
 
-/// Sorts runs and joins those that touch or overlap.
-pub(super) fn merged(mut runs: Runs) -> Runs {
-    runs.sort_unstable_by_key(|run| (run.start, run.end));
-    let mut out = Runs::new();
-    for run in runs {
-        match out.last_mut() {
-            Some(last) if run.start <= last.end => last.end = last.end.max(run.end),
-            _ => out.push(run),
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn touching_runs_are_joined() {
-        assert_eq!(merged(vec![5..6, 0..2, 2..3, 1..2, 6..9]), [0..3, 5..9]);
-    }
 
     #[test]
     fn a_range_finds_existing_numbers() {

@@ -5,21 +5,13 @@ use std::collections::{HashMap, HashSet};
 use super::kinds::faces;
 use super::line::Target;
 use super::scope::SurfaceDefinition;
-use super::sets::{Context, MAX_RUNS, Runs, merged, no_set};
+use super::sets::{Context, MAX_RUNS, no_set};
 use crate::base::{Error, Result, VertexId};
+use crate::io::facet_key::{FacetKey, facet_key};
 use crate::io::format::Notes;
+use crate::io::named_sets::{Runs, merged};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{Boundary, CellKind, Cells, corners};
-
-/// The corners of a facet in ascending order, which identify it.
-pub(super) type FacetKey = [u32; 4];
-
-pub(super) fn facet_key(corners: impl IntoIterator<Item = VertexId>) -> FacetKey {
-    let mut key = [u32::MAX; 4];
-    key.iter_mut().zip(corners).for_each(|(slot, v)| *slot = v.0);
-    key.sort_unstable();
-    key
-}
 
 /// The facets of surfaces, as existing cells of the mesh or as cells appended to it.
 pub(super) struct Facets<'m> {

@@ -1,20 +1,23 @@
 //! Writes nodes, elements by kind, sets and surfaces.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::io::Write as _;
 
 use super::kinds::{faces, vtk_to_abaqus, written_as};
-use super::names::{PATCH, REGION, numbers, one_line, written};
-use super::surfaces::{FacetKey, facet_key};
-use super::{ELSET, NSET, SURFACE};
+use super::names::{one_line, written};
 use crate::base::{Result, VertexId};
 use crate::io::cell_labels::{cell_labels, labels_cover};
+use crate::io::facet_key::{FacetKey, facet_key, have_same_orientation};
 use crate::io::format::WriteOptions;
+use crate::io::label_numbers::numbers;
+use crate::io::named_sets::{
+    ByLabel, ELSET, NSET, PATCH, REGION, SURFACE, Sets, by_label, element_sets, marks, sets_from_arrays,
+};
 use crate::io::output::{Output, write_all};
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::io::text::push_float;
 use crate::mesh::facets::facet_shapes;
-use crate::mesh::{CellKind, Field, Labels, Mesh, corners, unused_name};
+use crate::mesh::{CellKind, Field, Mesh, corners};
 
 /// Maximum number of entries in a line.
 const MAX_PER_LINE: usize = 16;
@@ -22,18 +25,17 @@ const MAX_PER_LINE: usize = 16;
 /// Maximum number of characters in a name.
 const MAX_NAME_LENGTH: usize = 80;
 
-/// Set names with the indices of their members.
-type Sets = Vec<(String, Vec<usize>)>;
-/// The name and the cells of each label.
-type ByLabel = BTreeMap<i32, (String, Vec<usize>)>;
-
 pub(super) fn write(mesh: &Mesh, _: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
     let (mesh, mut lost) = keep_cells(mesh, "Abaqus", |kind| written_as(kind).is_some());
     let mut out = b"*HEADING\nmesh written by motet\n".to_vec();
     nodes(&mut out, &mesh);
     elements(&mut out, &mesh);
-    let patches = by_label(mesh.patches(), PATCH);
-    let element_sets = element_sets(&mesh, &patches, &mut lost);
+    let (regions, patches) = (by_label(mesh.regions(), REGION), by_label(mesh.patches(), PATCH));
+    let mut renamed = Vec::new();
+    let element_sets = element_sets(&mesh, &regions, &patches, &mut renamed);
+    lost.extend(lost_numbers(&regions, &element_sets, REGION, "regions"));
+    lost.extend(lost_numbers(&patches, &element_sets, PATCH, "patches"));
+    lost.extend(renamed);
     let node_sets = sets_from_arrays(&mesh.point_data, NSET);
     sets(&mut out, "ELSET", &element_sets);
     sets(&mut out, "NSET", &node_sets);
@@ -95,80 +97,14 @@ fn push(out: &mut Vec<u8>, number: usize) {
     let _ = write!(out, "{number}");
 }
 
-fn by_label(labels: Option<Labels>, prefix: &str) -> ByLabel {
-    let labels = labels.unwrap_or_default();
-    let mut all = ByLabel::new();
-    for (cell, &id) in labels.ids.iter().enumerate().filter(|(_, id)| **id != 0) {
-        let name = || labels.names.get(&id).filter(|name| !name.is_empty()).cloned();
-        let set =
-            all.entry(id).or_insert_with(|| (name().unwrap_or_else(|| format!("{prefix}{id}")), Vec::new()));
-        set.1.push(cell);
-    }
-    all
-}
-
-/// Element sets made of labels and of `elset:` arrays, in this order.
-fn element_sets(mesh: &Mesh, patches: &ByLabel, lost: &mut Vec<String>) -> Sets {
-    let regions = by_label(mesh.regions(), REGION);
-    let mut sets = Sets::new();
-    let mut place_of: HashMap<String, usize> = HashMap::new();
-    for (name, cells) in regions.values().chain(patches.values()) {
-        let next = sets.len();
-        match *place_of.entry(name.clone()).or_insert(next) {
-            place if place < next => sets[place].1.extend(cells),
-            _ => sets.push((name.clone(), cells.clone())),
-        }
-    }
-    for (labels, prefix, what) in [(&regions, REGION, "regions"), (patches, PATCH, "patches")] {
-        let mut in_order: Vec<(i32, &str)> = labels.iter().map(|(&id, set)| (id, set.0.as_str())).collect();
-        in_order.sort_by_key(|(_, name)| place_of[*name]);
-        let names: Vec<&str> = in_order.iter().map(|label| label.1).collect();
-        if !numbers(&names, prefix).into_iter().eq(in_order.iter().map(|label| label.0)) {
-            lost.push(format!("numbers of {what} are not kept: Abaqus identifies {what} by name"));
-        }
-        if names.windows(2).any(|pair| pair[0] == pair[1]) {
-            lost.push(format!("{what} with the same name are merged"));
-        }
-    }
-    for (name, cells) in sets_from_arrays(&mesh.cell_data, ELSET) {
-        // The array holds the cells of a label, and curves in addition: both form one set.
-        let can_have_label = |&&cell: &&usize| mesh.cells.kinds()[cell].dim() > Some(1);
-        if let Some(&place) = place_of.get(&name)
-            && cells.iter().filter(can_have_label).eq(&sorted(&sets[place].1))
-        {
-            sets[place].1 = cells;
-            continue;
-        }
-        let unused = unused_name(&name, |name| place_of.contains_key(name));
-        if unused != name {
-            lost.push(format!("{ELSET}{name} is written as set {unused}: a label already has this name"));
-        }
-        place_of.insert(unused.clone(), sets.len());
-        sets.push((unused, cells));
-    }
-    sets
-}
-
-fn sorted(cells: &[usize]) -> Vec<usize> {
-    let mut cells = cells.to_vec();
-    cells.sort_unstable();
-    cells
-}
-
-/// The sets marked by arrays of 0 and 1, under the array names without the prefix.
-fn sets_from_arrays(fields: &[Field], prefix: &str) -> Sets {
-    let name = |f: &Field| f.name.strip_prefix(prefix).unwrap_or_default().to_owned();
-    let marked =
-        |f: &Field| marks(f, prefix).map(|marks| (0..marks.len()).filter(|&i| marks[i] == 1).collect());
-    fields.iter().filter_map(|f| Some((name(f), marked(f)?))).collect()
-}
-
-/// The values of an array that stands for a set; `None` for other arrays.
-fn marks(field: &Field, prefix: &str) -> Option<Vec<i64>> {
-    let is_named = field.name.len() > prefix.len() && field.name.starts_with(prefix);
-    let values =
-        field.values.to_i64().filter(|_| is_named && field.components == 1 && field.values.is_integer())?;
-    values.iter().all(|v| matches!(v, 0 | 1)).then_some(values)
+/// A message where labels get other numbers when the file is read.
+fn lost_numbers(labels: &ByLabel, sets: &Sets, prefix: &str, what: &str) -> Option<String> {
+    let place_of: HashMap<&str, usize> = sets.iter().zip(0..).map(|(set, i)| (set.0.as_str(), i)).collect();
+    let mut in_order: Vec<(i32, &str)> = labels.iter().map(|(&id, set)| (id, set.0.as_str())).collect();
+    in_order.sort_by_key(|(_, name)| place_of.get(name));
+    let names: Vec<&str> = in_order.iter().map(|label| label.1).collect();
+    let are_kept = numbers(&names, prefix).into_iter().eq(in_order.iter().map(|label| label.0));
+    (!are_kept).then(|| format!("numbers of {what} are not kept: Abaqus identifies {what} by name"))
 }
 
 fn sets(out: &mut Vec<u8>, keyword: &str, sets: &Sets) {
@@ -252,11 +188,6 @@ fn sides_of(mesh: &Mesh) -> HashMap<FacetKey, (usize, Option<Side>)> {
         }
     }
     sides
-}
-
-/// Whether two rings of the same vertices have the same orientation.
-fn have_same_orientation(a: &[VertexId], b: &[VertexId]) -> bool {
-    b.iter().position(|v| *v == a[0]).is_some_and(|at| b[(at + 1) % b.len()] == a[1])
 }
 
 fn report_losses(mesh: &Mesh, lost: &mut Vec<String>) {

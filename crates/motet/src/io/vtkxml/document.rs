@@ -14,28 +14,28 @@ const MAX_DEPTH: usize = 32;
 
 /// An element with its attributes, its children and its first non-blank piece of text.
 #[derive(Debug, Default)]
-pub(super) struct Element<'a> {
-    pub(super) name: String,
+pub(in crate::io) struct Element<'a> {
+    pub(in crate::io) name: String,
     attributes: Vec<(String, String)>,
-    pub(super) children: Vec<Element<'a>>,
-    pub(super) text: &'a [u8],
+    pub(in crate::io) children: Vec<Element<'a>>,
+    pub(in crate::io) text: &'a [u8],
     /// The line on which the element starts, from 1.
-    pub(super) line: usize,
+    pub(in crate::io) line: usize,
 }
 
 impl<'a> Element<'a> {
     /// The trimmed value of an attribute; `None` if it is absent or empty, as some writers leave it.
-    pub(super) fn attribute(&self, name: &str) -> Option<&str> {
+    pub(in crate::io) fn attribute(&self, name: &str) -> Option<&str> {
         self.attributes.iter().find(|(n, _)| n == name).map(|(_, v)| v.trim()).filter(|v| !v.is_empty())
     }
 
     /// The value of an attribute, with leading and trailing blanks.
-    pub(super) fn raw_attribute(&self, name: &str) -> Option<&str> {
+    pub(in crate::io) fn raw_attribute(&self, name: &str) -> Option<&str> {
         self.attributes.iter().find(|(n, _)| n == name).map(|(_, v)| v.as_str())
     }
 
     /// An attribute that is a count.
-    pub(super) fn count(&self, name: &str) -> Result<Option<usize>> {
+    pub(in crate::io) fn count(&self, name: &str) -> Result<Option<usize>> {
         let Some(text) = self.attribute(name) else { return Ok(None) };
         match text.parse::<usize>() {
             Ok(n) => Ok(Some(n)),
@@ -44,23 +44,26 @@ impl<'a> Element<'a> {
     }
 
     /// A required count.
-    pub(super) fn required_count(&self, name: &str) -> Result<usize> {
+    pub(in crate::io) fn required_count(&self, name: &str) -> Result<usize> {
         self.count(name)?
             .ok_or_else(|| Error::input(format!("the attribute {name} is missing")).at(self.place()))
     }
 
     /// The first child with this name.
-    pub(super) fn child(&self, name: &str) -> Option<&Element<'a>> {
+    pub(in crate::io) fn child(&self, name: &str) -> Option<&Element<'a>> {
         self.children.iter().find(|c| c.name == name)
     }
 
     /// All children with this name.
-    pub(super) fn children_named<'s>(&'s self, name: &'s str) -> impl Iterator<Item = &'s Element<'a>> {
+    pub(in crate::io) fn children_named<'s>(
+        &'s self,
+        name: &'s str,
+    ) -> impl Iterator<Item = &'s Element<'a>> {
         self.children.iter().filter(move |c| c.name == name)
     }
 
     /// The line and the name of the element, for messages.
-    pub(super) fn place(&self) -> String {
+    pub(in crate::io) fn place(&self) -> String {
         match self.attribute("Name") {
             Some(name) => format!("line {}, array {name}", self.line),
             None => format!("line {}, {}", self.line, self.name),
@@ -70,21 +73,21 @@ impl<'a> Element<'a> {
 
 /// The content of `<AppendedData>`.
 #[derive(Debug)]
-pub(super) struct Appended<'a> {
-    pub(super) base64: bool,
+pub(in crate::io) struct Appended<'a> {
+    pub(in crate::io) base64: bool,
     /// The bytes from the one after the `_` to the end of the file.
-    pub(super) bytes: &'a [u8],
+    pub(in crate::io) bytes: &'a [u8],
 }
 
 /// A parsed VTK file.
 #[derive(Debug)]
-pub(super) struct Document<'a> {
-    pub(super) root: Element<'a>,
-    pub(super) appended: Option<Appended<'a>>,
+pub(in crate::io) struct Document<'a> {
+    pub(in crate::io) root: Element<'a>,
+    pub(in crate::io) appended: Option<Appended<'a>>,
 }
 
 impl<'a> Document<'a> {
-    pub(super) fn parse(bytes: &'a [u8]) -> Result<Self> {
+    pub(in crate::io) fn parse(bytes: &'a [u8]) -> Result<Self> {
         let mut parser =
             Parser { reader: Reader::from_reader(bytes), bytes, counted: 0, line: 1, open: Vec::new() };
         parser.run()
@@ -135,6 +138,14 @@ impl<'a> Parser<'a> {
                     let text = self.bytes.get(start..end).unwrap_or_default().trim_ascii();
                     if let Some(parent) = self.open.last_mut().filter(|p| p.text.is_empty()) {
                         parent.text = text;
+                    }
+                }
+                Ok(Event::CData(_)) => {
+                    let end = self.reader.buffer_position() as usize;
+                    let text = self.bytes.get(start..end).unwrap_or_default();
+                    let text = text.strip_prefix(b"<![CDATA[").and_then(|text| text.strip_suffix(b"]]>"));
+                    if let Some(parent) = self.open.last_mut().filter(|p| p.text.is_empty()) {
+                        parent.text = text.unwrap_or_default().trim_ascii();
                     }
                 }
                 Ok(Event::End(_)) => {
@@ -210,13 +221,14 @@ mod tests {
 
     #[test]
     fn children_text_and_lines_are_found_up_to_the_appended_data() {
-        let text = b"<?xml version=\"1.0\"?>\n<!-- c -->\n<A x='1 &lt; 2'>\n<B/><B>\n 1 2 <C/> 3</B>\n<AppendedData encoding=\"raw\">\n _\x00<\xff";
+        let text = b"<?xml version=\"1.0\"?>\n<!-- c -->\n<A x='1 &lt; 2'>\n<B/><B>\n 1 2 <C/> 3</B>\n<D> <![CDATA[ <x> ]]></D><AppendedData encoding=\"raw\">\n _\x00<\xff";
         let document = Document::parse(text).unwrap();
         let root = &document.root;
         assert_eq!((root.name.as_str(), root.line, root.attribute("x")), ("A", 3, Some("1 < 2")));
         assert_eq!(root.children_named("B").count(), 2);
         assert_eq!(root.children[1].text, b"1 2");
         assert_eq!(root.children[1].line, 4);
+        assert_eq!(root.children[2].text, b"<x>");
         let appended = document.appended.unwrap();
         assert!(!appended.base64);
         assert_eq!(appended.bytes, b"\x00<\xff");

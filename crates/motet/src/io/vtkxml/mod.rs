@@ -34,7 +34,9 @@ use crate::base::{Error, Result, Threads};
 use crate::io::format::{Format, Input, Notes, Write};
 use crate::mesh::Mesh;
 
+pub(super) use document::{Document, Element};
 pub(super) use tail::Tail;
+pub(super) use writer::escape_attribute;
 
 /// Unstructured grids: cells of any kind.
 pub(super) const VTU: Format = Format {

@@ -288,20 +288,8 @@ impl<'a, 'o> Writer<'a, 'o> {
         Ok(self.lost)
     }
 
-    /// Escapes `text` for the value of an attribute.
     fn escaped(&mut self, text: &str) -> String {
-        let breaks = ['\t', '\n', '\r'];
-        let illegal =
-            |c: char| (c.is_control() && !breaks.contains(&c)) || matches!(c, '\u{fffe}' | '\u{ffff}');
-        let mut legal = Cow::Borrowed(text);
-        if text.contains(illegal) {
-            legal = Cow::Owned(text.replace(illegal, "?"));
-            self.lost.push(format!(
-                "the name {text:?} has characters that XML does not allow: they are replaced by question marks"
-            ));
-        }
-        let escaped = quick_xml::escape::escape(&*legal);
-        escaped.replace('\t', "&#9;").replace('\n', "&#10;").replace('\r', "&#13;")
+        escape_attribute(text, &mut self.lost)
     }
 
     fn note_zero_bytes(&mut self, name: &str, data: &Data<'_>) {
@@ -339,4 +327,19 @@ pub(super) fn plain(ids: &[VertexId]) -> &[u32] {
 /// The end of each list.
 pub(super) fn ends(lists: &Csr<VertexId>) -> &[u32] {
     &lists.offsets()[1..]
+}
+
+/// Escapes `text` for the value of an attribute.
+pub(in crate::io) fn escape_attribute(text: &str, lost: &mut Vec<String>) -> String {
+    let breaks = ['\t', '\n', '\r'];
+    let illegal = |c: char| (c.is_control() && !breaks.contains(&c)) || matches!(c, '\u{fffe}' | '\u{ffff}');
+    let mut legal = Cow::Borrowed(text);
+    if text.contains(illegal) {
+        legal = Cow::Owned(text.replace(illegal, "?"));
+        lost.push(format!(
+            "the name {text:?} has characters that XML does not allow: they are replaced by question marks"
+        ));
+    }
+    let escaped = quick_xml::escape::escape(&*legal);
+    escaped.replace('\t', "&#9;").replace('\n', "&#10;").replace('\r', "&#13;")
 }

@@ -1,66 +1,18 @@
 //! Decides which sets become labels; the others become arrays.
 
-use std::collections::HashMap;
+use std::collections::BTreeSet;
 
-use super::names::{PATCH, REGION, bare_number, numbers};
-use super::sets::Runs;
-use super::{ELSET, SURFACE};
+use super::{ELSET, Named, PATCH, REGION, Rank, SURFACE};
 use crate::io::format::Notes;
-use crate::mesh::{Field, Labels, Mesh, Values, unused_name};
-
-/// A set or surface, as indices of points or cells of the mesh.
-pub(super) struct Named {
-    pub(super) name: String,
-    pub(super) runs: Runs,
-    pub(super) rank: Rank,
-}
-
-/// Kinds of sets, in the order in which they are preferred as labels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rank {
-    Section,
-    Declared,
-    OfElements,
-    Instance,
-    Surface,
-}
+use crate::io::label_numbers::{bare_number, numbers};
+use crate::mesh::{Field, Labels, Mesh, Values};
 
 /// Maximum number of arrays for sets that labels do not express; each takes a byte per cell.
 const MAX_ARRAYS: usize = 1000;
 
-impl Named {
-    fn places(&self) -> impl Iterator<Item = usize> + '_ {
-        self.runs.iter().cloned().flatten().map(|place| place as usize)
-    }
-}
-
-/// Sets with distinct names.
-#[derive(Default)]
-pub(super) struct NamedSets {
-    pub(super) all: Vec<Named>,
-    by_name: HashMap<String, usize>,
-}
-
-impl NamedSets {
-    /// Adds a set under a unique name; a set with the same name and the same members is added only once.
-    pub(super) fn add(&mut self, mut set: Named) {
-        if self.by_name.get(&set.name).is_some_and(|&i| self.all[i].runs == set.runs) {
-            return;
-        }
-        set.name = unused_name(&set.name, |name| self.by_name.contains_key(name));
-        self.by_name.insert(set.name.clone(), self.all.len());
-        self.all.push(set);
-    }
-
-    /// Adds a surface, whose name may also be that of a set.
-    pub(super) fn add_surface(&mut self, name: String, runs: Runs) {
-        self.all.push(Named { name, runs, rank: Rank::Surface });
-    }
-}
-
 /// Turns sets and surfaces into labels, and into arrays where labels do not express them. Cells from index
 /// `n_own` on were added for surfaces.
-pub(super) fn set_labels(mesh: &mut Mesh, n_own: usize, sets: &[Named], notes: &Notes) {
+pub(in crate::io) fn set_labels(mesh: &mut Mesh, n_own: usize, sets: &[Named], notes: &Notes) {
     let dims: Vec<usize> = mesh.cells.kinds().iter().map(|kind| kind.dim().unwrap_or(0)).collect();
     let regions = labelling_sets(sets, &dims[..n_own], 3);
     let mut patches = labelling_sets(sets, &dims[..n_own], 2);
@@ -161,7 +113,7 @@ fn numbered(
     used.sort_unstable();
     used.dedup();
     let names: Vec<&str> = used.iter().map(|&set| sets[set as usize].name.as_str()).collect();
-    let numbers = numbers(&names, prefix);
+    let numbers = own_numbers(&used, sets).unwrap_or_else(|| numbers(&names, prefix));
     let id = |(&set, &d): (&u32, &usize)| match used.binary_search(&set) {
         Ok(i) if d == dim => numbers[i],
         _ => 0,
@@ -175,8 +127,15 @@ fn numbered(
     })
 }
 
+/// The numbers that the sets `used` have in the file, if they differ.
+fn own_numbers(used: &[u32], sets: &[Named]) -> Option<Vec<i32>> {
+    let numbers: Vec<i32> = used.iter().map(|&set| sets[set as usize].number).collect();
+    let mut known = BTreeSet::from([0]);
+    numbers.iter().all(|&number| known.insert(number)).then_some(numbers)
+}
+
 /// Adds an array of 0 and 1 for each set.
-pub(super) fn set_arrays<'s>(
+pub(in crate::io) fn set_arrays<'s>(
     fields: &mut Vec<Field>,
     prefix: &str,
     sets: impl Iterator<Item = &'s Named>,
