@@ -35,9 +35,9 @@ def test_a_report_is_a_row():
 def test_reports_of_steps_are_rows():
     moving = motet.MovingMesh(shapes.sphere_in_box())
     still = np.zeros_like(moving.driven_places)
-    reports = [moving.advance(0.1 * k, still) for k in range(3)]
+    reports = [moving.advance(k, still) for k in (1.0, 2.0, 3.0)]
     frame = motet.to_frame(reports)
-    assert list(frame["time"]) == [0.0, 0.1, 0.2]
+    assert list(frame["time"]) == [1.0, 2.0, 3.0]
     assert list(frame["quality.mean"]) == [step.quality.mean for step in reports]
 
 

@@ -51,7 +51,8 @@ class _Bars:
             from tqdm.auto import tqdm
         except ImportError:
             tqdm = _Line
-        self.bar_of, self.stage, self.bar = tqdm, "", None
+        self.bar_of, self.stage = tqdm, ""
+        self.bar: Any = None
 
     def __call__(self, stage: str, done: int, total: int) -> None:
         if stage != self.stage or self.bar is None:

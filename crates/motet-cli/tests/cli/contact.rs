@@ -269,7 +269,7 @@ fn what_cannot_be_measured_is_refused_with_the_place() {
         ("contact left.vtp nan.vtp -o gaps.vtp", 3, "point 1"),
         ("contact left.vtp gone.vtp -o gaps.vtp", 3, "gone.vtp"),
         ("contact left.vtp right.vtp -o left.vtp", 2, "overwrite"),
-        ("contact left.vtp right.vtp -o gone/gaps.vtp", 3, "gone"),
+        ("contact left.vtp right.vtp -o right.vtp/gaps.vtp", 3, "right.vtp is a file"),
         ("contact left.vtp right.vtp -o gaps.vtp --velocity w", 2, "`w`"),
         ("contact left.vtp right.vtp -o gaps.vtp --horizon 1", 2, "--velocity"),
         ("contact left.vtp right.vtp -o gaps.vtp --room wall", 2, "left, right"),

@@ -283,7 +283,7 @@ fn words_that_mean_nothing_are_refused() {
     assert!(call(&["--history", "out.vtu"]).contains("overwrite"));
     let docx = folder.motet(["remesh", "shaken.vtu", "-o", "out.docx"]).assert().code(2);
     assert!(stderr(&docx).contains(".vtu"));
-    let nowhere = ["remesh", "shaken.vtu", "-o", "out.vtu", "--history", "no/such/h.json"];
+    let nowhere = ["remesh", "shaken.vtu", "-o", "out.vtu", "--history", "flat.vtu/no/h.json"];
     assert!(stderr(&folder.motet(nowhere).assert().code(3)).contains("folder"));
     assert_eq!(folder.names(), ["flat.vtu", "shaken.vtu"]);
 }

@@ -21,8 +21,8 @@ pub struct OutputLock {
 }
 
 impl OutputLock {
-    /// Takes the lock of an output. On a file system without locks the result does not hold, see
-    /// [`Self::is_held`].
+    /// Takes the lock of an output, whose folder is made if it does not exist. On a file system without locks
+    /// the result does not hold, see [`Self::is_held`].
     ///
     /// # Errors
     /// If another process holds the lock, or the lock file beside the output cannot be created.
@@ -30,6 +30,7 @@ impl OutputLock {
         let name = output.file_name().unwrap_or_default().to_string_lossy();
         let path = folder_of(output).join(format!("{DRAFT}{name}.lock"));
         let failed = |e: std::io::Error| Error::output(&path, e);
+        std::fs::create_dir_all(folder_of(output)).map_err(failed)?;
         for _ in 0..MAX_ATTEMPTS {
             let open = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
             let mut file = open.map_err(failed)?;

@@ -279,7 +279,7 @@ mod tests {
     #[test]
     fn if_one_of_several_files_cannot_be_written_none_is_changed() {
         let folder = tempfile::tempdir().unwrap();
-        let (good, bad) = (folder.path().join("a"), folder.path().join("missing/b"));
+        let (good, bad) = (folder.path().join("a"), folder.path().join("a/b"));
         replace(&good, b"before").unwrap();
         assert!(replace_all(&[(good.clone(), b"after"), (bad, b"after")]).is_err());
         assert_eq!(std::fs::read(&good).unwrap(), b"before");

@@ -41,7 +41,6 @@ impl Output {
     pub(super) fn new(job: &Job) -> Result<Self> {
         let series_file = job.path(&job.output);
         let folder = series_file.parent().filter(|folder| !folder.as_os_str().is_empty());
-        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::output(&series_file, e))?;
         let mut series = SeriesWriter::new(&series_file, WriteOptions::default());
         let is_locked = series.lock()?;
         let name = series_file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
