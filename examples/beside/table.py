@@ -3,9 +3,9 @@
     python examples/beside/table.py
 
 Runs each script beside this one whose package is installed, and prints how many lines it has (without
-comments), what it made, judged by motet, and how long it took in a new process, imports included. The sphere
-has a volume of 0.5176 and edges of 0.02 to 0.06, so its own triangles are smaller than the size almost
-everywhere. pygalmesh is not among them: its wheel does not build without CGAL's sources.
+comments), what it made, judged by motet, and how long it took in a new process, imports included. The
+triangles of the sphere enclose 0.5183; Mmg alone moves them. Near the poles they are narrow, which makes tets
+at them bad where they stay. pygalmesh is not among them: it needs CGAL's sources to be installed.
 """
 import importlib.util
 import subprocess
