@@ -1,8 +1,12 @@
 //! The distribution of a quality measure over the tets of a mesh.
 
+#[cfg(feature = "suite")]
 use crate::base::{Point, Threads};
+#[cfg(feature = "suite")]
 use crate::geometry::quality::Measure;
+#[cfg(feature = "suite")]
 use crate::geometry::vector::in_range;
+#[cfg(feature = "suite")]
 use crate::mesh::{Mesh, OrientedTets};
 
 /// The distribution of a quality measure over a set of tets.
@@ -25,6 +29,7 @@ pub struct Spread {
 }
 
 /// The number of tets that a thread measures at a time.
+#[cfg(feature = "suite")]
 const CHUNK: usize = 1 << 13;
 
 impl Spread {
@@ -51,6 +56,7 @@ impl Spread {
     /// The distributions of some measures over the linear and quadratic tets of a mesh (of quadratic ones, by
     /// their corners), as oriented by their neighbours, in the order of the measures. Tets with a point that
     /// is not finite are left out; empty if no tets remain.
+    #[cfg(feature = "suite")]
     pub fn of_mesh(mesh: &Mesh, measures: &[Measure], threads: &Threads) -> Vec<(Measure, Self)> {
         let OrientedTets { mut tets, .. } = OrientedTets::of(mesh, threads);
         tets.retain(|tet| tet.iter().all(|v| in_range(mesh.points[v.index()])));
@@ -65,7 +71,7 @@ impl Spread {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "suite"))]
 mod tests {
     use super::*;
     use crate::base::Names;

@@ -22,6 +22,7 @@ mod edge_ratio;
 mod equiangle_skew;
 mod many;
 mod mean_ratio;
+#[cfg(feature = "suite")]
 mod measure;
 mod radii;
 mod scaled;
@@ -34,6 +35,7 @@ pub use edge_ratio::edge_ratio;
 pub use equiangle_skew::equiangle_skew;
 pub use many::{EasStar, eas_and_mean_ratio_of_each, eas_of_each};
 pub use mean_ratio::mean_ratio;
+#[cfg(feature = "suite")]
 pub use measure::Measure;
 pub use radii::{aspect_ratio, radius_ratio};
 pub use scaled_jacobian::scaled_jacobian;
