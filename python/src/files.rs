@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use motet::base::Names as _;
+use motet::base::{Names as _, Threads};
 use motet::geometry::quality::Measure;
 use motet::io::{self, WriteOptions};
 use motet::mesh::{CellKind, LabelNames, Labels, Summary};
@@ -82,8 +82,11 @@ pub(crate) fn formats() -> BTreeMap<String, bool> {
 /// The content, quality and defects of a mesh.
 #[pyfunction]
 pub(crate) fn summary(py: Python<'_>, mesh: MeshArg) -> PyResult<Bound<'_, PyAny>> {
-    let summary = call(py, || Ok(Summary::of(&mesh.0)))?;
-    report(py, &summary)
+    let of = || Summary::with_measures(&mesh.0, Measure::ALL, &Threads::single());
+    let (summary, measures) = call(py, || Ok(of()))?;
+    let all = report(py, &summary)?;
+    all.set_item("measures", report(py, &measures.into_iter().collect::<BTreeMap<_, _>>())?)?;
+    Ok(all)
 }
 
 /// A quality measure of each tet; NaN for other cells.

@@ -30,7 +30,7 @@ const SAMPLES: usize = 32;
 pub(crate) struct Label {
     /// The index of its array in the list of all arrays.
     pub(crate) array: usize,
-    /// Its number; `None` for the triangles without a patch, where others have one.
+    /// The number of the patch or region; `None` for the triangles that have no patch where others have one.
     pub(crate) id: Option<i32>,
     /// How opaque it is at first, from 0 to 1.
     pub(crate) opacity: f64,

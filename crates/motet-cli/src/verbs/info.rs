@@ -1,12 +1,13 @@
 //! `motet info`: the content, quality and defects of a mesh.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use motet::base::{Names as _, Threads};
 use motet::geometry::quality::Measure;
 use motet::io::{self, WriteOptions};
-use motet::mesh::{OrientedTets, Summary};
+use motet::mesh::{OrientedTets, Spread, Summary};
 use motet::{Error, Mesh};
 use serde::Serialize;
 use serde_json::json;
@@ -62,9 +63,14 @@ pub(crate) fn run(args: &InfoArgs, common: &Common, console: &Console) -> motet:
     let threads = common.threads()?;
     let (mesh, notes) = io::read_on(&args.mesh, &threads)?;
     notes.iter().for_each(|note| console.warn(note));
-    let summary = Summary::of(&mesh);
-    let report =
-        Report { file: &args.mesh, summary: &summary, arrays: Arrays::of(&mesh), passed_over: &notes };
+    let (summary, measures) = Summary::with_measures(&mesh, Measure::ALL, &threads);
+    let report = Report {
+        file: &args.mesh,
+        summary: &summary,
+        measures: measures.into_iter().collect(),
+        arrays: Arrays::of(&mesh),
+        passed_over: &notes,
+    };
     console.report(&report);
     report.print(console);
     if let Some(output) = &args.output {
@@ -92,6 +98,8 @@ struct Report<'a> {
     file: &'a Path,
     #[serde(flatten)]
     summary: &'a Summary,
+    /// Of the tets; empty if there are none.
+    measures: BTreeMap<Measure, Spread>,
     arrays: Arrays<'a>,
     passed_over: &'a [String],
 }
@@ -223,11 +231,13 @@ impl Report<'_> {
             short(quality.dihedral_deg.min),
             short(quality.dihedral_deg.max)
         ));
+        let worst =
+            |measure| self.measures.get(&measure).map_or_else(String::new, |spread| short(spread.worst));
         console.print(format_args!(
             "  scaled Jacobian at least {}; radius ratio at most {}, aspect ratio at most {} (as in Verdict)",
-            short(quality.scaled_jacobian.min),
-            short(quality.radius_ratio.max),
-            short(quality.aspect_ratio.max)
+            worst(Measure::ScaledJacobian),
+            worst(Measure::RadiusRatio),
+            worst(Measure::AspectRatio)
         ));
         console.print(format_args!(
             "  {} bad (EAS < 0.2), {} inverted or flat; worst: cell {} at ({x}, {y}, {z})",

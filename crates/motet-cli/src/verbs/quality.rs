@@ -77,7 +77,7 @@ impl<'a> Entry<'a> {
     fn of(file: &'a Path, measures: &[Measure], threads: &Threads, console: &Console) -> motet::Result<Self> {
         let (mesh, notes) = io::read_on(file, threads)?;
         notes.iter().for_each(|note| console.warn(note));
-        let summary = Summary::of(&mesh);
+        let (summary, measures) = Summary::with_measures(&mesh, measures, threads);
         let Some(quality) = &summary.quality else {
             return Err(Error::input("there are no tets")
                 .in_file(file)
@@ -91,7 +91,7 @@ impl<'a> Entry<'a> {
             inverted: summary.inverted,
             volume: summary.volume,
             edges: quality.edges,
-            measures: Spread::of_mesh(&mesh, measures, threads).into_iter().collect(),
+            measures: measures.into_iter().collect(),
         })
     }
 

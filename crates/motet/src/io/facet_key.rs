@@ -13,6 +13,6 @@ pub(super) fn facet_key(corners: impl IntoIterator<Item = VertexId>) -> FacetKey
 }
 
 /// Whether two rings of the same vertices have the same orientation.
-pub(super) fn have_same_orientation(a: &[VertexId], b: &[VertexId]) -> bool {
+pub(super) fn have_same_orientation<T: PartialEq>(a: &[T], b: &[T]) -> bool {
     b.iter().position(|v| *v == a[0]).is_some_and(|at| b[(at + 1) % b.len()] == a[1])
 }

@@ -96,15 +96,9 @@ pub type Read = fn(&Input<'_>) -> Result<Mesh>;
 pub enum Write {
     /// Writes one file, part by part; returns what the format could not hold, one message for the user each.
     File(fn(&Mesh, &WriteOptions, &mut Output<'_>) -> Result<Vec<String>>),
-    /// Makes several files, or those of a folder.
-    Files(fn(&Mesh, &WriteOptions, &Threads) -> Result<Written>),
-    /// Makes files that refer to each other by name.
-    Linked {
-        /// Writes all in one file, whose name does not matter.
-        alone: fn(&Mesh, &WriteOptions, &mut Output<'_>) -> Result<Vec<String>>,
-        /// Makes the files for a name without extension.
-        linked: fn(&Mesh, &WriteOptions, &Threads, &str) -> Result<Written>,
-    },
+    /// Makes several files, or those of a folder. The last argument is their name without extension, for
+    /// files that refer to each other; it is empty if they have no name.
+    Files(fn(&Mesh, &WriteOptions, &Threads, &str) -> Result<Written>),
 }
 
 /// A file format.
@@ -132,12 +126,12 @@ impl Format {
     /// If the format cannot be written, or cannot hold the mesh.
     pub fn to_files(&self, mesh: &Mesh, options: &WriteOptions, threads: &Threads) -> Result<Written> {
         match self.write.ok_or_else(|| self.only_read())? {
-            Write::File(write) | Write::Linked { alone: write, .. } => {
+            Write::File(write) => {
                 let mut bytes = Vec::new();
                 let lost = write(mesh, options, &mut Output::to_memory(&mut bytes, threads))?;
                 Ok(Written { files: vec![(String::new(), bytes)], lost })
             }
-            Write::Files(write) => write(mesh, options, threads),
+            Write::Files(write) => write(mesh, options, threads, ""),
         }
     }
 

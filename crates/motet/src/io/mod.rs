@@ -12,6 +12,8 @@ mod format;
 mod ghosts;
 mod gzip;
 mod hdf;
+#[cfg(test)]
+mod in_memory;
 mod label_numbers;
 mod labels;
 mod latin;

@@ -131,18 +131,10 @@ fn write(mesh: &Mesh, _: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::Threads;
-    use crate::io::format::Notes;
+    use crate::io::in_memory::parsed;
 
     fn parse(text: &str) -> (Result<Mesh>, Vec<String>) {
-        let notes = Notes::default();
-        let mesh = read(&Input {
-            path: std::path::Path::new("in.off"),
-            bytes: text.as_bytes(),
-            threads: &Threads::single(),
-            notes: &notes,
-        });
-        (mesh, notes.into_vec())
+        parsed(&FORMAT, "in.off", text.as_bytes())
     }
 
     #[test]

@@ -374,18 +374,11 @@ fn row(field: &Field, i: usize) -> Vec<(String, Property)> {
 mod tests {
     use super::*;
     use crate::base::Threads;
-    use crate::io::format::Notes;
+    use crate::io::in_memory::parsed;
     use crate::mesh::shapes;
 
     fn parse(bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
-        let notes = Notes::default();
-        let mesh = read(&Input {
-            path: std::path::Path::new("in.ply"),
-            bytes,
-            threads: &Threads::single(),
-            notes: &notes,
-        });
-        (mesh, notes.into_vec())
+        parsed(&FORMAT, "in.ply", bytes)
     }
 
     fn full() -> Mesh {

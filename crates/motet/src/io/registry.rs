@@ -195,10 +195,9 @@ pub fn write_on(
             lost.extend(note);
             return Ok(lost);
         }
-        Write::Files(write) => write(mesh, options, threads).map_err(|e| e.in_file(path))?,
-        Write::Linked { linked, .. } => {
+        Write::Files(write) => {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-            linked(mesh, options, threads, &stem).map_err(|e| e.in_file(path))?
+            write(mesh, options, threads, &stem).map_err(|e| e.in_file(path))?
         }
     };
     if format.is_folder() {

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, VertexId};
+use crate::mesh::{CellKind, Cells};
 
 /// The index of each number.
 #[derive(Debug)]
@@ -65,6 +66,32 @@ impl Tags {
             Self::Sparse(places) => places.get(&number).copied(),
         }
     }
+}
+
+/// Appends elements as cells: each with its number and kind, and the numbers of its nodes one after the other
+/// in `nodes`, of which `vertex` is the vertex.
+///
+/// # Errors
+/// If a node does not exist.
+pub(super) fn push_elements(
+    cells: &mut Cells,
+    elements: impl Iterator<Item = (u64, CellKind)>,
+    nodes: &[u64],
+    vertex: impl Fn(u64) -> Option<u32>,
+) -> Result<()> {
+    let mut rest = nodes;
+    for (element, kind) in elements {
+        let (own, tail) = rest.split_at(kind.n_vertices().unwrap_or(0));
+        rest = tail;
+        let vertex = |&node: &u64| {
+            vertex(node).map(VertexId).ok_or_else(|| {
+                Error::input(format!("element {element} refers to node {node}, which does not exist"))
+                    .remedy("the file is truncated or damaged: write it again")
+            })
+        };
+        cells.push(kind, own.iter().map(vertex).collect::<Result<Vec<_>>>()?);
+    }
+    Ok(())
 }
 
 #[cfg(test)]

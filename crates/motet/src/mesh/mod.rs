@@ -55,8 +55,8 @@ pub use qualities::Qualities;
 pub use seams::{open_edges, seamless, seams};
 pub use spread::Spread;
 pub use summary::{
-    BAD_EAS, BoundarySummary, EasSummary, MaxMean, MinMean, PatchSummary, QualitySummary, Range,
-    RegionSummary, Summary,
+    BAD_EAS, BoundarySummary, EasSummary, MinMean, PatchSummary, QualitySummary, Range, RegionSummary,
+    Summary,
 };
 pub use surface::Surface;
 pub use tet_mesh::TetMesh;

@@ -28,10 +28,6 @@ pub struct Spread {
     pub mean: f64,
 }
 
-/// The number of tets that a thread measures at a time.
-#[cfg(feature = "suite")]
-const CHUNK: usize = 1 << 13;
-
 impl Spread {
     /// The distribution of some values, which are reordered; `None` if there are none.
     pub fn of_values(values: &mut [f64], is_better_if_larger: bool) -> Option<Self> {
@@ -53,18 +49,19 @@ impl Spread {
         Some(Self { worst, p1, p5, median, mean })
     }
 
-    /// The distributions of some measures over the linear and quadratic tets of a mesh (of quadratic ones, by
-    /// their corners), as oriented by their neighbours, in the order of the measures. Tets with a point that
-    /// is not finite are left out; empty if no tets remain.
+    /// The distributions of some measures over tets as they are oriented, in the order of the measures. Tets
+    /// with a point that is not finite are left out; empty if no tets remain.
     #[cfg(feature = "suite")]
-    pub fn of_mesh(mesh: &Mesh, measures: &[Measure], threads: &Threads) -> Vec<(Measure, Self)> {
-        let OrientedTets { mut tets, .. } = OrientedTets::of(mesh, threads);
-        tets.retain(|tet| tet.iter().all(|v| in_range(mesh.points[v.index()])));
-        let corners = |tet: usize| -> [Point; 4] { tets[tet].map(|v| mesh.points[v.index()]) };
+    pub(crate) fn of_tets(
+        mesh: &Mesh,
+        tets: &OrientedTets,
+        measures: &[Measure],
+        threads: &Threads,
+    ) -> Vec<(Measure, Self)> {
+        let corners = (0..tets.tets.len()).map(|tet| tets.corners(tet, &mesh.points));
+        let finite: Vec<[Point; 4]> = corners.filter(|tet| tet.iter().all(|&p| in_range(p))).collect();
         let of = |measure: Measure| {
-            let mut values = threads.in_runs(tets.len(), CHUNK, |(): &mut (), run| {
-                run.map(|tet| measure.of_tet(corners(tet))).collect()
-            });
+            let mut values = threads.map(finite.len(), |tet| measure.of_tet(finite[tet]));
             Some((measure, Self::of_values(&mut values, measure.is_better_if_larger())?))
         };
         measures.iter().filter_map(|&measure| of(measure)).collect()
@@ -75,8 +72,8 @@ impl Spread {
 mod tests {
     use super::*;
     use crate::base::Names;
-    use crate::mesh::Qualities;
     use crate::mesh::shapes::sphere_in_box;
+    use crate::mesh::{Qualities, Summary};
 
     #[test]
     fn the_worst_is_the_least_or_the_largest() {
@@ -91,8 +88,7 @@ mod tests {
     #[test]
     fn any_number_of_threads_gives_the_same_bits_and_those_of_the_summary() {
         let mesh = sphere_in_box(10, 6);
-        assert!(mesh.cells.len() > 2 * CHUNK);
-        let of = |n| Spread::of_mesh(&mesh, Measure::ALL, &Threads::new(n).unwrap());
+        let of = |n| Summary::with_measures(&mesh, Measure::ALL, &Threads::exactly(n).unwrap()).1;
         let one = of(1);
         assert_eq!(one.len(), Measure::ALL.len());
         assert!([2, 5].into_iter().all(|n| of(n) == one));

@@ -3,8 +3,12 @@
 use std::collections::BTreeMap;
 
 use crate::base::{CellId, Point, Threads, VertexId};
+#[cfg(feature = "suite")]
+use crate::geometry::quality::Measure;
 use crate::geometry::vector::{distance, in_range};
 use crate::geometry::{quality, triangle};
+#[cfg(feature = "suite")]
+use crate::mesh::Spread;
 use crate::mesh::adjacency::Facets;
 use crate::mesh::check::{Defect, DefectKind, SurfaceFacets, check_with, is_closed, is_conforming};
 use crate::mesh::curved::CurvedSummary;
@@ -124,14 +128,6 @@ pub struct QualitySummary {
     pub dihedral_deg: Range,
     /// `12 (3V)^(2/3) / sum of squared edge lengths`.
     pub mean_ratio: MinMean,
-    /// Scaled Jacobian, as in Verdict: 1 regular, 0 flat.
-    pub scaled_jacobian: MinMean,
-    /// Radius of the circumsphere over three times that of the insphere, as in Verdict: 1 regular, larger
-    /// otherwise.
-    pub radius_ratio: MaxMean,
-    /// Longest edge over the radius of the insphere, divided by `2 sqrt(6)`, as in Verdict: 1 regular, larger
-    /// otherwise.
-    pub aspect_ratio: MaxMean,
     /// Quality statistics over all tets.
     pub distribution: Qualities,
     /// The shortest, the median and the longest edge length.
@@ -181,43 +177,30 @@ pub struct MinMean {
     pub mean: f64,
 }
 
-/// The largest value and the mean.
-#[derive(Clone, Debug)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct MaxMean {
-    /// The largest.
-    pub max: f64,
-    /// The mean.
-    pub mean: f64,
-}
-
-impl MinMean {
-    const NOTHING: Self = Self { min: f64::INFINITY, mean: 0.0 };
-
-    /// Adds a value; the mean is a sum until it is divided.
-    fn add(&mut self, value: f64) {
-        self.min = self.min.min(value);
-        self.mean += value;
-    }
-}
-
-impl MaxMean {
-    const NOTHING: Self = Self { max: f64::NEG_INFINITY, mean: 0.0 };
-
-    /// Adds a value; the mean is a sum until it is divided.
-    fn add(&mut self, value: f64) {
-        self.max = self.max.max(value);
-        self.mean += value;
-    }
-}
-
 impl Summary {
     /// Summarises a mesh; about two seconds for a million tets.
     pub fn of(mesh: &Mesh) -> Self {
+        Self::of_oriented(mesh, &OrientedTets::of(mesh, &Threads::single()))
+    }
+
+    /// Summarises a mesh, and how some quality measures of its linear and quadratic tets (of quadratic ones,
+    /// by their corners) are distributed, in the order of the measures. Tets with a point that is not finite
+    /// are left out; no distribution if no tets remain.
+    #[cfg(feature = "suite")]
+    pub fn with_measures(
+        mesh: &Mesh,
+        measures: &[Measure],
+        threads: &Threads,
+    ) -> (Self, Vec<(Measure, Spread)>) {
+        let tets = OrientedTets::of(mesh, threads);
+        let spreads = Spread::of_tets(mesh, &tets, measures, threads);
+        (Self::of_oriented(mesh, &tets), spreads)
+    }
+
+    fn of_oriented(mesh: &Mesh, tets: &OrientedTets) -> Self {
         let boundary = Boundary::of(&mesh.cells);
-        let tets = OrientedTets::of(mesh, &Threads::single());
-        let defects = check_with(mesh, &boundary, &tets);
-        let volumes = finite_volumes(mesh, &tets);
+        let defects = check_with(mesh, &boundary, tets);
+        let volumes = finite_volumes(mesh, tets);
         let count = |kind| defects.iter().find(|d| d.kind == kind).map_or(0, |d| d.count);
         let surface_cells = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
         let has_volume = mesh.cells.dim() == Some(3);
@@ -233,7 +216,7 @@ impl Summary {
             triangles: if has_volume { None } else { triangle_shapes(mesh) },
             boundary: has_volume
                 .then(|| BoundarySummary { facets: boundary.len(), vertices: boundary.vertices.len() }),
-            quality: tet_quality(mesh, &tets),
+            quality: tet_quality(mesh, tets),
             curved: CurvedSummary::of(mesh),
             inverted: count(DefectKind::InvertedCell)
                 + count(DefectKind::FlatCell)
@@ -374,22 +357,14 @@ impl QualitySummary {
             histogram: [0; 11],
         };
         let dihedral_deg = Range { min: f64::INFINITY, max: f64::NEG_INFINITY };
-        Self {
-            eas,
-            dihedral_deg,
-            mean_ratio: MinMean::NOTHING,
-            scaled_jacobian: MinMean::NOTHING,
-            radius_ratio: MaxMean::NOTHING,
-            aspect_ratio: MaxMean::NOTHING,
-            distribution: Qualities::default(),
-            edges: [0.0; 3],
-        }
+        let mean_ratio = MinMean { min: f64::INFINITY, mean: 0.0 };
+        Self { eas, dihedral_deg, mean_ratio, distribution: Qualities::default(), edges: [0.0; 3] }
     }
 
-    /// Adds a tet and returns its EAS. Until [`Self::finished`] is called, means are sums, angles are in
-    /// radians, and the distribution is not set.
+    /// Adds a tet and returns its EAS. Until [`Self::finished`] is called, the mean ratio is a sum, angles
+    /// are in radians, and the distribution is not set.
     fn add(&mut self, cell: CellId, tet: [Point; 4]) -> f64 {
-        let eas = quality::eas(tet);
+        let (eas, mean_ratio) = (quality::eas(tet), quality::mean_ratio(tet));
         if eas < self.eas.min {
             self.eas.min = eas;
             self.eas.worst_cell = cell;
@@ -399,20 +374,13 @@ impl QualitySummary {
         let [low, high] = quality::dihedral::min_max(tet);
         self.dihedral_deg.min = self.dihedral_deg.min.min(low);
         self.dihedral_deg.max = self.dihedral_deg.max.max(high);
-        self.mean_ratio.add(quality::mean_ratio(tet));
-        self.scaled_jacobian.add(quality::scaled_jacobian(tet));
-        self.radius_ratio.add(quality::radius_ratio(tet));
-        self.aspect_ratio.add(quality::aspect_ratio(tet));
+        self.mean_ratio.min = self.mean_ratio.min.min(mean_ratio);
+        self.mean_ratio.mean += mean_ratio;
         eas
     }
 
     /// Completes the summary. `all` holds the EAS of all tets, and is reordered.
     fn finished(mut self, all: &mut [f64], judged: &Judged) -> Self {
-        let n = all.len() as f64;
-        for mean in [&mut self.scaled_jacobian.mean, &mut self.radius_ratio.mean, &mut self.aspect_ratio.mean]
-        {
-            *mean /= n;
-        }
         let all = Qualities::of_values(all, self.mean_ratio.mean).unwrap_or_default();
         self.eas.percentiles = [all.p1, all.p5, all.median];
         (self.eas.bad, self.eas.layers) = (judged.bad.len(), judged.layers.len());

@@ -14,10 +14,10 @@ pub fn radius_ratio(tet: [Point; 4]) -> f64 {
     let tet = Scaled::new(tet);
     let [a, b, c, d] = tet.points;
     let [b, c, d] = [b, c, d].map(|p| sub(p, a));
-    // 12 V R
+    // The length of this vector is 12 V R.
     let [x, y, z] = [(b, cross(c, d)), (c, cross(d, b)), (d, cross(b, c))].map(|(p, n)| scale(n, dot(p, p)));
     let around = norm(add(add(x, y), z));
-    // V is 1/6 of this, and r is 3 V over the area.
+    // The radius r is 3 V over the area of the facets.
     let volume_6 = tet.volume_6();
     at_most_largest(around * facet_area(&tet), 3.0 * volume_6 * volume_6)
 }

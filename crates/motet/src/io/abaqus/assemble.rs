@@ -10,6 +10,7 @@ use super::surfaces::Facets;
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::Notes;
 use crate::io::named_sets::{NSET, Named, NamedSets, Rank, Runs, set_arrays, set_labels};
+use crate::io::tags::push_elements;
 use crate::mesh::{Cells, Mesh};
 
 /// Puts the instances, then the flat file or the assembly, into one mesh.
@@ -78,19 +79,8 @@ fn put(mesh: &mut Mesh, scope: &Scope) -> Result<Placed> {
     }
     mesh.points.extend(scope.points.iter().map(|&p| scope.placement.apply(p)));
     let first = mesh.cells.len() as u32;
-    let mut rest = scope.nodes.as_slice();
-    for (id, &kind) in scope.element_ids.iter().zip(&scope.kinds) {
-        let (ids, tail) = rest.split_at(kind.n_vertices().unwrap_or(0));
-        rest = tail;
-        let vertex = |&node: &u64| {
-            nodes.place(node).map(VertexId).ok_or_else(|| {
-                Error::input(format!("element {id} refers to node {node}, which does not exist"))
-                    .remedy("the file is truncated or damaged: write it again")
-            })
-        };
-        let vertices: Vec<VertexId> = ids.iter().map(vertex).collect::<Result<_>>()?;
-        mesh.cells.push(kind, vertices);
-    }
+    let scoped = scope.element_ids.iter().copied().zip(scope.kinds.iter().copied());
+    push_elements(&mut mesh.cells, scoped, &scope.nodes, |node| nodes.place(node))?;
     let cells = first..mesh.cells.len() as u32;
     Ok(Placed { nodes, elements, cells, node_sets: Members::default(), element_sets: Members::default() })
 }

@@ -1,29 +1,23 @@
 use std::path::Path;
 
 use super::*;
-use crate::base::{Result, Threads, VertexId};
-use crate::io::format::{Input, Notes, WriteOptions};
+use crate::base::{Threads, VertexId};
+use crate::io::WriteOptions;
+use crate::io::in_memory::{parsed, printed};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
-fn parse_at(path: &Path, bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
-    let notes = Notes::default();
-    let mesh =
-        crate::io::read_as(&FORMAT, &Input { path, bytes, threads: &Threads::single(), notes: &notes });
-    (mesh, notes.into_vec())
-}
-
 fn parse(text: &str) -> (Mesh, Vec<String>) {
-    let (mesh, notes) = parse_at(Path::new("in.inp"), text.as_bytes());
+    let (mesh, notes) = parsed(&FORMAT, "in.inp", text.as_bytes());
     (mesh.unwrap(), notes)
 }
 
 fn error_of(text: &str) -> String {
-    parse_at(Path::new("in.inp"), text.as_bytes()).0.unwrap_err().to_string()
+    parsed(&FORMAT, "in.inp", text.as_bytes()).0.unwrap_err().to_string()
 }
 
 fn print(mesh: &Mesh) -> (String, Vec<String>) {
-    let written = FORMAT.to_files(mesh, &WriteOptions::default(), &Threads::single()).unwrap();
-    (String::from_utf8(written.files.into_iter().next().unwrap().1).unwrap(), written.lost)
+    let (bytes, lost) = printed(&FORMAT, mesh, &WriteOptions::default());
+    (String::from_utf8(bytes).unwrap(), lost)
 }
 
 fn ids(mesh: &Mesh, array: &str) -> Vec<i64> {
@@ -356,10 +350,10 @@ fn truncated_and_damaged_files_never_panic() {
     for text in [flat(), PARTS.to_owned()] {
         let bytes = text.as_bytes();
         let check = |bytes: &[u8]| {
-            if let Ok(mesh) = parse_at(Path::new("in.inp"), bytes).0 {
+            if let Ok(mesh) = parsed(&FORMAT, Path::new("in.inp"), bytes).0 {
                 mesh.validate().unwrap();
                 let again = FORMAT.to_files(&mesh, &WriteOptions::default(), &Threads::single()).unwrap();
-                parse_at(Path::new("in.inp"), &again.files[0].1).0.unwrap();
+                parsed(&FORMAT, Path::new("in.inp"), &again.files[0].1).0.unwrap();
             }
         };
         (0..bytes.len()).for_each(|n| check(&bytes[..n]));

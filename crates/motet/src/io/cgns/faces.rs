@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use crate::base::{Csr, Error, Result, rising_list};
 use crate::io::cgns::parts::Part;
+use crate::io::facet_key::have_same_orientation;
 use crate::mesh::adjacency::{FacetUse, Facets};
 use crate::mesh::{CellKind, Mesh, corners};
 
@@ -86,9 +87,4 @@ fn key(ring: &[u32]) -> Vec<u32> {
     let mut key = rising_list(ring);
     key.dedup();
     key
-}
-
-/// Whether two rings of the same corners have the same orientation.
-fn have_same_orientation(a: &[u32], b: &[u32]) -> bool {
-    b.iter().position(|v| *v == a[0]).is_some_and(|at| b[(at + 1) % b.len()] == a[1])
 }

@@ -1,22 +1,16 @@
 //! Round trips, variants written by other programs, and damaged or invalid files.
 
-use std::path::Path;
-
-use crate::base::{Csr, Result, Threads, VertexId};
+use crate::base::{Csr, Result, VertexId};
+use crate::io::WriteOptions;
 use crate::io::cgns::FORMAT;
 use crate::io::cgns::kinds::ElementType;
 use crate::io::cgns::tree::Tree;
-use crate::io::format::{Input, Notes, WriteOptions};
-use crate::io::reading::read_as;
+use crate::io::in_memory::{parsed, printed};
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
 fn parse(bytes: &[u8]) -> Result<(Mesh, Vec<String>)> {
-    let notes = Notes::default();
-    let mesh = read_as(
-        &FORMAT,
-        &Input { path: Path::new("a.cgns"), bytes, threads: &Threads::single(), notes: &notes },
-    )?;
-    Ok((mesh, notes.into_vec()))
+    let (mesh, notes) = parsed(&FORMAT, "a.cgns", bytes);
+    Ok((mesh?, notes))
 }
 
 fn refused(bytes: &[u8]) -> String {
@@ -26,8 +20,7 @@ fn refused(bytes: &[u8]) -> String {
 }
 
 fn print(mesh: &Mesh) -> (Vec<u8>, Vec<String>) {
-    let mut written = FORMAT.to_files(mesh, &WriteOptions::default(), &Threads::single()).unwrap();
-    (written.files.remove(0).1, written.lost)
+    printed(&FORMAT, mesh, &WriteOptions::default())
 }
 
 fn round_trip(mesh: &Mesh) -> Mesh {

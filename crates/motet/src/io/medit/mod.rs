@@ -45,25 +45,25 @@ pub(super) const MESH: Format = Format {
     name: "Medit",
     extensions: &[".mesh"],
     read: Some(companion::read_mesh),
-    write: Some(Write::Files(|mesh, _, threads| write::mesh(mesh, false, threads))),
+    write: Some(Write::Files(|mesh, _, threads, _| write::mesh(mesh, false, threads))),
 };
 pub(super) const MESHB: Format = Format {
     name: "Medit binary",
     extensions: &[".meshb"],
     read: Some(companion::read_mesh),
-    write: Some(Write::Files(|mesh, _, threads| write::mesh(mesh, true, threads))),
+    write: Some(Write::Files(|mesh, _, threads, _| write::mesh(mesh, true, threads))),
 };
 pub(super) const SOL: Format = Format {
     name: "Medit solution",
     extensions: &[".sol"],
     read: Some(companion::read_solution),
-    write: Some(Write::Files(|mesh, _, threads| write::solution(mesh, false, threads))),
+    write: Some(Write::Files(|mesh, _, threads, _| write::solution(mesh, false, threads))),
 };
 pub(super) const SOLB: Format = Format {
     name: "Medit binary solution",
     extensions: &[".solb"],
     read: Some(companion::read_solution),
-    write: Some(Write::Files(|mesh, _, threads| write::solution(mesh, true, threads))),
+    write: Some(Write::Files(|mesh, _, threads, _| write::solution(mesh, true, threads))),
 };
 
 /// The name of a section in text and its number in binary files.

@@ -2,7 +2,8 @@ use std::path::Path;
 
 use super::*;
 use crate::base::{Result, Threads, VertexId};
-use crate::io::format::{Input, Notes, WriteOptions, Written};
+use crate::io::format::{Notes, WriteOptions, Written};
+use crate::io::in_memory::parsed;
 use crate::mesh::{Cells, Field, Mesh, Values};
 
 /// A binary file of any version and byte order, assembled number by number.
@@ -77,14 +78,8 @@ impl Bytes {
 
 const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.5, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-fn parse(path: &Path, format: &Format, bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
-    let notes = Notes::default();
-    let mesh = crate::io::read_as(format, &Input { path, bytes, threads: &Threads::single(), notes: &notes });
-    (mesh, notes.into_vec())
-}
-
 fn parse_meshb(bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
-    parse(Path::new("in.meshb"), &MESHB, bytes)
+    parsed(&MESHB, "in.meshb", bytes)
 }
 
 fn error_of(bytes: &[u8]) -> String {

@@ -13,8 +13,8 @@
 //! Labels below 1 get new numbers, since Netgen counts from 1.
 //!
 //! Layout: what Netgen 6.2 writes and reads (`Mesh::Save` and `Mesh::Load`, libsrc/meshing/meshclass.cpp).
-//! Its cells have the other orientation than VTK's. The nodes on edges are those of its `SecondOrder`, found
-//! by comparison with midpoints.
+//! Netgen orders the nodes of a cell so that its orientation is opposite to VTK's. The order of the nodes on
+//! edges is that of Netgen's `SecondOrder`, found by comparison with midpoints.
 
 mod kinds;
 mod labels;

@@ -214,7 +214,8 @@ impl Content {
 enum Segment {
     /// Number of the edge or boundary condition, a number without meaning, two vertices.
     Short,
-    /// The same, then triangles, domains, and numbers and parameters of the edge on either side.
+    /// Number of the edge or boundary condition, a number without meaning, two vertices, triangles, domains,
+    /// and numbers and parameters of the edge on either side.
     Long,
     /// Two vertices, triangles, parameters, and the place of a descriptor.
     Described,

@@ -20,7 +20,7 @@ pub(super) const FORMAT: Format = Format {
     name: "openCARP",
     extensions: &[".pts", ".elem", ".lon"],
     read: Some(read::read),
-    write: Some(Write::Files(write::write)),
+    write: Some(Write::Files(|mesh, options, threads, _| write::write(mesh, options, threads))),
 };
 
 /// The array of the elements' regions.

@@ -30,5 +30,5 @@ pub(super) const FORMAT: Format = Format {
     name: "OpenFOAM polyMesh",
     extensions: &["polymesh/", ".foam"],
     read: Some(read::read),
-    write: Some(Write::Files(write::write)),
+    write: Some(Write::Files(|mesh, options, threads, _| write::write(mesh, options, threads))),
 };

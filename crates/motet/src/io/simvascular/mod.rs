@@ -13,7 +13,7 @@ pub(super) const FORMAT: Format = Format {
     name: "SimVascular mesh-complete",
     extensions: &["/"],
     read: Some(read::read),
-    write: Some(Write::Files(write::write)),
+    write: Some(Write::Files(|mesh, options, threads, _| write::write(mesh, options, threads))),
 };
 
 const NODE_ID: &str = "GlobalNodeID";

@@ -16,7 +16,7 @@ pub(super) const FORMAT: Format = Format {
     name: "TetGen",
     extensions: &[".node", ".ele"],
     read: Some(read::read),
-    write: Some(Write::Files(write::write)),
+    write: Some(Write::Files(|mesh, options, threads, _| write::write(mesh, options, threads))),
 };
 
 /// Nodes on the edges of a tetrahedron, determined by comparing the output of TetGen 1.6 with `-o2` with

@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 
 use super::kinds::{element, is_beam};
-use crate::base::{Error, Point, Result, VertexId};
+use crate::base::{Error, Point, Result};
 use crate::io::format::{Input, Notes};
 use crate::io::latin::decode_utf8_or_latin1;
 use crate::io::named_sets::{NSET, Named, NamedSets, Rank, Runs, merged, set_arrays, set_labels};
-use crate::io::tags::Tags;
+use crate::io::tags::{Tags, push_elements};
 use crate::io::text::{Text, parse_int, quoted};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
@@ -163,18 +163,8 @@ impl Model {
         let node_tags = Tags::new(&self.node_ids, "node")?;
         let element_tags = Tags::new(&self.element_ids, "element")?;
         let mut cells = Cells::new();
-        let mut rest = self.nodes.as_slice();
-        for (id, &kind) in self.element_ids.iter().zip(&self.kinds) {
-            let (ids, tail) = rest.split_at(kind.n_vertices().unwrap_or(0));
-            rest = tail;
-            let vertex = |&node: &u64| {
-                node_tags.place(node).map(VertexId).ok_or_else(|| {
-                    Error::input(format!("element {id} refers to node {node}, which does not exist"))
-                        .remedy("the file is truncated or damaged: write it again")
-                })
-            };
-            cells.push(kind, ids.iter().map(vertex).collect::<Result<Vec<_>>>()?);
-        }
+        let elements = self.element_ids.iter().copied().zip(self.kinds.iter().copied());
+        push_elements(&mut cells, elements, &self.nodes, |node| node_tags.place(node))?;
         let n_cells = cells.len();
         let mut mesh = Mesh::new(self.points, cells);
         let (mut of_cells, mut of_points) = (NamedSets::default(), NamedSets::default());

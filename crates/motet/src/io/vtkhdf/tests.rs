@@ -1,21 +1,15 @@
 //! Round trips, steps, parts, and damaged or invalid files.
 
-use std::path::Path;
-
 use crate::base::{Csr, Result, Threads, VertexId};
-use crate::io::format::{Compression, Input, Notes, WriteOptions};
+use crate::io::format::{Compression, Notes, WriteOptions};
 use crate::io::hdf::{Attribute, Node, Storage};
-use crate::io::reading::read_as;
+use crate::io::in_memory::{parsed, printed};
 use crate::io::vtkhdf::{FORMAT, StepPath, is_transient, read_step, times};
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
 fn parse(bytes: &[u8]) -> Result<(Mesh, Vec<String>)> {
-    let notes = Notes::default();
-    let mesh = read_as(
-        &FORMAT,
-        &Input { path: Path::new("a.vtkhdf"), bytes, threads: &Threads::single(), notes: &notes },
-    )?;
-    Ok((mesh, notes.into_vec()))
+    let (mesh, notes) = parsed(&FORMAT, "a.vtkhdf", bytes);
+    Ok((mesh?, notes))
 }
 
 fn refused(bytes: &[u8]) -> String {
@@ -23,9 +17,7 @@ fn refused(bytes: &[u8]) -> String {
 }
 
 fn print(mesh: &Mesh, compression: Compression) -> (Vec<u8>, Vec<String>) {
-    let options = WriteOptions { compression, ..WriteOptions::default() };
-    let mut written = FORMAT.to_files(mesh, &options, &Threads::single()).unwrap();
-    (written.files.remove(0).1, written.lost)
+    printed(&FORMAT, mesh, &WriteOptions { compression, ..WriteOptions::default() })
 }
 
 fn ids(ids: &[u32]) -> Vec<VertexId> {

@@ -27,5 +27,5 @@ pub(super) const FORMAT: Format = Format {
     name: "XDMF",
     extensions: &[".xdmf", ".xmf", ".xdmf3"],
     read: Some(read::read),
-    write: Some(Write::Linked { alone: write::write_text_file, linked: write::write_files }),
+    write: Some(Write::Files(write::write)),
 };

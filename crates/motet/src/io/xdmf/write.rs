@@ -13,21 +13,12 @@ use crate::io::select::{keep_cells, lost_arrays};
 use crate::io::vtkxml::escape_attribute;
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh, Values};
 
-/// Writes one file with the numbers as text.
-pub(super) fn write_text_file(mesh: &Mesh, _: &WriteOptions, output: &mut Output<'_>) -> Result<Vec<String>> {
-    write(mesh, &mut Sink { output, heavy: None })
-}
-
-/// Writes a file that refers to `STEM.h5`, which holds the numbers; one with text for that encoding.
-pub(super) fn write_files(
-    mesh: &Mesh,
-    options: &WriteOptions,
-    threads: &Threads,
-    stem: &str,
-) -> Result<Written> {
+/// Writes a file that refers to `STEM.h5`, which holds the numbers; for text encoding, or without a name that
+/// it can refer to, one file with the numbers as text.
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions, threads: &Threads, stem: &str) -> Result<Written> {
     let mut bytes = Vec::new();
     // Readers take a colon as the end of the name, and some do not resolve entities.
-    let is_plain = !stem.contains(['&', '<', '>', ':']);
+    let is_plain = !stem.is_empty() && !stem.contains(['&', '<', '>', ':']);
     let is_text = options.encoding == Encoding::Ascii || cfg!(not(feature = "hdf5")) || !is_plain;
     let storage = match options.compression {
         Compression::None => Storage::Plain,
@@ -36,7 +27,7 @@ pub(super) fn write_files(
     let heavy = Heavy { file: format!("{stem}.h5"), storage, root: Node::new(""), n_arrays: 0 };
     let output = &mut Output::to_memory(&mut bytes, threads);
     let mut sink = Sink { output, heavy: (!is_text).then_some(heavy) };
-    let lost = write(mesh, &mut sink)?;
+    let lost = write_grid(mesh, &mut sink)?;
     let heavy = sink.heavy.map(|heavy| heavy.root.into_file()).transpose()?;
     let mut files = vec![(String::new(), bytes)];
     files.extend(heavy.map(|bytes| (".h5".to_owned(), bytes)));
@@ -89,7 +80,7 @@ impl Sink<'_, '_> {
     }
 }
 
-fn write(mesh: &Mesh, sink: &mut Sink<'_, '_>) -> Result<Vec<String>> {
+fn write_grid(mesh: &Mesh, sink: &mut Sink<'_, '_>) -> Result<Vec<String>> {
     let (mesh, mut lost) = keep_cells(mesh, "XDMF", |kind| Topology::of(kind).is_some());
     sink.put("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n")?;
     sink.put("<Grid Name=\"mesh\" GridType=\"Uniform\">\n")?;
