@@ -484,15 +484,19 @@ def test_meshio_reads_its_own_abaqus_mesh_from_a_copy(motet, tmp_path):
             assert_same_array(a, b)
 
 
+def round_nodes():
+    """Round the coordinates of Gmsh's nodes to the digits that it writes into Abaqus and SU2 files."""
+    for tag, x in zip(*(part.reshape(-1, n) for part, n in zip(gmsh.model.mesh.getNodes()[:2], (1, 3)))):
+        gmsh.model.mesh.setNode(int(tag[0]), (x.round(9) + 0.0).tolist(), [])
+
+
 @pytest.mark.parametrize("build", BUILDS)
 def test_gmsh_reads_its_own_abaqus_mesh_from_a_copy(motet, gmsh_session, tmp_path, build):
     """The copy has the same cells, with groups as labels."""
     # Gmsh writes prisms of 18 nodes as if they had 6.
     gmsh.option.setNumber("Mesh.SecondOrderIncomplete", int(build.startswith("prisms")))
     BUILDS[build]()
-    # Gmsh does not write all digits.
-    for tag, x in zip(*(part.reshape(-1, n) for part, n in zip(gmsh.model.mesh.getNodes()[:2], (1, 3)))):
-        gmsh.model.mesh.setNode(int(tag[0]), (x.round(9) + 0.0).tolist(), [])
+    round_nodes()
     points, elements, names = gmsh_content()
     source, again, copy = (tmp_path / name for name in ("source.inp", "again.inp", "copy.msh"))
     gmsh.write(str(source))
@@ -645,9 +649,7 @@ def test_meshio_reads_an_su2_mesh_from_a_copy(motet, tmp_path, dim):
 def test_su2_markers_are_the_groups_of_gmsh(motet, gmsh_session, tmp_path, build):
     """Gmsh writes groups of surfaces as markers with their names."""
     BUILDS[build]()
-    # Gmsh does not write all digits.
-    for tag, x in zip(*(part.reshape(-1, n) for part, n in zip(gmsh.model.mesh.getNodes()[:2], (1, 3)))):
-        gmsh.model.mesh.setNode(int(tag[0]), (x.round(9) + 0.0).tolist(), [])
+    round_nodes()
     points, elements, names = gmsh_content()
     source, again, copy = (tmp_path / name for name in ("source.su2", "again.su2", "copy.msh"))
     gmsh.write(str(source))

@@ -48,6 +48,33 @@ fn bits(points: &[Point]) -> Vec<[u64; 3]> {
     points.iter().map(|p| p.map(f64::to_bits)).collect()
 }
 
+/// Checks that points and cells are the same, to the bit.
+fn same_grid(found: &Mesh, expected: &Mesh) -> Result<(), TestCaseError> {
+    prop_assert_eq!(bits(&found.points), bits(&expected.points));
+    prop_assert_eq!(&found.cells, &expected.cells);
+    Ok(())
+}
+
+/// Writes a mesh of which nothing may be lost, and reads it; points and cells come back.
+fn round_trip(extension: &str, mesh: &Mesh) -> Result<Mesh, TestCaseError> {
+    let (bytes, lost) = print(extension, mesh, &WriteOptions::default());
+    prop_assert!(lost.is_empty(), "{lost:?}");
+    let back = parse(extension, &bytes).unwrap();
+    same_grid(&back, mesh)?;
+    Ok(back)
+}
+
+/// Labels volume cells as `region` and surface cells as `patch`, with numbers added to the given ones.
+fn set_labels(mesh: &mut Mesh, labels: &[i32], [region, patch]: [i32; 2]) {
+    for (array, dim, added) in [("region", 3, region), ("patch", 2, patch)] {
+        let id = |(&label, kind): (&i32, &CellKind)| if kind.dim() == Some(dim) { added + label } else { 0 };
+        let ids: Vec<i32> = labels.iter().zip(mesh.cells.kinds()).map(id).collect();
+        if ids.iter().any(|&id| id != 0) {
+            mesh.set_cell_field(Field::scalars(array, ids));
+        }
+    }
+}
+
 const MSH_KINDS: &[CellKind] = &[
     CellKind::VERTEX,
     CellKind::LINE,
@@ -204,8 +231,7 @@ proptest! {
                 let (bytes, lost) = print(".msh", &mesh, &options(version, encoding));
                 prop_assert!(lost.is_empty(), "{lost:?}");
                 let back = parse(".msh", &bytes).unwrap();
-                prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-                prop_assert_eq!(&back.cells, &mesh.cells);
+                same_grid(&back, &mesh)?;
                 prop_assert_eq!(&back.label_names, &mesh.label_names);
                 prop_assert_eq!(back.point_field("u v"), mesh.point_field("u v"));
                 if !mesh.cells.is_empty() {
@@ -239,11 +265,7 @@ proptest! {
         mesh.set_point_field(Field::scalars("medit:ref", refs));
         mesh.set_cell_field(Field::scalars("medit:ref", labels));
         for extension in [".mesh", ".meshb"] {
-            let (bytes, lost) = print(extension, &mesh, &WriteOptions::default());
-            prop_assert!(lost.is_empty(), "{lost:?}");
-            let back = parse(extension, &bytes).unwrap();
-            prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-            prop_assert_eq!(&back.cells, &mesh.cells);
+            let back = round_trip(extension, &mesh)?;
             prop_assert_eq!(back.point_field("medit:ref"), mesh.point_field("medit:ref"));
             let marked = mesh.cell_field("medit:ref").filter(|f| f.values.to_i64().unwrap().iter().any(|&r| r != 0));
             prop_assert_eq!(back.cell_field("medit:ref"), marked);
@@ -252,18 +274,8 @@ proptest! {
 
     #[test]
     fn abaqus_comes_back((mut mesh, labels) in meshes(ABAQUS_KINDS, false)) {
-        for (array, dim) in [("region", 3), ("patch", 2)] {
-            let on_dim = |(&label, kind): (&i32, &CellKind)| if kind.dim() == Some(dim) { label } else { 0 };
-            let ids: Vec<i32> = labels.iter().zip(mesh.cells.kinds()).map(on_dim).collect();
-            if ids.iter().any(|&id| id != 0) {
-                mesh.set_cell_field(Field::scalars(array, ids));
-            }
-        }
-        let (bytes, lost) = print(".inp", &mesh, &WriteOptions::default());
-        prop_assert!(lost.is_empty(), "{lost:?}");
-        let back = parse(".inp", &bytes).unwrap();
-        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-        prop_assert_eq!(&back.cells, &mesh.cells);
+        set_labels(&mut mesh, &labels, [0, 0]);
+        let back = round_trip(".inp", &mesh)?;
         prop_assert_eq!(&back.cell_data, &mesh.cell_data);
         prop_assert_eq!(&back.label_names, &mesh.label_names);
     }
@@ -282,8 +294,7 @@ proptest! {
         let (bytes, lost) = print(".su2", &mesh, &WriteOptions::default());
         prop_assert!(lost.iter().all(|l| l.contains("numbers of patches")), "{lost:?}");
         let back = parse(".su2", &bytes).unwrap();
-        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-        prop_assert_eq!(&back.cells, &mesh.cells);
+        same_grid(&back, &mesh)?;
         if is_labelled {
             prop_assert_eq!(patch_names(&back), patch_names(&mesh));
         }
@@ -297,11 +308,7 @@ proptest! {
         mesh.label_names.regions.insert(2, "the blood".into());
         mesh.label_names.patches.insert(3, "wall".into());
         for extension in [".vol", ".vol.gz"] {
-            let (bytes, lost) = print(extension, &mesh, &WriteOptions::default());
-            prop_assert!(lost.is_empty(), "{lost:?}");
-            let back = parse(extension, &bytes).unwrap();
-            prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-            prop_assert_eq!(&back.cells, &mesh.cells);
+            let back = round_trip(extension, &mesh)?;
             prop_assert_eq!(&back.label_names, &mesh.label_names);
             prop_assert_eq!(back.cell_field("netgen:index"), mesh.cell_field("netgen:index").filter(|_| !labels.is_empty()));
         }
@@ -309,18 +316,8 @@ proptest! {
 
     #[test]
     fn unv_comes_back((mut mesh, labels) in meshes(UNV_KINDS, false)) {
-        for (array, dim, first) in [("region", 3, 1), ("patch", 2, 7)] {
-            let on_dim = |(&label, kind): (&i32, &CellKind)| if kind.dim() == Some(dim) { first + label } else { 0 };
-            let ids: Vec<i32> = labels.iter().zip(mesh.cells.kinds()).map(on_dim).collect();
-            if ids.iter().any(|&id| id != 0) {
-                mesh.set_cell_field(Field::scalars(array, ids));
-            }
-        }
-        let (bytes, lost) = print(".unv", &mesh, &WriteOptions::default());
-        prop_assert!(lost.is_empty(), "{lost:?}");
-        let back = parse(".unv", &bytes).unwrap();
-        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-        prop_assert_eq!(&back.cells, &mesh.cells);
+        set_labels(&mut mesh, &labels, [1, 7]);
+        let back = round_trip(".unv", &mesh)?;
         prop_assert_eq!(&back.cell_data, &mesh.cell_data);
         prop_assert_eq!(&back.label_names, &mesh.label_names);
     }
@@ -332,11 +329,7 @@ proptest! {
         mesh.set_cell_field(Field::scalars("region", labels.clone()));
         mesh.set_cell_field(Field::scalars("patch", labels));
         mesh.label_names.regions.insert(1, "the <blood>".into());
-        let (bytes, lost) = print(".xdmf", &mesh, &WriteOptions::default());
-        prop_assert!(lost.is_empty(), "{lost:?}");
-        let back = parse(".xdmf", &bytes).unwrap();
-        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-        prop_assert_eq!(&back.cells, &mesh.cells);
+        let back = round_trip(".xdmf", &mesh)?;
         prop_assert_eq!(&back.point_data, &mesh.point_data);
         prop_assert_eq!(&back.cell_data, &mesh.cell_data);
         prop_assert_eq!(&back.label_names, &mesh.label_names);
@@ -352,8 +345,7 @@ proptest! {
         prop_assert!(lost.is_empty(), "{lost:?}");
         for name in ["out.pts", "out.elem", "out.lon"] {
             let back = read(folder.path().join(name)).unwrap();
-            prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-            prop_assert_eq!(&back.cells, &mesh.cells);
+            same_grid(&back, &mesh)?;
             if !mesh.cells.is_empty() {
                 prop_assert_eq!(&back.cell_data, &mesh.cell_data);
             }
@@ -380,8 +372,7 @@ proptest! {
         prop_assert!(lost.is_empty(), "{lost:?}");
         for name in ["out.node", "out.ele"] {
             let back = read(folder.path().join(name)).unwrap();
-            prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-            prop_assert_eq!(&back.cells, &mesh.cells);
+            same_grid(&back, &mesh)?;
             prop_assert_eq!(&back.point_data, &mesh.point_data);
             let marked = mesh.cell_field("tetgen:ref").filter(|f| f.values.to_i64().unwrap().iter().any(|&r| r != 0));
             prop_assert_eq!(back.cell_field("tetgen:ref"), marked);
@@ -394,11 +385,7 @@ proptest! {
         for label in 1..6 {
             mesh.label_names.patches.insert(label, format!("part {label}"));
         }
-        let (bytes, lost) = print(".obj", &mesh, &WriteOptions::default());
-        prop_assert!(lost.is_empty(), "{lost:?}");
-        let back = parse(".obj", &bytes).unwrap();
-        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-        prop_assert_eq!(&back.cells, &mesh.cells);
+        let back = round_trip(".obj", &mesh)?;
         prop_assert_eq!(patch_names(&back), if labels.iter().any(|l| *l != labels[0]) { patch_names(&mesh) } else { vec![] });
     }
 
