@@ -10,6 +10,7 @@
 //! | `watch` | long calls: Ctrl-C and progress |
 //! | `words` | common arguments: patches, rules of arrays, threads; defaults of the library |
 //! | `shapes` | built-in meshes |
+//! | `view` | the window in the browser |
 //! | `files`, `meshing`, `motion`, `remesh`, `implant`, `refine`, `contact`, `moving` | one verb or handle each |
 
 mod arrays;
@@ -28,6 +29,7 @@ mod remesh;
 mod report;
 mod series;
 mod shapes;
+mod view;
 mod watch;
 mod words;
 
@@ -66,6 +68,8 @@ mod _motet {
 
     #[pymodule_export]
     use crate::shapes::{aneurysm, ball, box_grid, coil, mixed, sphere_in_box, stent, tube};
+    #[pymodule_export]
+    use crate::view::View;
     #[pymodule_export]
     use crate::words::defaults;
 

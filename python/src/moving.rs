@@ -144,6 +144,11 @@ impl MovingMesh {
         Ok(Self { moving: watched(py, threads, None, load)?, threads: self::threads(threads)? })
     }
 
+    fn copy(&self, py: Python<'_>) -> PyResult<Self> {
+        let threads = threads(self.threads.count())?;
+        Ok(Self { moving: py.detach(|| self.moving.clone()), threads })
+    }
+
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         call(py, || self.moving.save(&path))
     }
@@ -199,6 +204,12 @@ impl MovingMesh {
         let step =
             self.watched(py, progress, |moving, threads| moving.advance(time, displacement, threads))?;
         with_not_reached(py, &step, step.not_reached())
+    }
+
+    fn preview<'py>(&self, py: Python<'py>, displacement: Vectors<'_>) -> PyResult<Bound<'py, PyAny>> {
+        let displacement = rows(&displacement, "displacement")?;
+        let points = call(py, || self.moving.preview(displacement, &self.threads))?;
+        Ok(vectors(py, points)?.into_any())
     }
 
     fn refine<'py>(

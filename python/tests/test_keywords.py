@@ -87,10 +87,11 @@ def handles(folder):
         "MovingMesh: step 0": motet.MovingMesh(box), "Refinement: up to 0": motet.Refinement(box), "Contact: 2 surfaces (near, far)": contact,
         "SeriesWriter: ": writer, "Changed: complete": done, "History: vertices 27 -> 27": done.history, "Gaps: least 1": gaps, "Body: ": gaps.bodies["near"],
         "Ahead: first contact": contact.look_ahead(-contact.points * [1.0, 0.0, 0.0]), "Moved: complete": motet.move(box, translate={"xmax": (0.1, 0, 0)}),
+        "View at http://127.0.0.1:": motet.view(box),
     }  # fmt: skip
 
 
-NOT_PICKLED = (motet.Mover, motet.PointMover, motet.MovingMesh, motet.Contact, motet.SeriesWriter)
+NOT_PICKLED = (motet.Mover, motet.PointMover, motet.MovingMesh, motet.Contact, motet.SeriesWriter, motet.View)
 
 
 def test_representations_are_short_and_name_the_class(tmp_path):

@@ -79,3 +79,29 @@ def test_invalid_arguments_raise_an_error():
         motet.MovingMesh(mesh, speed=3)
     with pytest.raises(motet.InputError, match="rows"):
         moving.set_array("p", np.zeros(3), on="cells")
+
+
+def test_a_copy_continues_with_the_same_bytes_and_alone():
+    first = motet.MovingMesh(shapes.sphere_in_box(4, 4))
+    is_sphere = np.linalg.norm(first.driven_places, axis=1) < 2
+    by = np.outer(is_sphere, [1.0, 0.5, 0.0])
+    first.advance(1.0, by)
+    second = first.copy()
+    before = first.points
+    reports = [moving.advance(2.0, 2 * by) for moving in (first, second)]
+    assert reports[0].tets == reports[1].tets and np.array_equal(first.points, second.points)
+    assert np.array_equal(first.mesh.tets, second.mesh.tets) and not np.array_equal(first.points[: len(before)], before)
+    second.advance(3.0, 0 * by)
+    assert first.step == 2 and not np.array_equal(first.points, second.points[: len(first.points)])
+
+
+def test_a_preview_is_the_step_without_repair_and_changes_nothing():
+    moving = motet.MovingMesh(shapes.sphere_in_box(4, 4), repair=False)
+    by = np.outer(np.linalg.norm(moving.driven_places, axis=1) < 2, [0.3, 0.0, 0.0])
+    before = moving.points
+    points = moving.preview(by)
+    assert np.array_equal(moving.points, before) and moving.step == 0
+    moving.advance(1.0, by)
+    assert np.array_equal(moving.points, points)
+    with pytest.raises(motet.InputError):
+        moving.preview(by[1:])

@@ -58,6 +58,8 @@ OPTIONS = {
     "remesh.sizes": (lambda x: motet.remesh(shapes.box(), sizes=x), LENGTH),
     "remesh.sizes of points": (lambda x: motet.remesh(shapes.box(), sizes=np.full(125, x)), LENGTH),
     "remesh.rounds": (lambda x: motet.remesh(shapes.box(), rounds=x), COUNT),
+    "view.port": (lambda x: motet.view(shapes.box(), port=x), (*COUNT, 65536)),
+    "view.threads": (lambda x: motet.view(shapes.box(), threads=x), COUNT),
     "remesh.threads": (lambda x: motet.remesh(shapes.box(), threads=x), COUNT),
     "implant.tolerance": (lambda x: motet.implant(shapes.box(), shapes.coil(), interface="conform", tolerance=x), LENGTH),
     "implant.stray": (lambda x: motet.implant(shapes.box(), shapes.coil(), stray=x), LENGTH),

@@ -5,6 +5,7 @@ use clap::{Parser, Subcommand};
 use crate::common::Common;
 use crate::verbs::{
     cap, contact, convert, demo, implant, info, meshing, moving, quality, refine, remesh, report, run, shell,
+    view,
 };
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
@@ -41,6 +42,7 @@ pub(crate) enum Verb {
     Contact(Box<contact::ContactArgs>),
     Run(run::RunArgs),
     Report(report::ReportArgs),
+    View(view::ViewArgs),
     Demo(demo::DemoArgs),
     Completions(shell::CompletionsArgs),
     Man(shell::ManArgs),

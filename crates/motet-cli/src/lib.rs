@@ -49,6 +49,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Contact(args) => verbs::contact::run(&args, &call.common, &console),
         Verb::Run(args) => verbs::run::run(&args, &call.common, &console),
         Verb::Report(args) => verbs::report::run(&args, &console),
+        Verb::View(args) => verbs::view::run(&args, &call.common, &console),
         Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
         Verb::Completions(args) => verbs::shell::complete(&args, Call::command(), &console),
         Verb::Man(args) => verbs::shell::man(&args, Call::command(), &console),

@@ -18,8 +18,15 @@ pub(crate) enum Input {
 pub(crate) struct Meshes {
     pub(crate) file: PathBuf,
     pub(crate) is_series: bool,
-    /// The time and the file of each frame.
-    pub(crate) frames: Vec<(f64, PathBuf)>,
+    /// The time and the source of each frame.
+    pub(crate) frames: Vec<(f64, Source)>,
+}
+
+/// Where a frame comes from.
+#[derive(Debug)]
+pub(crate) enum Source {
+    File(PathBuf),
+    Memory(Box<Mesh>),
 }
 
 impl Input {
@@ -32,7 +39,8 @@ impl Input {
             _ => {}
         }
         let is_series = io::is_series(path);
-        let frames = if is_series { io::read_series(path)? } else { vec![(0.0, path.to_owned())] };
+        let files = if is_series { io::read_series(path)? } else { vec![(0.0, path.to_owned())] };
+        let frames: Vec<_> = files.into_iter().map(|(time, file)| (time, Source::File(file))).collect();
         if frames.is_empty() {
             return Err(Error::input("the series has no frames: there is nothing to show").in_file(path));
         }
@@ -43,8 +51,18 @@ impl Input {
 impl Meshes {
     /// Reads one frame, with notes on what the reader skipped.
     pub(crate) fn read(&self, frame: usize) -> Result<(Mesh, Vec<String>)> {
-        let (mesh, notes) = io::read_noted(&self.frames[frame].1)?;
-        Ok((mesh, notes))
+        match &self.frames[frame].1 {
+            Source::File(file) => io::read_noted(file),
+            Source::Memory(mesh) => Ok((Mesh::clone(mesh), Vec::new())),
+        }
+    }
+
+    /// The file of a frame.
+    pub(crate) fn file_of(&self, frame: usize) -> &Path {
+        match &self.frames[frame].1 {
+            Source::File(file) => file,
+            Source::Memory(_) => &self.file,
+        }
     }
 }
 

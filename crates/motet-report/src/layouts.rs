@@ -92,7 +92,7 @@ impl Layouts {
 
 fn changed(input: &Meshes, frame: usize) -> Error {
     Error::input("the cells of this frame changed while the page was made")
-        .in_file(&input.frames[frame].1)
+        .in_file(input.file_of(frame))
         .remedy("wait until nothing writes the series any more, then make the page again")
 }
 
@@ -143,13 +143,14 @@ mod tests {
     use motet::mesh::shapes::{ball, box_grid, mixed};
 
     use super::*;
+    use crate::input::Source;
 
     fn meshes(folder: &Path, meshes: &[Mesh]) -> Meshes {
         let path = |i| folder.join(format!("{i}.vtu"));
         for (i, mesh) in meshes.iter().enumerate() {
             io::write(path(i), mesh, &WriteOptions::default()).unwrap();
         }
-        let frames = (0..meshes.len()).map(|i| (i as f64, path(i))).collect();
+        let frames = (0..meshes.len()).map(|i| (i as f64, Source::File(path(i)))).collect();
         Meshes { file: path(0), is_series: true, frames }
     }
 
@@ -190,7 +191,7 @@ mod tests {
         layouts.of(&input, 0, &ball(2, 1)).unwrap();
         let error = layouts.of(&input, 0, &ball(2, 2)).unwrap_err();
         assert!(error.to_string().contains("changed while") && error.remedy_text().is_some());
-        io::write(&input.frames[0].1, &ball(3, 1), &WriteOptions::default()).unwrap();
+        io::write(input.file_of(0), &ball(3, 1), &WriteOptions::default()).unwrap();
         layouts.held.clear();
         assert!(layouts.of(&input, 1, &ball(2, 1)).is_err());
     }

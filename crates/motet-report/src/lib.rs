@@ -14,6 +14,7 @@
 //! | `part`, `plan`, `shown` | packing one frame; how much of which frame fits; the result |
 //! | `words` | titles of arrays and columns, with units |
 //! | `charts`, `sections`, `page` | lines, tables, the page |
+//! | `live` | a page whose mesh a program keeps up to date while a user moves it |
 //! | `script/`, `style.css`, `page.html` | the part that runs in the browser |
 
 mod arrays;
@@ -23,6 +24,7 @@ mod input;
 mod labels;
 mod layout;
 mod layouts;
+mod live;
 mod log;
 mod numbers;
 mod page;
@@ -41,7 +43,10 @@ use std::path::{Path, PathBuf};
 use motet::{Error, Result, io};
 use serde::Serialize;
 
+pub use crate::live::{Live, Order, Update};
+
 use crate::input::{Input, name_of};
+use crate::page::{Look, Page};
 use crate::part::Holds;
 use crate::shown::Shown;
 use crate::store::Store;
@@ -125,7 +130,9 @@ pub fn write(inputs: &[PathBuf], options: &Options) -> Result<Report> {
             }
         });
     }
-    let page = page::rendered(&parts, options, &store, &paid)?;
+    let page = Page { parts: &parts, store: &store, used: &paid };
+    let title = options.title.as_deref();
+    let page = page.rendered(Look { title, budget: Some(options.budget), is_live: false })?;
     io::replace(&options.output, page.as_bytes())?;
     let inputs = inputs.iter().zip(&parts).map(|(file, part)| report_of(file, part)).collect();
     Ok(Report {

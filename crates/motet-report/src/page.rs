@@ -9,7 +9,6 @@ use minijinja::{AutoEscape, Environment, context};
 use motet::{Error, Result};
 use serde_json::{Value, json};
 
-use crate::Options;
 use crate::labels::{self, Label};
 use crate::log::Log;
 use crate::numbers::megabytes;
@@ -21,7 +20,7 @@ use crate::words;
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
 /// The parts of the script; together they form one function of the page.
-const SCRIPT: [&str; 15] = [
+const SCRIPT: [&str; 16] = [
     include_str!("script/unpack.js"),
     include_str!("script/colour.js"),
     include_str!("script/geometry.js"),
@@ -36,6 +35,7 @@ const SCRIPT: [&str; 15] = [
     include_str!("script/save.js"),
     include_str!("script/link.js"),
     include_str!("script/panel.js"),
+    include_str!("script/live.js"),
     include_str!("script/main.js"),
 ];
 
@@ -45,40 +45,97 @@ pub(crate) enum Part {
     Log(Log),
 }
 
-/// Renders the whole page.
-pub(crate) fn rendered(
-    parts: &[Part],
-    options: &Options,
-    store: &Store,
-    used: &BTreeSet<BlockId>,
-) -> Result<String> {
-    let sections = sections_of(parts);
-    let names: Vec<&str> = sections.iter().map(|section| section.name.as_str()).collect();
-    let title = options.title.clone().unwrap_or_else(|| names.join(", "));
-    let payload = used.iter().map(|&id| store.get(id).cost()).sum();
-    let has_view = parts.iter().any(|part| matches!(part, Part::Meshes(shown) if is_seen(shown)));
-    let mut environment = Environment::new();
-    environment.set_auto_escape_callback(|_| AutoEscape::Html);
-    environment.set_trim_blocks(true);
-    environment.set_lstrip_blocks(true);
-    let page = environment.render_str(
-        TEMPLATE,
-        context! {
-            title,
-            sections,
-            has_view,
-            version => env!("CARGO_PKG_VERSION"),
-            style => STYLE,
-            payload => megabytes(payload),
-            budget => megabytes(options.budget),
-        },
-    );
-    let page = page.map_err(|e| Error::options(format!("the page cannot be rendered: {e}")))?;
-    // Inserted after templating: numbers and script are large and contain no template syntax.
-    Ok(page.replace("<!--DATA-->", &data(parts, store, used)).replace(
-        "<!--SCRIPT-->",
-        &format!("<script>\n(() => {{\n\"use strict\";\n{}\n}})();\n</script>", SCRIPT.join("\n")),
-    ))
+/// How a page is to be rendered.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Look<'a> {
+    /// By default the names of the inputs.
+    pub(crate) title: Option<&'a str>,
+    /// How many bytes meshes may take, if that is limited.
+    pub(crate) budget: Option<usize>,
+    /// Whether a program keeps the mesh up to date.
+    pub(crate) is_live: bool,
+}
+
+/// What is on a page: the inputs, and the packed tables that it uses.
+pub(crate) struct Page<'a> {
+    pub(crate) parts: &'a [Part],
+    pub(crate) store: &'a Store,
+    pub(crate) used: &'a BTreeSet<BlockId>,
+}
+
+impl Page<'_> {
+    /// Renders the page.
+    pub(crate) fn rendered(&self, Look { title, budget, is_live }: Look<'_>) -> Result<String> {
+        let mut sections = sections_of(self.parts);
+        if is_live {
+            // What would not follow the mesh.
+            sections.iter_mut().for_each(Section::clear_texts);
+        }
+        let names: Vec<&str> = sections.iter().map(|section| section.name.as_str()).collect();
+        let title = title.map_or_else(|| names.join(", "), str::to_owned);
+        let payload = self.used.iter().map(|&id| self.store.get(id).cost()).sum();
+        let has_view = self.parts.iter().any(|part| matches!(part, Part::Meshes(shown) if is_seen(shown)));
+        let mut environment = Environment::new();
+        environment.set_auto_escape_callback(|_| AutoEscape::Html);
+        environment.set_trim_blocks(true);
+        environment.set_lstrip_blocks(true);
+        let page = environment.render_str(
+            TEMPLATE,
+            context! {
+                title,
+                sections,
+                has_view,
+                is_live,
+                version => env!("CARGO_PKG_VERSION"),
+                style => STYLE,
+                payload => megabytes(payload),
+                budget => budget.map(megabytes),
+            },
+        );
+        let page = page.map_err(|e| Error::options(format!("the page cannot be rendered: {e}")))?;
+        // Inserted after templating: numbers and script are large and contain no template syntax.
+        Ok(page.replace("<!--DATA-->", &self.data()).replace(
+            "<!--SCRIPT-->",
+            &format!("<script>\n(() => {{\n\"use strict\";\n{}\n}})();\n</script>", SCRIPT.join("\n")),
+        ))
+    }
+
+    /// The data that the script reads: a description as JSON, and each block as base64.
+    fn data(&self) -> String {
+        // Escape `<`, which could end the element.
+        let mut text = format!(
+            "<script type=\"application/json\" id=\"manifest\">{}</script>\n",
+            self.manifest().to_string().replace('<', "\\u003c")
+        );
+        for (new, block) in self.texts().into_iter().enumerate() {
+            let _ = writeln!(text, "<script type=\"text/plain\" id=\"b{new}\">{block}</script>");
+        }
+        text
+    }
+
+    /// The same data as one object, with the blocks as `texts`.
+    pub(crate) fn update(&self) -> Value {
+        let mut manifest = self.manifest();
+        manifest["texts"] = json!(self.texts());
+        manifest
+    }
+
+    fn texts(&self) -> Vec<String> {
+        self.used.iter().map(|&id| STANDARD.encode(&self.store.get(id).data)).collect()
+    }
+
+    /// The description of all inputs and blocks.
+    fn manifest(&self) -> Value {
+        let inputs: Vec<Value> = self.parts.iter().filter_map(described).collect();
+        let block = |&id: &BlockId| {
+            let block = self.store.get(id);
+            json!([block.rows, block.columns, block.planes, block.kind.word()])
+        };
+        let blocks: Vec<Value> = self.used.iter().map(block).collect();
+        let new = self.used.iter().enumerate();
+        let ids: BTreeMap<String, usize> = new.map(|(new, old)| (old.to_string(), new)).collect();
+        json!({ "inputs": inputs, "blocks": blocks, "ids": ids })
+    }
 }
 
 fn is_seen(shown: &Shown) -> bool {
@@ -95,34 +152,6 @@ fn sections_of(parts: &[Part]) -> Vec<Section> {
         }
     };
     parts.iter().map(section).collect()
-}
-
-/// The data that the script reads: a description as JSON, and each block as base64.
-fn data(parts: &[Part], store: &Store, used: &BTreeSet<BlockId>) -> String {
-    let new: BTreeMap<BlockId, usize> = used.iter().enumerate().map(|(new, &old)| (old, new)).collect();
-    let inputs: Vec<Value> = parts.iter().filter_map(described).collect();
-    let blocks: Vec<Value> = used
-        .iter()
-        .map(|&id| {
-            let block = store.get(id);
-            json!([block.rows, block.columns, block.planes, block.kind.word()])
-        })
-        .collect();
-    let ids: BTreeMap<String, usize> = new.iter().map(|(old, new)| (old.to_string(), *new)).collect();
-    let manifest = json!({ "inputs": inputs, "blocks": blocks, "ids": ids });
-    // Escape `<`, which could end the element.
-    let mut text = format!(
-        "<script type=\"application/json\" id=\"manifest\">{}</script>\n",
-        manifest.to_string().replace('<', "\\u003c")
-    );
-    for (&old, new) in &new {
-        let _ = writeln!(
-            text,
-            "<script type=\"text/plain\" id=\"b{new}\">{}</script>",
-            STANDARD.encode(&store.get(old).data)
-        );
-    }
-    text
 }
 
 /// The description of an input for the view.

@@ -59,6 +59,17 @@ pub(crate) struct Section {
     pub(crate) tables: Vec<Grid>,
 }
 
+impl Section {
+    /// Removes all texts, charts and tables.
+    pub(crate) fn clear_texts(&mut self) {
+        self.sentences.clear();
+        self.notes.clear();
+        self.charts.clear();
+        self.facts.clear();
+        self.tables.clear();
+    }
+}
+
 /// A table in printed form.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Grid {

@@ -22,9 +22,10 @@ from ._moving import MovingMesh
 from ._refinement import Refinement, refine
 from ._report import Report
 from ._series import SeriesWriter, read_nodal, read_series, write_nodal
+from ._view import View, view
 
 __all__ = [
     "Ahead", "Body", "Changed", "Contact", "Error", "FileError", "Gaps", "History", "InputError", "InternalError", "Mesh", "MeshLike", "Moved", "Mover",
-    "MovingMesh", "OptionsError", "PointMover", "Refinement", "Report", "SeriesWriter", "as_mesh", "cap", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_log", "read_nodal",
-    "read_series", "refine", "remesh", "shapes", "to_frame", "write_nodal", "__version__",
+    "MovingMesh", "OptionsError", "PointMover", "Refinement", "Report", "SeriesWriter", "View", "as_mesh", "cap", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_log", "read_nodal",
+    "read_series", "refine", "remesh", "shapes", "to_frame", "view", "write_nodal", "__version__",
 ]  # fmt: skip

@@ -158,7 +158,7 @@ class MovingMesh(NotPickled):
         if unknown. An exception that it raises, or Ctrl-C, ends the call.
     """
 
-    _instead = "use save and load, or pickle its mesh"
+    _instead = "use its method copy, save and load, or pickle its mesh"
 
     def __init__(
         self,
@@ -260,6 +260,15 @@ class MovingMesh(NotPickled):
         moving._native, moving._mesh = _motet.MovingMesh.load(path, _Request.of(locals()), threads), None
         return moving
 
+    def copy(self) -> MovingMesh:
+        """Return a copy that continues independently, with identical results.
+
+        A step of an implicit coupling is repeated from a copy made before it.
+        """
+        moving = type(self).__new__(type(self))
+        moving._native, moving._mesh = self._native.copy(), None
+        return moving
+
     def save(self, path: str | PathLike[str]) -> None:
         """Write everything that later steps depend on.
 
@@ -349,6 +358,22 @@ class MovingMesh(NotPickled):
         """
         self._mesh = None
         return report(self._native.advance(time, np.ascontiguousarray(displacement, np.float64), progress))
+
+    def preview(self, displacement: ArrayLike) -> NDArray[np.float64]:
+        """Return where the vertices would be with the walls at these displacements, in one part and without repair.
+
+        Nothing changes. This costs the motion alone; tets may be inverted.
+
+        Parameters
+        ----------
+        displacement : array_like, shape (k, 3)
+            Displacement of each of :attr:`driven_places` from there.
+
+        Returns
+        -------
+        float64 array, shape (n, 3)
+        """
+        return self._native.preview(np.ascontiguousarray(displacement, np.float64))
 
     def refine(
         self,

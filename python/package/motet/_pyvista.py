@@ -23,6 +23,7 @@ from ._mesh import Mesh, MeshLike, as_mesh, named, read
 from ._motion import move
 from ._refinement import refine
 from ._report import Report
+from ._view import View, view
 from .errors import InputError, OptionsError
 
 # Tets below this EAS are bad.
@@ -167,6 +168,10 @@ class MotetAccessor:
         data = result if isinstance(self._data, pyvista.MultiBlock) else result[0]
         data.motet.gaps = gaps
         return data
+
+    def view(self, **options: Any) -> View:
+        """Show the mesh in the browser, and drag its parts. Takes the keywords of :func:`motet.view`."""
+        return view(self._one("view"), **options)
 
     def blocks(self) -> Any:
         """Return the regions and patches as a ``pyvista.MultiBlock``, by name; those without a name by number.

@@ -14,3 +14,4 @@ mod refine;
 mod remesh;
 mod report;
 mod run;
+mod view;

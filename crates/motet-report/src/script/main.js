@@ -210,7 +210,8 @@ class View {
   tell() {
     const { state, frame, input } = this, [{ loaded }] = this.shown, said = [];
     if (input.is_series) said.push(`Frame ${frame.frame + 1} of ${input.n_frames}, time ${short(frame.time)}.`);
-    if (frame.tets !== null) {
+    // A page whose mesh is moved says so beside it.
+    if (frame.tets !== null && !byId("live")) {
       said.push(`Worst EAS (quality of a tet) ${short(frame.worst.eas)}, ${withThousands(frame.bad)} of ${withThousands(frame.tets)} tets bad.`);
     }
     if (state.cut && loaded.inside && loaded.inside.canCut && !loaded.inside.isWhole) {
@@ -291,7 +292,8 @@ manifest.inputs.forEach((input, i) => {
 if (byId("view")) {
   try {
     if (typeof DecompressionStream === "undefined") throw new Error("no DecompressionStream");
-    new View();
+    const view = new View();
+    if (byId("live")) view.live = new Live(view);
   } catch (error) {
     byId("viewer").hidden = true;
     byId("no-view").hidden = false;

@@ -62,8 +62,9 @@ async function copyLink(view) {
 function listenToPanel(view) {
   const { camera, canvas, state } = view, redraw = () => view.redraw();
   const on = (id, event, act) => byId(id).addEventListener(event, act);
-  listenToHand(canvas, camera, redraw);
+  listenToHand(canvas, camera, redraw, (e) => view.live?.grab(e) ?? null);
   listenToKeys(canvas, camera, redraw, {
+    Escape: () => view.live?.cancel(),
     " ": () => view.play(), ".": () => view.go(state.frame + 1), ",": () => view.go(state.frame - 1),
   });
   fill(byId("input"), manifest.inputs.map((input, i) => [i, input.name]).filter(([i]) => manifest.inputs[i].frames.length), 0);

@@ -1,8 +1,10 @@
 // The hand: one finger or button turns, two fingers or another button shift, the wheel or a pinch goes nearer, keys do all of it.
 
-function listenToHand(canvas, camera, redraw) {
+// `grab(event)` returns what is under a pointer that goes down, if it is to be dragged: it is told `move(dx, dy)`, by parts of the
+// picture's height, and `drop()`. A second finger drops it.
+function listenToHand(canvas, camera, redraw, grab) {
   const fingers = new Map();
-  let span = 0;
+  let span = 0, held = null;
   const spanOf = () => {
     const [a, b] = [...fingers.values()];
     return b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
@@ -11,9 +13,17 @@ function listenToHand(canvas, camera, redraw) {
     canvas.setPointerCapture(e.pointerId);
     fingers.set(e.pointerId, { x: e.clientX, y: e.clientY });
     span = spanOf();
+    drop();
+    const isTurn = e.altKey || e.shiftKey || e.ctrlKey || e.button !== 0 || fingers.size > 1;
+    held = isTurn ? null : grab(e);
     canvas.focus({ preventScroll: true });
   });
+  const drop = () => {
+    held?.drop();
+    held = null;
+  };
   const lift = (e) => {
+    drop();
     fingers.delete(e.pointerId);
     span = spanOf();
   };
@@ -29,6 +39,8 @@ function listenToHand(canvas, camera, redraw) {
       const now = spanOf();
       if (span > 0 && now > 0) camera.approach(now / span);
       span = now;
+    } else if (held) {
+      held.move(dx, dy);
     } else if (e.shiftKey || e.ctrlKey || e.buttons & 6) {
       camera.pan(dx, dy);
     } else {

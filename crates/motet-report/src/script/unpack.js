@@ -40,6 +40,12 @@ function decoded(bytes, rows, columns, planes, kind) {
 const CACHE_BYTES = 4e8;
 const cache = new Map();
 
+// Replaces all data of the page.
+function replaceData(update) {
+  cache.clear();
+  Object.assign(manifest, update);
+}
+
 async function unpack(block) {
   const id = manifest.ids[block];
   let entry = cache.get(id);
@@ -47,7 +53,7 @@ async function unpack(block) {
     cache.delete(id);
   } else {
     const [rows, columns, planes, kind] = manifest.blocks[id];
-    const text = document.getElementById("b" + id).textContent;
+    const text = manifest.texts ? manifest.texts[id] : document.getElementById("b" + id).textContent;
     const numbers = inflated(bytesOf(text)).then((bytes) => decoded(bytes, rows, columns, planes, kind));
     entry = { numbers, size: 4 * rows * columns };
   }

@@ -20,13 +20,13 @@ use crate::moving::wall::{Drive, NO_NODE, Wall};
 const UNCHANGED_RATIO: RangeInclusive<f64> = 0.5..=1.25;
 
 /// The mesh, and everything that is rebuilt when it changes.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Current {
     /// The mesh with its points at their current positions, and the user's arrays.
     pub(super) mesh: Mesh,
     pub(super) tets: Tets,
     /// Moves the vertices; its reference is the mesh after the last change.
-    pub(super) mover: Mover,
+    pub(super) mover: Arc<Mover>,
     /// Records of each vertex and cell.
     pub(super) records: Records,
     drive: Drive,
@@ -173,7 +173,7 @@ impl Current {
     ) -> Result<Self> {
         let drive = wall.drive(mover.boundary(), &records.first, &records.node, threads)?;
         let tets = Tets::of_mover(&mover);
-        Ok(Self { mesh, tets, mover, records, drive, left })
+        Ok(Self { mesh, tets, mover: Arc::new(mover), records, drive, left })
     }
 
     /// Continues with a mesh derived from this one.

@@ -1,0 +1,21 @@
+//! A mesh in a window of the browser: its parts are dragged, and the mesh follows.
+//!
+//! A small server, reachable from this machine alone, sends the page of a report with the mesh in it
+//! ([`motet_report::Live`]). While a part is dragged, the page asks where everything goes: the motion of one
+//! step, without repair, so that answers take milliseconds. When the part is dropped, the step is made, and
+//! what became bad is repaired. Each step can be undone, to the byte.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `scene` | the mesh, what was done to it, and what the page shows of it |
+//! | `parts` | the patches that can be dragged, and the distances between those that stand apart |
+//! | `preview` | what a displacement would do, in the order of the page |
+//! | `server` | requests and answers |
+
+mod parts;
+mod preview;
+mod scene;
+mod server;
+
+pub use scene::{Asked, Scene, Shift};
+pub use server::Server;
