@@ -24,5 +24,5 @@ for name, patch in zip(blocks.keys(), blocks):
     plotter.add_mesh(patch, color=colour, show_edges=True, line_width=0.5)
 plotter.add_text("closed by caps", position="upper_edge", font_size=10)
 plotter.link_views()
-plotter.camera_position = [(17, 5, 11), (0, 0.5, 0), (0, 1, 0)]
+plotter.camera_position = [(9, -13, 13), (0, 0.7, 0), (0, 1, 0)]
 plotter.show(screenshot="caps.png")

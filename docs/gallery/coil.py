@@ -14,4 +14,4 @@ print(f"{len(coiled.mesh.tets)} tets, {100 * kept:.0f} % of the vessel's kept")
 print(f"EAS worst {quality.worst:.3f}, 1 % {quality.p1:.3f}, median {quality.median:.3f}, mean {quality.mean:.3f}")
 
 grid = coiled.mesh.to_pyvista()
-grid.motet.plot(cpos=[(2.5, 4.5, 15), (0.3, 0.7, 0), (0, 1, 0)], screenshot="coil.png")
+grid.motet.plot(cpos=[(3.5, 4.5, 18), (1.2, 0.5, 0), (0, 1, 0)], screenshot="coil.png")

@@ -26,5 +26,5 @@ for k, (mesh, text) in enumerate(((coiled, "at first"), (moved.mesh, "moved"), (
     plotter.add_mesh(tets.clip("z", crinkle=True), **look, show_scalar_bar=k == 2)
     plotter.add_mesh(grid.motet.blocks()["coil"], color="peru")
     plotter.add_text(f"{text}: {(mesh.quality() < 0.2).sum()} bad", position="upper_edge", font_size=10)
-    plotter.camera_position = [(0, 2.3, 9), (0, 2.3, 0), (0, 1, 0)]
+    plotter.camera_position = [(0.2, 2, 10), (0.2, 2, 0), (0, 1, 0)]
 plotter.show(screenshot="coil_turns.png")

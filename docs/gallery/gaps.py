@@ -15,4 +15,4 @@ gaps = measured.motet.gaps
 print(f"least gap {gaps.least:.4f}, at {gaps.pairs[0].points[0]}")
 print(gaps.bodies["stent"].warning.sum(), "of", stent.n_points, "vertices of the stent warn")
 
-measured.motet.plot(cpos=[(4, -9.5, 5), (0, 0, 3.2), (1, 0, 0)], screenshot="gaps.png")
+measured.motet.plot(cpos=[(4, -10, 4), (0, 0, 2), (1, 0, 0)], screenshot="gaps.png")

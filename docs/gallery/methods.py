@@ -24,5 +24,4 @@ for k, (text, mesh) in enumerate(panels.items()):
     text += f": {(tets['EAS'] < 0.2).sum()} bad, mean {tets['EAS'].mean():.2f}"
     plotter.add_text(text, position="upper_edge", font_size=10)
     plotter.view_xz()
-    plotter.camera.zoom(1.2)
 plotter.show(screenshot="methods.png")

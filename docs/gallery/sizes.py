@@ -21,6 +21,5 @@ tets = fine.to_pyvista().extract_cells(fine.cell_ids("tetra")).clip("z", crinkle
 tets["edge length"] = np.cbrt(6 * np.sqrt(2) * abs(tets.compute_cell_sizes()["Volume"]))
 plotter = pv.Plotter()
 plotter.add_mesh(tets, scalars="edge length", cmap="viridis_r", show_edges=True, line_width=0.5, ambient=0.5)
-plotter.view_xy()
-plotter.camera.zoom(1.3)
+plotter.camera_position = [(1, 0.5, 20), (1, 0.5, 0), (0, 1, 0)]
 plotter.show(screenshot="sizes.png")

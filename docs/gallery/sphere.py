@@ -26,5 +26,4 @@ for k in range(1, 9):
         text = f"step {k}: {len(moving.mesh.tets)} tets, worst {step.worst.eas:.2f}"
         plotter.add_text(text, position="upper_edge", font_size=10)
         plotter.view_xz()
-        plotter.camera.zoom(1.2)
 plotter.show(screenshot="sphere.png")

@@ -24,6 +24,6 @@ plotter = pv.Plotter()
 look = dict(scalars="EAS", clim=(0, 1), show_edges=True, line_width=0.5, ambient=0.5, diffuse=0.5)
 plotter.add_mesh(tets.clip("y", crinkle=True, invert=False), **look)
 plotter.add_mesh(stent.to_pyvista(), color="lightgrey", smooth_shading=True, split_sharp_edges=True, specular=0.5)
-plotter.camera_position = [(5, -8, 5), (0, 0, 3), (1, 0, 0)]
+plotter.camera_position = [(5, -10, 4), (0, 0, 2), (1, 0, 0)]
 plotter.camera.zoom(1.1)
 plotter.show(screenshot="stent.png")

@@ -18,7 +18,7 @@ ring = ring[np.argsort(np.arctan2(ring[:, 1], ring[:, 0]))]
 def leaflets(degrees):
     out, up = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     rows = np.array([ring * (1 - s * out, 1 - s * out, 1) + (0, 0, s * up) for s in np.linspace(0, 0.75, 6)])
-    return pv.merge([pv.StructuredGrid(*rows[:, k : k + 10].transpose(2, 0, 1)) for k in (0, 12, 24)])
+    return pv.merge([pv.StructuredGrid(*rows[:, k : k + 12].transpose(2, 0, 1)) for k in (0, 12, 24)])
 
 
 start = leaflets(50)
@@ -36,8 +36,7 @@ for k, degrees in enumerate((40, 25, 40, 55, 70, 50)):
         plotter.subplot(0, (1, 4, 5).index(k))
         blocks = moving.mesh.to_pyvista().motet.blocks()
         plotter.add_mesh(blocks["surface"].clip("z", origin=(0, 0, 1.2)), color="lightsteelblue", show_edges=True)
-        plotter.add_mesh(blocks["membrane"], color="tomato", show_edges=True)
-        text = f"{degrees} degrees: worst {step.worst.eas:.2f}, {step.bad} bad"
-        plotter.add_text(text, position="upper_edge", font_size=10)
+        plotter.add_mesh(blocks["membrane"], color="tomato", show_edges=True, ambient=0.4)
+        plotter.add_text(f"{degrees} degrees: worst {step.worst.eas:.2f}", position="upper_edge", font_size=10)
         plotter.camera_position = [(4, -3, 7.5), (0, 0, 1), (0, 0, 1)]
 plotter.show(screenshot="valve.png")

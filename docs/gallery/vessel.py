@@ -13,5 +13,5 @@ print(f"EAS worst {quality.worst:.3f}, 1 % {quality.p1:.3f}, median {quality.med
 
 vessel = filled.mesh.to_pyvista()
 print("patches:", ", ".join(vessel.motet.blocks().keys()))
-front = [(0, 0.5, 18), (0, 0.5, 0), (0, 1, 0)]
+front = [(1.5, 0.5, 22), (1.5, 0.5, 0), (0, 1, 0)]
 vessel.motet.plot(cpos=front, screenshot="vessel.png")

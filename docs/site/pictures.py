@@ -36,7 +36,7 @@ def set_theme(size):
     theme.font.family, theme.font.title_size, theme.font.label_size, theme.font.fmt = "arial", 18, 16, "%.2g"
     theme.colorbar_orientation = "vertical"
     bar = theme.colorbar_vertical
-    bar.position_x, bar.position_y, bar.width, bar.height = 0.84, 0.25, 0.06, 0.5
+    bar.position_x, bar.position_y, bar.width, bar.height = 0.87, 0.25, 0.06, 0.5
 
 
 if __name__ == "__main__":
