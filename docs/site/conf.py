@@ -47,4 +47,5 @@ templates_path = ["templates"]
 html_additional_pages = {"index": "start.html"}
 html_show_sourcelink = False
 html_copy_source = False
+html_show_copyright = False
 html_theme_options = {"navigation_with_keys": True}

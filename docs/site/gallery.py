@@ -1,4 +1,4 @@
-"""The gallery: `{gallery}` shows scripts of docs/gallery with their pictures, `{thumbnails}` all pictures as links to them."""
+"""The gallery: `{gallery}` shows scripts of docs/gallery with their pictures and what they print, `{thumbnails}` the pictures as links."""
 import ast
 import os
 import re
@@ -55,6 +55,9 @@ class Gallery(Pictured):
         section += self.parse_text_to_nodes(script.text)
         section += self.picture(name, alt=script.title, classes=["picture"])
         section += nodes.literal_block(script.code, script.code, language="python")
+        printed = (Path(self.config.pictures) / f"{name}.txt").read_text(encoding="utf-8").rstrip()
+        if printed:
+            section += nodes.literal_block(printed, printed, language="none", classes=["printed"])
         return section
 
 
