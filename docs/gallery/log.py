@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import motet
 from motet import shapes
 
-shapes.sphere_in_box(8, 6).save("box.vtu")
+shapes.sphere_in_box(6, 6).save("box.vtu")
 motion = '[[motion.move]]\npatch = "sphere"\nshift = [3.5, 0, 0]\nin_time = "beat"\n'
 Path("job.toml").write_text(f'mesh = "box.vtu"\noutput = "out/box.pvd"\n\n[time]\nsteps = 10\nperiods = 2\n\n{motion}')
 subprocess.run([sys.executable, "-m", "motet", "run", "job.toml", "-q"], check=True)

@@ -12,7 +12,7 @@ from motet import shapes
 coarse = motet.mesh(shapes.aneurysm(around=16), size="auto").mesh
 wall = coarse.to_pyvista().extract_surface(algorithm="dataset_surface")
 bend = np.maximum(abs(wall.curvature("maximum")), abs(wall.curvature("minimum")))
-at_wall = np.clip(1 / (3 * np.maximum(bend, 1e-6)), 0.12, 0.6)
+at_wall = np.clip(1 / (3 * np.maximum(bend, 1e-6)), 0.15, 0.6)
 distance = np.linalg.norm(coarse.points[:, None] - wall.points[None], axis=2)
 sizes = np.min(at_wall + 0.4 * distance, axis=1)
 fine = motet.remesh(coarse, sizes=sizes, surface="adapt", distance=0.03).mesh
