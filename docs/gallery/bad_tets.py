@@ -27,5 +27,5 @@ for k, (mesh, chosen, colour, text) in enumerate(panels):
     plotter.add_mesh(grid.extract_cells(grid["chosen"]), color=colour, show_edges=True)
     plotter.add_mesh(grid.motet.blocks()["sphere"], color="lightslategrey", smooth_shading=True)
     plotter.add_text(text, position="upper_edge", font_size=10)
-    plotter.camera_position = [(2, -21, 6), (0.5, 0, 0), (0, 0, 1)]
+    plotter.camera_position = [(2, -24, 7), (0.5, 0, 0.5), (0, 0, 1)]
 plotter.show(screenshot="bad_tets.png")

@@ -20,8 +20,8 @@ for mesh, text in ((shaken, "before"), (repaired, "repaired"), (best, 'goal="bes
     eas = mesh.quality()[mesh.cell_ids("tetra")]
     worst, p1, median = np.percentile(eas, [0, 1, 50])
     label = f"{text}: worst {worst:.2f}, 1 % {p1:.2f}, median {median:.2f}, mean {eas.mean():.2f}"
-    axes.hist(eas, bins=np.linspace(0, 1, 51), histtype="step", linewidth=2, label=label)
-axes.axvspan(0, 0.2, color="red", alpha=0.1, label="bad")
-axes.set(xlabel="EAS", ylabel="tets", xlim=(0, 1))
+    axes.hist(eas, bins=np.linspace(-0.8, 1, 73), histtype="step", linewidth=2, label=label)
+axes.axvspan(-0.8, 0.2, color="red", alpha=0.1, label="bad; inverted below 0")
+axes.set(xlabel="EAS", ylabel="tets", xlim=(-0.8, 1))
 axes.legend(loc="upper left", frameon=False)
 figure.savefig("histogram.png", dpi=120)

@@ -9,13 +9,11 @@ import sys
 import time
 from pathlib import Path
 
-import matplotlib  # noqa: E402
-
-matplotlib.use("Agg")
-import motet  # noqa: E402
-import pyvista as pv  # noqa: E402
-from PIL import Image, ImageChops  # noqa: E402
-from vtkmodules.vtkCommonCore import vtkLogger  # noqa: E402
+import matplotlib
+import motet
+import pyvista as pv
+from PIL import Image, ImageChops, ImageOps
+from vtkmodules.vtkCommonCore import vtkLogger
 
 SCRIPTS = sorted((Path(__file__).resolve().parent.parent / "gallery").glob("*.py"))
 MARGIN = 16
@@ -37,7 +35,8 @@ def draw(script, folder, size=(960, 640)):
 
 
 def set_theme(size):
-    """Let PyVista draw without a window, with an upright colour bar whose title and labels do not overlap."""
+    """Let PyVista and Matplotlib draw without a window; with an upright colour bar whose title and labels do not overlap."""
+    matplotlib.use("Agg")
     pv.OFF_SCREEN = True
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # without a display it warns of that
     theme = pv.global_theme
@@ -50,12 +49,12 @@ def set_theme(size):
 
 
 def trim(path):
+    """Make the empty margins of a picture equal and narrow."""
     image = Image.open(path).convert("RGB")
     box = ImageChops.difference(image, Image.new("RGB", image.size, "white")).getbbox()
     if box is None:
         raise ValueError(f"{path.name} is empty")
-    left, top, right, bottom = box
-    image.crop((max(left - MARGIN, 0), max(top - MARGIN, 0), min(right + MARGIN, image.width), min(bottom + MARGIN, image.height))).save(path, optimize=True)
+    ImageOps.expand(image.crop(box), MARGIN, "white").save(path, optimize=True)
 
 
 def is_current(script, picture):
