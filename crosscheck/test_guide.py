@@ -1,4 +1,4 @@
-"""The commands of docs/guide print what the pages show.
+"""The commands of docs/guide and docs/tutorials print what the pages show.
 
     target/venv/bin/python -m pytest crosscheck/test_guide.py
     target/venv/bin/python crosscheck/test_guide.py --write           update the output in the pages
@@ -24,7 +24,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGES = sorted((ROOT / "docs" / "guide").glob("*.md"))
+PAGES = [page for folder in ("guide", "tutorials") for page in sorted((ROOT / "docs" / folder).glob("*.md"))]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"^(?:#|//|!|/\*) ([\w-]+\.\w+)(?: \*/)?$")
 TIME = re.compile(r"\b[\d.]+ (?:ns|us|ms|s|min)\b")
@@ -141,7 +141,7 @@ def follow(page, motet, folder):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the commands need a POSIX shell")
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: f"{page.parent.name}/{page.stem}")
 def test_commands_print_what_the_page_shows(page, motet, tmp_path):
     pytest.importorskip("motet", reason="the package is not installed: ./test does it")
     wrong = []
@@ -153,7 +153,7 @@ def test_commands_print_what_the_page_shows(page, motet, tmp_path):
     assert not wrong, "\n\n".join(wrong)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: f"{page.parent.name}/{page.stem}")
 def test_linked_files_exist(page):
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text()):
         assert target.startswith("https://") or (page.parent / target).exists(), f"{page.name}: {target}"
