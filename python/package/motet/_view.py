@@ -66,7 +66,7 @@ def view(mesh: MeshLike, *, port: int = 0, browser: bool = False, threads: int =
 
     Parameters
     ----------
-    mesh : mesh or path
+    mesh : MeshLike
         The mesh. One without volume cells can be looked at, but not moved.
     port : int, default 0
         The port of this machine to listen on; 0 is any free one.
