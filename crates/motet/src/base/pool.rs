@@ -1,4 +1,7 @@
 //! A pool of threads: those of `rayon` with the feature `parallel`, none without.
+//!
+//! All ways to divide work come to one, numbered tasks ([`Pool::run`]), by references to functions: so little
+//! is compiled for each call of [`Threads`](crate::base::Threads).
 
 #[cfg(feature = "parallel")]
 pub(super) use parallel::Pool;
@@ -7,16 +10,13 @@ pub(super) use serial::Pool;
 
 #[cfg(feature = "parallel")]
 mod parallel {
-    use std::ops::Range;
-    use std::sync::Mutex;
-    use std::sync::atomic::{AtomicU64, Ordering};
-
-    use rayon::prelude::*;
+    use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+    use std::sync::{Mutex, PoisonError};
 
     use crate::base::{Simulation, splitmix64};
 
-    /// Simulated threads take this many parts each of what threads divide as they go.
-    const SIMULATED_PARTS: usize = 8;
+    /// What is divided evenly is divided into this many parts a thread, so that none waits long for the last.
+    const PARTS: usize = 8;
 
     /// Two threads or more. Its methods run on these, and return when all work is done.
     #[derive(Debug)]
@@ -37,12 +37,33 @@ mod parallel {
     struct Disorder(AtomicU64);
 
     impl Disorder {
-        /// Tasks in another order, each with its number.
-        fn shuffled<T>(&self, tasks: Vec<T>) -> Vec<(usize, T)> {
+        /// The numbers below `n` in another order.
+        fn shuffled(&self, n: usize) -> Vec<usize> {
             let call = self.0.fetch_add(1, Ordering::Relaxed);
-            let mut tasks: Vec<(usize, T)> = tasks.into_iter().enumerate().collect();
-            tasks.sort_by_key(|(number, _)| splitmix64(call ^ splitmix64(*number as u64)));
-            tasks
+            let mut numbers: Vec<usize> = (0..n).collect();
+            numbers.sort_by_key(|&number| splitmix64(call ^ splitmix64(number as u64)));
+            numbers
+        }
+    }
+
+    /// A thing that one task takes, or puts there.
+    struct Slot<T>(Mutex<Option<T>>);
+
+    impl<T> Slot<T> {
+        fn of(thing: T) -> Self {
+            Self(Mutex::new(Some(thing)))
+        }
+
+        fn empty() -> Self {
+            Self(Mutex::new(None))
+        }
+
+        fn take(&self) -> Option<T> {
+            self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+        }
+
+        fn put(&self, thing: T) {
+            *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(thing);
         }
     }
 
@@ -66,7 +87,6 @@ mod parallel {
         }
 
         /// A pool that begins the tasks of a call in an order chosen by `seed`, another one in each call.
-        /// Items that one function is applied to are not tasks.
         pub(in crate::base) fn shuffled(self, seed: u64) -> Self {
             Self { disorder: Some(Disorder(AtomicU64::new(splitmix64(seed)))), ..self }
         }
@@ -78,120 +98,66 @@ mod parallel {
             }
         }
 
-        /// `of(i)` for each `i` below `n`, in order; a thread takes at least `min_part` at a time.
-        pub(in crate::base) fn map<T: Send>(
-            &self,
-            n: usize,
-            min_part: usize,
-            of: impl Fn(usize) -> T + Sync + Send,
-        ) -> Vec<T> {
-            let mut list = Vec::new();
-            self.append(&mut list, n, min_part, of);
-            list
+        /// The length of parts of `n` items, at least `min_part`.
+        pub(in crate::base) fn part(&self, n: usize, min_part: usize) -> usize {
+            n.div_ceil(PARTS * self.count()).max(min_part).max(1)
         }
 
-        /// Appends `of(i)` for each `i` below `n`, in order; a thread takes at least `min_part` at a time.
-        pub(in crate::base) fn append<T: Send>(
-            &self,
-            list: &mut Vec<T>,
-            n: usize,
-            min_part: usize,
-            of: impl Fn(usize) -> T + Sync + Send,
-        ) {
+        /// Does all tasks below `n`, each once. The calling thread and all but one of the pool each take the
+        /// next number that is left: tasks need not take equally long, and the caller begins while the
+        /// others, which sleep between calls, wake up.
+        fn run(&self, n: usize, task: &(dyn Fn(usize) + Sync)) {
+            let order = self.disorder.as_ref().map(|disorder| disorder.shuffled(n));
+            let number = |k: usize| order.as_ref().map_or(k, |order| order[k]);
             match &self.workers {
                 Threads(threads) => {
-                    let items = (0..n).into_par_iter().with_min_len(min_part).map(of);
-                    threads.install(|| list.par_extend(items));
+                    let next = AtomicUsize::new(0);
+                    let work = &|| {
+                        let numbers = || Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&k| k < n);
+                        std::iter::from_fn(numbers).for_each(|k| task(number(k)));
+                    };
+                    threads.in_place_scope(|scope| {
+                        (1..self.count().min(n)).for_each(|_| scope.spawn(|_| work()));
+                        work();
+                    });
                 }
                 Simulated(simulation) => {
-                    list.reserve(n);
-                    let (length, mut tasks) = (self.simulated_part(n, min_part), simulation.call());
-                    for start in (0..n).step_by(length) {
-                        tasks.take(|| list.extend((start..n.min(start + length)).map(&of)));
-                    }
+                    let mut tasks = simulation.call();
+                    (0..n).for_each(|k| tasks.take(|| task(number(k))));
                 }
             }
         }
 
-        fn simulated_part(&self, n: usize, min_part: usize) -> usize {
-            n.div_ceil(SIMULATED_PARTS * self.count()).max(min_part).max(1)
-        }
-
-        /// Applies `of` to each item, with its place; a thread takes at least `min_part` at a time.
-        pub(in crate::base) fn update<T: Send>(
-            &self,
-            list: &mut [T],
-            min_part: usize,
-            of: impl Fn(usize, &mut T) + Sync + Send,
-        ) {
-            match &self.workers {
-                Threads(threads) => {
-                    let items = list.par_iter_mut().with_min_len(min_part).enumerate();
-                    threads.install(|| items.for_each(|(i, item)| of(i, item)));
-                }
-                Simulated(simulation) => {
-                    let (length, mut tasks) = (self.simulated_part(list.len(), min_part), simulation.call());
-                    for (k, part) in list.chunks_mut(length).enumerate() {
-                        tasks.take(|| part.iter_mut().zip(k * length..).for_each(|(item, i)| of(i, item)));
-                    }
-                }
-            }
-        }
-
-        /// The results for each of some ranges, in order, with a state that ranges of one thread share.
-        pub(in crate::base) fn in_ranges<S: Default, T: Send>(
-            &self,
-            ranges: Vec<Range<usize>>,
-            of: impl Fn(&mut S, Range<usize>) -> T + Sync + Send,
-        ) -> Vec<T> {
-            match &self.workers {
-                _ if self.disorder.is_some() => self.each(ranges, |range| of(&mut S::default(), range)),
-                Threads(threads) => {
-                    threads.install(|| ranges.into_par_iter().map_init(S::default, of).collect())
-                }
-                Simulated(simulation) => {
-                    let (mut state, mut tasks) = (S::default(), simulation.call());
-                    ranges.into_iter().map(|range| tasks.take(|| of(&mut state, range))).collect()
-                }
-            }
-        }
-
+        /// Applies `of` to each item; the results are in order.
         pub(in crate::base) fn each<T: Send, U: Send>(
             &self,
             items: Vec<T>,
-            of: impl Fn(T) -> U + Sync + Send,
+            of: &(dyn Fn(T) -> U + Sync),
         ) -> Vec<U> {
-            let Some(disorder) = &self.disorder else {
-                return self.in_order(items, of);
-            };
-            let tasks = disorder.shuffled(items);
-            let mut results = self.in_order(tasks, |(number, item)| (number, of(item)));
-            results.sort_by_key(|(number, _)| *number);
-            results.into_iter().map(|(_, result)| result).collect()
-        }
-
-        fn in_order<T: Send, U: Send>(&self, items: Vec<T>, of: impl Fn(T) -> U + Sync + Send) -> Vec<U> {
-            match &self.workers {
-                Threads(threads) => threads.install(|| items.into_par_iter().map(of).collect()),
-                Simulated(simulation) => {
-                    let mut tasks = simulation.call();
-                    items.into_iter().map(|item| tasks.take(|| of(item))).collect()
+            let items: Vec<Slot<T>> = items.into_iter().map(Slot::of).collect();
+            let results: Vec<Slot<U>> = items.iter().map(|_| Slot::empty()).collect();
+            self.run(items.len(), &|k| {
+                if let Some(item) = items[k].take() {
+                    results[k].put(of(item));
                 }
-            }
+            });
+            results.iter().filter_map(Slot::take).collect()
         }
 
+        /// Whether `is_such` is true of any of these things; those left when one is found are not looked at.
         pub(in crate::base) fn any<T: Send>(
             &self,
             items: Vec<T>,
-            is_such: impl Fn(T) -> bool + Sync + Send,
+            is_such: &(dyn Fn(T) -> bool + Sync),
         ) -> bool {
-            match &self.workers {
-                Threads(threads) => threads.install(|| items.into_par_iter().any(is_such)),
-                Simulated(simulation) => {
-                    let mut tasks = simulation.call();
-                    items.into_iter().any(|item| tasks.take(|| is_such(item)))
+            let items: Vec<Slot<T>> = items.into_iter().map(Slot::of).collect();
+            let is_found = AtomicBool::new(false);
+            self.run(items.len(), &|k| {
+                if !is_found.load(Ordering::Relaxed) && items[k].take().is_some_and(is_such) {
+                    is_found.store(true, Ordering::Relaxed);
                 }
-            }
+            });
+            is_found.into_inner()
         }
 
         pub(in crate::base) fn join<A: Send, B: Send>(
@@ -208,48 +174,27 @@ mod parallel {
             }
         }
 
-        /// Applies `of` to parts of up to `length` items of a list, with the place of the first and the state
-        /// of its thread. The calling thread and all but one of the pool take part after part.
-        pub(in crate::base) fn in_parts<S, T: Send>(
+        /// Applies `of` to all parts of up to `length` items of a list, each once, with the place of its
+        /// first item.
+        pub(in crate::base) fn in_parts<T: Send>(
             &self,
             list: &mut [T],
             length: usize,
-            state: impl Fn() -> S + Sync,
-            of: impl Fn(&S, usize, &mut [T]) + Sync,
+            of: &(dyn Fn(usize, &mut [T]) + Sync),
         ) {
-            let parts = list.chunks_mut(length);
-            let parts: Box<dyn Iterator<Item = (usize, &mut [T])> + Send> = match &self.disorder {
-                None => Box::new(parts.enumerate()),
-                Some(disorder) => Box::new(disorder.shuffled(parts.collect()).into_iter()),
-            };
-            match &self.workers {
-                Threads(threads) => {
-                    let parts = Mutex::new(parts);
-                    let next = || parts.lock().ok()?.next();
-                    let work = &|| {
-                        let state = state();
-                        while let Some((k, part)) = next() {
-                            of(&state, k * length, part);
-                        }
-                    };
-                    threads.in_place_scope(|scope| {
-                        (1..self.count()).for_each(|_| scope.spawn(|_| work()));
-                        work();
-                    });
+            let parts: Vec<Slot<&mut [T]>> = list.chunks_mut(length).map(Slot::of).collect();
+            self.run(parts.len(), &|k| {
+                if let Some(part) = parts[k].take() {
+                    of(k * length, part);
                 }
-                Simulated(simulation) => {
-                    let (state, mut tasks) = (state(), simulation.call());
-                    parts.for_each(|(k, part)| tasks.take(|| of(&state, k * length, part)));
-                }
-            }
+            });
+            assert!(parts.iter().all(|part| part.take().is_none()), "all parts are done");
         }
     }
 }
 
 #[cfg(not(feature = "parallel"))]
 mod serial {
-    use std::ops::Range;
-
     /// A pool that cannot be made: everything runs on the calling thread.
     #[derive(Debug)]
     pub(in crate::base) enum Pool {}
@@ -272,31 +217,15 @@ mod serial {
             match *self {}
         }
 
-        pub(in crate::base) fn map<T>(&self, _: usize, _: usize, _: impl Fn(usize) -> T) -> Vec<T> {
+        pub(in crate::base) fn part(&self, _: usize, _: usize) -> usize {
             match *self {}
         }
 
-        pub(in crate::base) fn append<T>(&self, _: &mut Vec<T>, _: usize, _: usize, _: impl Fn(usize) -> T) {
+        pub(in crate::base) fn each<T, U>(&self, _: Vec<T>, _: &(dyn Fn(T) -> U + Sync)) -> Vec<U> {
             match *self {}
         }
 
-        pub(in crate::base) fn update<T>(&self, _: &mut [T], _: usize, _: impl Fn(usize, &mut T)) {
-            match *self {}
-        }
-
-        pub(in crate::base) fn in_ranges<S, T>(
-            &self,
-            _: Vec<Range<usize>>,
-            _: impl Fn(&mut S, Range<usize>) -> T,
-        ) -> Vec<T> {
-            match *self {}
-        }
-
-        pub(in crate::base) fn each<T, U>(&self, _: Vec<T>, _: impl Fn(T) -> U) -> Vec<U> {
-            match *self {}
-        }
-
-        pub(in crate::base) fn any<T>(&self, _: Vec<T>, _: impl Fn(T) -> bool) -> bool {
+        pub(in crate::base) fn any<T>(&self, _: Vec<T>, _: &(dyn Fn(T) -> bool + Sync)) -> bool {
             match *self {}
         }
 
@@ -304,12 +233,11 @@ mod serial {
             match *self {}
         }
 
-        pub(in crate::base) fn in_parts<S, T>(
+        pub(in crate::base) fn in_parts<T>(
             &self,
             _: &mut [T],
             _: usize,
-            _: impl Fn() -> S,
-            _: impl Fn(&S, usize, &mut [T]),
+            _: &(dyn Fn(usize, &mut [T]) + Sync),
         ) {
             match *self {}
         }

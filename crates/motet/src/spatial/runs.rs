@@ -12,7 +12,7 @@ use crate::geometry::vector::is_finite;
 const RUN: usize = 128;
 
 /// [`Threads::in_runs`] with runs of [`RUN`] items.
-pub(crate) fn in_runs<S: Default, T: Send>(
+pub(crate) fn in_runs<S: Default + Send, T: Send>(
     n: usize,
     threads: &Threads,
     run: impl Fn(&mut S, Range<usize>) -> Vec<T> + Sync + Send,

@@ -145,7 +145,7 @@ impl NearestTriangle {
     /// `j` of the other, or `None` if that is above `bound`. It is called only for pairs whose boxes are near
     /// enough, with a state of its own on each thread. A good `start`, such as the squared distance of any
     /// pair of points of the two surfaces, avoids most of the calls.
-    pub fn closest_pair<T: Default>(
+    pub fn closest_pair<T: Default + Send>(
         &self,
         other: &Self,
         start: f64,
