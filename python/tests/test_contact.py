@@ -85,3 +85,15 @@ def test_invalid_arguments_raise_an_error(call, message):
     with pytest.raises(ValueError) as error:
         call()
     assert isinstance(error.value, motet.Error) and message in str(error.value)
+
+
+@pytest.mark.parametrize("x", [-1.0, -0.9])
+def test_a_vessel_is_the_room_of_a_flap_whether_it_is_attached_or_not(x):
+    tube = shapes.tube(n=4, slices=15)
+    wall = [i for i in tube.patch_vertices("wall") if abs(tube.points[i, 0] + 1) < 1e-9 and 1 < tube.points[i, 2] < 4]
+    low, high = sorted(tube.points[wall, 2])[:2]
+    flap = motet.Mesh([(x, 0, low), (x, 0, high), (0.2, 0, low)], [(0, 1, 2)])
+    mesh = motet.mesh(motet.Mesh(tube.points, tube.triangles), membranes=[flap], size="auto").mesh
+    contact = motet.Contact(mesh, patches=["membrane", "surface"])
+    assert [room.room for room in contact.rooms] == ["surface"]
+    assert 0.0 < contact.measure().least < 1.2

@@ -26,8 +26,8 @@ pub struct Body {
 /// Whether a body is the wall of a room that contains others: the sign of its distances to these is reversed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Room {
-    /// Of each body most of whose area it encloses at first, if it is closed, shares no vertex with that
-    /// body, and does not lie in it likewise. The default.
+    /// Of each body most of whose area it encloses at first, if it is closed and does not lie in that body
+    /// likewise. The default.
     #[default]
     Found,
     /// Of no body.

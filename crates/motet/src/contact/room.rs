@@ -55,7 +55,7 @@ pub(super) fn within(
     let pairs = ids().flat_map(|room| ids().map(move |body| [room, body])).filter(|[a, b]| a != b);
     let share = |room: BodyId, body: BodyId| {
         let [room, body] = [room, body].map(|id| &bodies[id.index()]);
-        if body.shares_vertex_with(room) { 0.0 } else { share_within(points, body, room, threads) }
+        share_within(points, body, room, threads)
     };
     let within = |[room, body]: [BodyId; 2]| {
         let as_given = Within { room, body, share: None };

@@ -2,7 +2,7 @@
 
 use crate::common::Numbers;
 use crate::surfaces::{Shape, bodies, coil, cube, sheet, torus};
-use motet::base::{BodyId, Point, Threads};
+use motet::base::{BodyId, Point, Threads, VertexId};
 use motet::contact::{Body, Contact, Gaps, Options, Room};
 
 /// Every triangle with its own corners, as in STL files.
@@ -232,4 +232,26 @@ fn a_room_of_what_is_not_there_is_refused() {
         let error = Contact::new(points.clone(), two.clone(), Options::default(), &Threads::single());
         assert!(error.unwrap_err().to_string().contains("body 1 cannot be the room of body"));
     }
+}
+
+/// A flap that hangs from an edge of its room shares vertices with it; the room is one nevertheless.
+#[test]
+fn a_closed_surface_is_the_room_of_a_flap_that_is_attached_to_it() {
+    let cube = cube();
+    let low =
+        (0..3).map(|k| cube.points.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min)).collect::<Vec<_>>();
+    let on_edge = |v: &u32| (1..3).all(|k| cube.points[*v as usize][k] == low[k]);
+    let mut hinge: Vec<u32> = (0..cube.points.len() as u32).filter(on_edge).collect();
+    hinge.sort_by(|a, b| cube.points[*a as usize][0].total_cmp(&cube.points[*b as usize][0]));
+    let ends = [hinge[0], hinge[hinge.len() - 1]].map(|v| cube.points[v as usize]);
+    let tip = [0.5 * (ends[0][0] + ends[1][0]), low[1] + 0.2, low[2] + 0.6];
+    let mut points = cube.points.clone();
+    points.push(tip);
+    let id = VertexId;
+    let flap = hinge.windows(2).map(|pair| [id(pair[0]), id(pair[1]), id(points.len() as u32 - 1)]).collect();
+    let wall = cube.triangles.iter().map(|t| t.map(id)).collect();
+    let body = |name: &str, triangles| Body { name: name.to_owned(), triangles, room: Room::Found };
+    let bodies = vec![body("flap", flap), body("wall", wall)];
+    let contact = Contact::new(points, bodies, Options::default(), &Threads::single());
+    assert_eq!(pairs(&contact.expect("both are sound")), [[1, 0]]);
 }
