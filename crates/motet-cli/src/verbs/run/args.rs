@@ -45,6 +45,7 @@ A job, in TOML; names of files are relative to it. Everything except `mesh` and 
   patch = \"sac\"
   swell = 0.1                     # along its normals; or one or several of
   # shift = [0.5, 0, 0]   turn = { axis = [0, 0, 1], degrees = 40, centre = [0, 0, 0] }
+  # a sheet that stands on its hinge along y bends towards x:
   # bend = { hinge = [0, 0, 0], along = [0, 1, 0], towards = [1, 0, 0], length = 2, degrees = 60 }
   # affine = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]
   in_time = \"beat\"                # swing, ramp, or a table [[0, 0], [0.3, 1], [1, 0]] over a period
