@@ -773,13 +773,56 @@ def test_meshio_reads_its_own_xdmf_mesh_from_a_copy(motet, tmp_path, kinds, data
 
 def test_meshio_reads_names_of_labels_from_xdmf_files(motet, tmp_path):
     source, copy = tmp_path / "source.msh", tmp_path / "copy.xdmf"
-    mesh = mixed_mesh(["triangle", "tetra"])
-    mesh.cell_data = {"gmsh:physical": [np.full(4, 3), np.full(4, 7)], "gmsh:geometrical": [np.full(4, 3), np.full(4, 7)]}
+    # With volume cells of one kind there would be two grids, of which meshio reads none.
+    mesh = mixed_mesh(["triangle", "tetra", "wedge"])
+    mesh.cell_data = {name: [np.full(4, 3), np.full(4, 7), np.full(4, 7)] for name in ("gmsh:physical", "gmsh:geometrical")}
     mesh.field_data = {"a <wall>": np.array([3, 2]), "blood": np.array([7, 3])}
     meshio.write(source, mesh, file_format="gmsh22", binary=False)
     motet("convert", source, copy)
     found = meshio.read(copy)
     assert {name: list(map(int, value)) for name, value in found.field_data.items()} == {"a <wall>": [3, 2], "blood": [7, 3]}
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "binary"])
+def test_vtk_reads_cells_and_facets_of_xdmf_files_of_motet(motet, tmp_path, encoding):
+    mesh = mixed_mesh(["triangle", "tetra"])
+    mesh.cell_data = {"region": [np.zeros(4, np.int32), np.arange(1, 5, dtype=np.int32)], "patch": [np.arange(5, 9, dtype=np.int32), np.zeros(4, np.int32)]}
+    source, copy = tmp_path / "source.vtu", tmp_path / "copy.xdmf"
+    mesh.write(source)
+    motet("convert", source, copy, "--encoding", encoding)
+    reader = vtk.vtkXdmfReader()
+    reader.SetFileName(str(copy))
+    reader.Update()
+    cells, facets = (pyvista.wrap(reader.GetOutputDataObject(0))[i] for i in range(2))
+    expected = pyvista.read(source)
+    for grid, kind, name in ((cells, 10, "region"), (facets, 5, "patch")):
+        chosen = expected.extract_cells(expected.celltypes == kind)
+        assert_same_array(np.asarray(grid.points, float), np.asarray(expected.points, float), "points")
+        assert_same_array(grid.cell_connectivity, expected.cells_dict[kind].ravel(), "cells")
+        assert_same_array(grid.cell_data[name], chosen.cell_data[name], name)
+
+
+def test_dolfinx_reads_cells_and_facets_of_xdmf_files_of_motet(motet, tmp_path):
+    """Runs where dolfinx is installed; the tags of the facets of a box say across which axis they are."""
+    dolfinx_io, mpi = pytest.importorskip("dolfinx.io"), pytest.importorskip("mpi4py.MPI")
+    grid = pyvista.ImageData(dimensions=(4, 4, 4)).to_tetrahedra(5)
+    surface = grid.extract_surface().cast_to_unstructured_grid()
+    points, tets = np.asarray(grid.points, float), grid.cells_dict[10]
+    triangles = surface.point_data["vtkOriginalPointIds"][surface.cells_dict[5]]
+    patch = 1 + np.argmax(np.ptp(points[triangles], axis=1) == 0, axis=1).astype(np.int32)
+    region = 1 + (points[tets].mean(axis=1)[:, 0] > 1.5).astype(np.int32)
+    n, m = len(tets), len(triangles)
+    source, copy = tmp_path / "source.vtu", tmp_path / "copy.xdmf"
+    meshio.Mesh(points, [("triangle", triangles), ("tetra", tets)], cell_data={
+        "region": [np.zeros(m, np.int32), region], "patch": [patch, np.zeros(n, np.int32)]}).write(source)
+    motet("convert", source, copy)
+    with dolfinx_io.XDMFFile(mpi.COMM_SELF, str(copy), "r") as file:
+        mesh = file.read_mesh(name="mesh")
+        mesh.topology.create_connectivity(2, 3)
+        cell_tags, facet_tags = file.read_meshtags(mesh, name="mesh"), file.read_meshtags(mesh, name="facet_tags")
+    assert mesh.topology.index_map(3).size_global == n
+    assert np.array_equal(np.bincount(cell_tags.values), np.bincount(region))
+    assert np.array_equal(np.bincount(facet_tags.values), np.bincount(patch))
 
 
 @pytest.mark.parametrize("kinds", [["tetra"], ["triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"]])
