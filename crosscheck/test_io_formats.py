@@ -1,5 +1,5 @@
-"""MSH, STL, OBJ, Medit, Abaqus, TetGen, SU2, Netgen, UNV, XDMF, DOLFIN XML and SimVascular folders
-compared with Gmsh, meshio, Netgen and VTK."""
+"""MSH, STL, OBJ, Medit, Abaqus, TetGen, SU2, Netgen, UNV, Nastran, XDMF, DOLFIN XML and SimVascular folders
+compared with Gmsh, meshio, Netgen, pyNastran and VTK."""
 import gzip
 import itertools
 import os
@@ -754,6 +754,79 @@ def test_gmsh_reads_its_own_unv_mesh_from_a_copy(motet, gmsh_session, tmp_path, 
     grouped = {kind: sum(bool(groups) for *_, groups in rows) for kind, rows in elements.items()}
     for kind in set(found) & set(dims):
         assert len(found[kind]) == grouped[kind]
+
+
+NASTRAN_KINDS = [["tetra"], ["triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"],
+                 ["triangle6", "quad8", "tetra10", "hexahedron20"]]
+
+
+def nastran_mesh(kinds):
+    """Return a mesh with properties, whose coordinates fit fields of 8 characters."""
+    mesh = mixed_mesh(kinds)
+    mesh.points = np.round(np.clip(mesh.points, -9, 9), 3) + 0.0
+    mesh.cell_data = {"nastran:ref": [np.full(4, i + 3, np.int32) for i in range(len(kinds))]}
+    return mesh
+
+
+@pytest.mark.parametrize("point_format", ["fixed-small", "fixed-large", "free"])
+@pytest.mark.parametrize("kinds", NASTRAN_KINDS[:2])
+def test_meshio_reads_its_own_nastran_mesh_from_a_copy(motet, tmp_path, kinds, point_format):
+    """Elements of first order: those of second order have names of meshio's own when it writes them."""
+    source, copy = tmp_path / "source.bdf", tmp_path / "copy.nas"
+    meshio.nastran.write(source, nastran_mesh(kinds), point_format=point_format)
+    motet("convert", source, copy)
+    assert_same_mesh(meshio.read(copy, file_format="nastran"), meshio.read(source))
+
+
+def nastran_copy(motet, tmp_path, kinds):
+    """Return a mesh and the Nastran file that motet makes of it."""
+    source, copy = tmp_path / "source.msh", tmp_path / "copy.bdf"
+    mesh = nastran_mesh(kinds)
+    properties = mesh.cell_data.pop("nastran:ref")
+    meshio.write(source, meshio.Mesh(mesh.points, mesh.cells, cell_data={
+        "gmsh:physical": properties, "gmsh:geometrical": properties}), file_format="gmsh22", binary=False)
+    motet("convert", source, copy)
+    mesh.cell_data["nastran:ref"] = properties
+    return mesh, copy
+
+
+@pytest.mark.parametrize("kinds", NASTRAN_KINDS)
+def test_meshio_reads_nastran_files_of_motet(motet, tmp_path, kinds):
+    mesh, copy = nastran_copy(motet, tmp_path, kinds)
+    assert_same_mesh(meshio.read(copy), mesh)
+
+
+@pytest.mark.parametrize("size", [8, 16])
+@pytest.mark.parametrize("kinds", NASTRAN_KINDS)
+def test_pynastran_reads_nastran_files_of_motet(motet, tmp_path, kinds, size):
+    """pyNastran writes what it read, and motet reads that."""
+    bdf = pytest.importorskip("pyNastran.bdf.bdf")
+    mesh, copy = nastran_copy(motet, tmp_path, kinds)
+    again, back = tmp_path / "again.bdf", tmp_path / "back.bdf"
+    model = bdf.read_bdf(copy, xref=False, punch=False, debug=None)
+    assert_same_array(np.array([model.nodes[i].xyz for i in sorted(model.nodes)]), mesh.points, "points")
+    model.write_bdf(again, size=size, interspersed=False)
+    motet("convert", again, back)
+    assert_same_mesh(meshio.read(back), mesh)
+
+
+@pytest.mark.parametrize("fields", [0, 1, 2])
+def test_gmsh_reads_its_own_nastran_mesh_from_a_copy(motet, tmp_path, gmsh_session, fields):
+    """Fields are free, short and long."""
+    tet_box(1)
+    source, copy = tmp_path / "source.bdf", tmp_path / "copy.bdf"
+    gmsh.option.setNumber("Mesh.BdfFieldFormat", fields)
+    gmsh.write(str(source))
+    gmsh.clear()
+    gmsh.open(str(source))
+    expected_points, expected, _ = gmsh_content()
+    motet("convert", source, copy)
+    gmsh.clear()
+    gmsh.open(str(copy))
+    points, found, _ = gmsh_content()
+    np.testing.assert_allclose(points, expected_points, rtol=0, atol=1e-12)
+    for kind in (2, 4):
+        assert sorted(nodes for nodes, *_ in found[kind]) == sorted(nodes for nodes, *_ in expected[kind])
 
 
 @pytest.mark.parametrize("data_format", ["XML", "HDF"])

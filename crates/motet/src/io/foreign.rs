@@ -33,11 +33,6 @@ const FOREIGN: &[ForeignFormat] = &[
         remedy: MESHIO_HDF,
     },
     ForeignFormat { name: "an XDMF file of version 2", extensions: &[".xdmf2"], remedy: MESHIO_HDF },
-    ForeignFormat {
-        name: "a Nastran file",
-        extensions: &[".bdf", ".nas", ".fem", ".nastran"],
-        remedy: MESHIO,
-    },
     ForeignFormat { name: "a MED file (Salome, Code_Aster)", extensions: &[".med"], remedy: MESHIO_HDF },
     ForeignFormat { name: "a MOAB file", extensions: &[".h5m"], remedy: MESHIO_HDF },
     ForeignFormat {
@@ -73,7 +68,7 @@ const FOREIGN: &[ForeignFormat] = &[
     ForeignFormat {
         name: "a COMSOL file",
         extensions: &[".mphtxt", ".mphbin"],
-        remedy: "export it from COMSOL as .nas, and convert that with meshio",
+        remedy: "export it from COMSOL as .nas",
     },
     ForeignFormat { name: "a Gmsh geometry", extensions: &[".geo", ".geo_unrolled"], remedy: GEOMETRY },
     ForeignFormat {

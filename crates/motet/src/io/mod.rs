@@ -23,6 +23,7 @@ mod medit;
 mod memory_budget;
 mod msh;
 mod named_sets;
+mod nastran;
 mod netgen;
 mod nodal;
 mod node_order;

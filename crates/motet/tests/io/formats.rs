@@ -1,4 +1,4 @@
-//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, XDMF and DOLFIN files: written files are read
+//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, Nastran, XDMF and DOLFIN files: written files are read
 //! back; damage is reported.
 
 use std::fs;
@@ -142,6 +142,21 @@ const NETGEN_KINDS: &[CellKind] = &[
     CellKind::QUADRATIC_HEXAHEDRON,
 ];
 
+const NASTRAN_KINDS: &[CellKind] = &[
+    CellKind::LINE,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::TETRA,
+    CellKind::HEXAHEDRON,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::QUADRATIC_TRIANGLE,
+    CellKind::QUADRATIC_QUAD,
+    CellKind::QUADRATIC_TETRA,
+    CellKind::QUADRATIC_HEXAHEDRON,
+    CellKind::QUADRATIC_WEDGE,
+    CellKind::QUADRATIC_PYRAMID,
+];
 const UNV_KINDS: &[CellKind] = &[
     CellKind::LINE,
     CellKind::TRIANGLE,
@@ -323,6 +338,23 @@ proptest! {
     }
 
     #[test]
+    fn nastran_comes_back((mut mesh, labels) in meshes(NASTRAN_KINDS, false)) {
+        // Fields of 16 characters hold no more than single precision of all numbers.
+        mesh.points.iter_mut().flatten().for_each(|x| *x = f64::from(*x as f32).clamp(-1e9, 1e9));
+        let refs = labels.iter().zip(mesh.cells.kinds()).map(|(&label, kind)| 1 + label + 10 * kind.dim().unwrap() as i32);
+        mesh.set_cell_field(Field::scalars("nastran:ref", refs.collect::<Vec<_>>()));
+        let (bytes, lost) = print(".bdf", &mesh, &WriteOptions::default());
+        prop_assert!(lost.iter().all(|what| what.ends_with("coordinates are rounded to the 16 characters of a field")), "{lost:?}");
+        let back = parse(".bdf", &bytes).unwrap();
+        prop_assert_eq!(&back.cells, &mesh.cells);
+        prop_assert_eq!(back.cell_field("nastran:ref"), mesh.cell_field("nastran:ref").filter(|_| !labels.is_empty()));
+        for (x, y) in back.points.iter().flatten().zip(mesh.points.iter().flatten()) {
+            prop_assert!((x - y).abs() <= 1e-10 * y.abs(), "{x} {y}");
+            prop_assert!(!lost.is_empty() || x.to_bits() == y.to_bits());
+        }
+    }
+
+    #[test]
     fn xdmf_comes_back((mut mesh, labels) in meshes(XDMF_KINDS, false), seed in any::<u32>()) {
         let values = |n: usize| (0..n).map(|i| f64::from(seed) / (i as f64 + 3.0)).collect::<Vec<_>>();
         mesh.set_point_field(Field { name: "u v".into(), components: 3, values: values(3 * mesh.points.len()).into() });
@@ -433,6 +465,7 @@ proptest! {
             (".su2", WriteOptions::default()),
             (".vol", WriteOptions::default()),
             (".unv", WriteOptions::default()),
+            (".bdf", WriteOptions::default()),
             (".xdmf", WriteOptions::default()),
             (".obj", WriteOptions::default()),
             (".stl", WriteOptions::default()),
