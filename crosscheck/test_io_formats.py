@@ -1,4 +1,4 @@
-"""MSH, STL, OBJ, Medit, Abaqus, TetGen, SU2, Netgen, UNV, Nastran, XDMF, DOLFIN XML and SimVascular folders
+"""MSH, STL, OBJ, Medit, Abaqus, TetGen, SU2, Netgen, UNV, Nastran, Exodus II, XDMF, DOLFIN XML and SimVascular folders
 compared with Gmsh, meshio, Netgen, pyNastran and VTK."""
 import gzip
 import itertools
@@ -827,6 +827,110 @@ def test_gmsh_reads_its_own_nastran_mesh_from_a_copy(motet, tmp_path, gmsh_sessi
     np.testing.assert_allclose(points, expected_points, rtol=0, atol=1e-12)
     for kind in (2, 4):
         assert sorted(nodes for nodes, *_ in found[kind]) == sorted(nodes for nodes, *_ in expected[kind])
+
+
+def vtk_exodus(path):
+    """Return the blocks and side sets that VTK reads, by name."""
+    reader = vtk.vtkExodusIIReader()
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    for kind in (reader.ELEM_BLOCK, reader.SIDE_SET):
+        for i in range(reader.GetNumberOfObjects(kind)):
+            reader.SetObjectStatus(kind, i, 1)
+    for kind in (reader.NODAL, reader.ELEM_BLOCK):
+        for i in range(reader.GetNumberOfObjectArrays(kind)):
+            reader.SetObjectArrayStatus(kind, i, 1)
+    reader.Update()
+    output = pyvista.wrap(reader.GetOutput())
+    return [{name: output[sort][name] for name in output[sort].keys()} for sort in ("Element Blocks", "Side Sets")]
+
+
+EXODUS_CELLS = [vtk.vtkTetra, vtk.vtkHexahedron, vtk.vtkWedge, vtk.vtkPyramid, vtk.vtkTriangle, vtk.vtkQuad, vtk.vtkQuadraticTetra,
+                vtk.vtkQuadraticHexahedron, vtk.vtkTriQuadraticHexahedron, vtk.vtkQuadraticWedge]
+
+
+@pytest.mark.parametrize("cell", EXODUS_CELLS)
+def test_vtk_reads_nodes_of_exodus_cells_and_arrays_of_motet(motet, tmp_path, cell):
+    cell = cell()
+    n = cell.GetNumberOfPoints()
+    points = np.array([cell.GetParametricCoords()[i] for i in range(3 * n)]).reshape(n, 3)
+    grid = pyvista.UnstructuredGrid(np.r_[n, np.arange(n)], [cell.GetCellType()], points)
+    grid.cell_data["q"], grid.point_data["u"] = [1.5], points
+    grid.save(tmp_path / "one.vtu")
+    motet("convert", tmp_path / "one.vtu", tmp_path / "one.exo")
+    block, = vtk_exodus(tmp_path / "one.exo")[0].values()
+    assert block.celltypes[0] == cell.GetCellType()
+    order = block.cell_connectivity
+    # VTK reads points in single precision.
+    assert_same_array(block.points[order], points.astype(np.float32), "nodes")
+    assert_same_array(np.asarray(block.point_data["u"], np.float32)[order], points.astype(np.float32), "u")
+    assert list(block.cell_data["q"]) == [1.5]
+
+
+def exodus_box(motet, tmp_path):
+    """Return a box with named regions and patches, and the Exodus file that motet makes of it."""
+    tet_box(1)
+    source, copy = tmp_path / "source.msh", tmp_path / "copy.exo"
+    gmsh_write(source, "4.1", "binary")
+    motet("convert", source, copy)
+    return source, copy
+
+
+def facets(points, cells):
+    """Return the corners of facets as a set."""
+    return {tuple(sorted(map(tuple, np.round(np.asarray(points, np.float32)[cell], 5)))) for cell in cells}
+
+
+def test_vtk_reads_side_sets_of_exodus_files_of_motet(motet, tmp_path, gmsh_session):
+    source, copy = exodus_box(motet, tmp_path)
+    blocks, sides = vtk_exodus(copy)
+    mesh = meshio.read(source)
+    names = {int(tag): name for name, (tag, dim) in mesh.field_data.items() if dim == 2}
+    assert {"left half", "right half"} < set(blocks) and set(sides) == set(names.values())
+    tags, triangles = cell_array_of(mesh, "gmsh:physical")["triangle"], cells_of(mesh)["triangle"]
+    for tag, name in names.items():
+        side = sides[name]
+        rows = side.cell_connectivity.reshape(-1, 3) if isinstance(side, pyvista.UnstructuredGrid) else side.faces.reshape(-1, 4)[:, 1:]
+        assert facets(np.asarray(side.points, float), rows) == facets(mesh.points, triangles[tags == tag]), name
+
+
+@pytest.mark.parametrize("form", ["NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA", "NETCDF4", "NETCDF4_CLASSIC"])
+def test_exodus_files_in_each_form_of_netcdf_are_read(motet, tmp_path, gmsh_session, form):
+    """The netCDF library reads a file of motet and writes it again."""
+    netcdf = pytest.importorskip("netCDF4")
+    _, copy = exodus_box(motet, tmp_path)
+    again, one, two = tmp_path / "again.e", tmp_path / "one.vtu", tmp_path / "two.vtu"
+    with netcdf.Dataset(copy) as old, netcdf.Dataset(again, "w", format=form) as new:
+        old.set_auto_mask(False)
+        for name, dimension in old.dimensions.items():
+            new.createDimension(name, None if dimension.isunlimited() else len(dimension))
+        for name, array in old.variables.items():
+            created = new.createVariable(name, array.dtype, array.dimensions)
+            created.setncatts({key: array.getncattr(key) for key in array.ncattrs() if not key.startswith("_")})
+            created[:] = array[:]
+    motet("convert", copy, one)
+    motet("convert", again, two)
+    ours, theirs = pyvista.read(two), pyvista.read(one)
+    assert_same_array(ours.points, theirs.points, "points")
+    assert_same_array(ours.cell_connectivity, theirs.cell_connectivity, "cells")
+    assert set(ours.array_names) == set(theirs.array_names)
+    for name in ("region", "patch"):
+        assert_same_array(ours.cell_data[name], theirs.cell_data[name], name)
+
+
+@pytest.mark.parametrize("kinds", [["tetra"], ["triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"], ["triangle6", "quad8", "tetra10"]])
+def test_meshio_reads_its_own_exodus_mesh_from_a_copy(motet, tmp_path, kinds):
+    pytest.importorskip("netCDF4")
+    mesh = mixed_mesh(kinds)
+    mesh.point_data = {"p": np.random.default_rng(3).normal(size=60)}
+    source, copy = tmp_path / "source.exo", tmp_path / "copy.exo"
+    mesh.write(source)
+    motet("convert", source, copy)
+    ours = meshio.read(copy)
+    assert_same_array(ours.points, mesh.points, "points")
+    assert_same_array(ours.point_data["p"], mesh.point_data["p"], "p")
+    for kind, cells in cells_of(mesh).items():
+        assert_same_array(cells_of(ours)[kind], cells, kind)
 
 
 @pytest.mark.parametrize("data_format", ["XML", "HDF"])

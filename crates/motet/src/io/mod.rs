@@ -6,6 +6,7 @@ mod cell_labels;
 mod cells_of_faces;
 mod cgns;
 mod dolfin;
+mod exodus;
 mod facet_key;
 mod foreign;
 mod format;

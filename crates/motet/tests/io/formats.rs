@@ -1,4 +1,4 @@
-//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, Nastran, XDMF and DOLFIN files: written files are read
+//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, Nastran, Exodus II, XDMF and DOLFIN files: written files are read
 //! back; damage is reported.
 
 use std::fs;
@@ -156,6 +156,19 @@ const NASTRAN_KINDS: &[CellKind] = &[
     CellKind::QUADRATIC_HEXAHEDRON,
     CellKind::QUADRATIC_WEDGE,
     CellKind::QUADRATIC_PYRAMID,
+];
+/// Volume cells, then surface cells.
+const EXODUS_KINDS: &[CellKind] = &[
+    CellKind::TETRA,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::HEXAHEDRON,
+    CellKind::QUADRATIC_TETRA,
+    CellKind::QUADRATIC_HEXAHEDRON,
+    CellKind::TRIQUADRATIC_HEXAHEDRON,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::QUADRATIC_TRIANGLE,
 ];
 const UNV_KINDS: &[CellKind] = &[
     CellKind::LINE,
@@ -355,6 +368,33 @@ proptest! {
     }
 
     #[test]
+    fn exodus_comes_back((mut mesh, labels) in meshes(EXODUS_KINDS, false), seed in any::<u32>()) {
+        set_labels(&mut mesh, &labels, [1, 7]);
+        // The places of cells, by which the order of the file is undone.
+        let n = mesh.cells.len();
+        mesh.set_cell_field(Field::scalars("place", (1..=n).map(|i| i as f64).collect::<Vec<_>>()));
+        let values: Vec<f64> = (0..3 * mesh.points.len()).map(|i| f64::from(seed) / (i as f64 + 3.0)).collect();
+        mesh.set_point_field(Field { name: "u".into(), components: 3, values: values.into() });
+        let (bytes, lost) = print(".exo", &mesh, &WriteOptions::default());
+        let back = parse(".exo", &bytes).unwrap();
+        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+        prop_assert_eq!(back.point_field("u"), mesh.point_field("u"));
+        prop_assert_eq!(back.cells.len(), n);
+        // Facets of volume cells lose their values, and take their vertices from the cells.
+        if lost.iter().all(|what| !what.contains("side sets")) {
+            let places = back.cell_field("place").map(|f| f.values.to_i64().unwrap()).unwrap_or_default();
+            for (cell, place) in places.iter().map(|place| *place as usize - 1).enumerate() {
+                prop_assert_eq!(back.cells.kinds()[cell], mesh.cells.kinds()[place]);
+                prop_assert_eq!(back.cells.connectivity().list(cell), mesh.cells.connectivity().list(place));
+                for (found, given) in [(back.regions(), mesh.regions()), (back.patches(), mesh.patches())] {
+                    let id = |labels: &Option<motet::mesh::Labels>, i: usize| labels.as_ref().map_or(0, |labels| labels.ids[i]);
+                    prop_assert_eq!(id(&found, cell), id(&given, place));
+                }
+            }
+        }
+    }
+
+    #[test]
     fn xdmf_comes_back((mut mesh, labels) in meshes(XDMF_KINDS, false), seed in any::<u32>()) {
         let values = |n: usize| (0..n).map(|i| f64::from(seed) / (i as f64 + 3.0)).collect::<Vec<_>>();
         mesh.set_point_field(Field { name: "u v".into(), components: 3, values: values(3 * mesh.points.len()).into() });
@@ -466,6 +506,7 @@ proptest! {
             (".vol", WriteOptions::default()),
             (".unv", WriteOptions::default()),
             (".bdf", WriteOptions::default()),
+            (".exo", WriteOptions::default()),
             (".xdmf", WriteOptions::default()),
             (".obj", WriteOptions::default()),
             (".stl", WriteOptions::default()),
