@@ -1,5 +1,5 @@
-//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, Nastran, Exodus II, XDMF and DOLFIN files: written files are read
-//! back; damage is reported.
+//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, Nastran, Exodus II, XDMF and DOLFIN files:
+//! written files are read back; damage is reported.
 
 use std::fs;
 use std::path::Path;

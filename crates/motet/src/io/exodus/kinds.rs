@@ -2,7 +2,7 @@
 
 use crate::mesh::CellKind;
 
-/// Names of types, and the kinds of cells with the names that are written for them. The linear kind comes first.
+/// Names of types, and the kinds of cells with the names written for them. The linear kind comes first.
 type Type = (&'static [&'static str], &'static [(CellKind, &'static str)]);
 
 const TYPES: &[Type] = &[

@@ -32,8 +32,8 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
         let end = mesh.cells.len();
         if start < end {
             let prefix = prefix_of(mesh.cells.kinds()[start]);
-            let runs = vec![start as u32..end as u32];
-            add_block(&mut sets.all, directory.set(number, prefix, runs, Rank::Declared));
+            let cells = start as u32..end as u32;
+            add_block(&mut sets.all, directory.set(number, prefix, vec![cells], Rank::Declared));
         }
         if n_elements == end - start {
             blocks.push((number, start..end));

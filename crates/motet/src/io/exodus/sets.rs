@@ -57,7 +57,7 @@ pub(super) fn add_block(sets: &mut Vec<Named>, block: Named) {
     }
 }
 
-/// Reads side sets: facets that the mesh has no cells for are appended. `cell_of` gives the cell of an element.
+/// Reads side sets: facets without a cell are appended. `cell_of` gives the cell of an element.
 pub(super) fn side_sets(
     source: &Source<'_>,
     mesh: &mut Mesh,

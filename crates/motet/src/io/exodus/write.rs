@@ -141,8 +141,8 @@ struct Facet {
     is_double: bool,
 }
 
-/// The surface cells with labels that lie on sides of volume cells; of two sides the one that is turned as the
-/// cell is. Where two surface cells coincide there is none: readers make one cell of a side.
+/// The surface cells with labels that lie on sides of volume cells; of two sides the one that is turned as
+/// the cell is. Where two surface cells coincide there is none: readers make one cell of a side.
 fn facets_on_volume(mesh: &Mesh, labels: &[i32]) -> Vec<Facet> {
     let mut facets: HashMap<FacetKey, Facet> = HashMap::new();
     for (cell, kind, vertices) in mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2)) {
@@ -186,8 +186,8 @@ impl Numbers {
         Self { labels: labels.collect(), used: BTreeSet::new(), of_label: HashMap::new() }
     }
 
-    /// A number: the label itself where that is positive and free, otherwise one that is no label. All sets of
-    /// a label are read as the first one, whose number comes second, and of which the change is reported.
+    /// A number: the label itself where that is positive and free, otherwise one that is no label. All sets
+    /// of a label are read as the first one, whose number comes second, and of which the change is reported.
     fn next(&mut self, label: i32, dim: usize, lost: &mut Vec<String>) -> [i32; 2] {
         let is_own = label > 0 && self.used.insert(label);
         let number = if is_own {
@@ -209,7 +209,7 @@ impl Numbers {
     }
 }
 
-/// The name of a label; one without a name has the number of its first block, so that its blocks have one name.
+/// The name of a label; one without a name has the number of its first block, so that all have one name.
 fn name(mesh: &Mesh, dim: usize, label: i32, first: i32) -> String {
     let (names, prefix) = match dim {
         3 => (&mesh.label_names.regions, REGION),

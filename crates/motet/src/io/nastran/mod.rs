@@ -1,9 +1,9 @@
 //! Bulk data of Nastran (`.bdf`, `.nas`), as MSC, NX, OptiStruct, Gmsh and COMSOL write and read them.
 //!
 //! Points (`GRID`) and elements are read, in fields of 8 or 16 characters and in free fields. The numbers of
-//! properties are the array `nastran:ref`, as with meshio: labels of regions and patches. Their names are read
-//! from the comments of ANSA, HyperMesh and Femap. Points must be in the basic coordinate system. Other cards,
-//! such as materials and loads, are skipped with a note, and so are the parts before `BEGIN BULK`.
+//! properties are the array `nastran:ref`, as with meshio: labels of regions and patches. Their names are
+//! read from the comments of ANSA, HyperMesh and Femap. Points must be in the basic coordinate system. Other
+//! cards, such as materials and loads, are skipped with a note, and so are the parts before `BEGIN BULK`.
 //!
 //! Points are written in fields of 16 characters, which cannot hold all digits of all numbers; elements in
 //! fields of 8 where their numbers fit. Cells get properties, whose names are comments as of HyperMesh.

@@ -133,7 +133,7 @@ fn collect(element: &Element<'_>, names: &[String], found: &mut Vec<(Vec<String>
     element.children.iter().for_each(|child| collect(child, &names, found));
 }
 
-/// The names of blocks: the last one where that tells blocks apart, otherwise all. Parts of one block have one.
+/// The names of blocks: the last one where that tells blocks apart, otherwise all. Parts of a block have one.
 fn block_names(parts: &[Part]) -> Vec<String> {
     let last = |part: &Part| part.path.last().cloned().unwrap_or_default();
     let mut path_of: HashMap<String, &[String]> = HashMap::new();

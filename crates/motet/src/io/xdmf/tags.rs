@@ -9,8 +9,9 @@ use crate::io::format::Notes;
 use crate::io::scalar::{append, select_rows};
 use crate::mesh::{Cells, Field, Mesh, Values};
 
-/// Adds the cells of the further grid `name` with their arrays. Those that the mesh has get the values; others
-/// are appended. The array with the name of the grid is dolfinx's tags: it becomes `region` or `patch`.
+/// Adds the cells of the further grid `name` with their arrays. Those that the mesh has get the values;
+/// others are appended. The array with the name of the grid is dolfinx's tags, and becomes `region` or
+/// `patch`.
 pub(super) fn add_cells(
     mesh: &mut Mesh,
     name: &str,
