@@ -1,5 +1,5 @@
-"""MSH, STL, OBJ, Medit, Abaqus, TetGen, SU2, Netgen, UNV, XDMF, DOLFIN XML and SimVascular folders
-compared with Gmsh, meshio, Netgen and VTK."""
+"""MSH, STL, OBJ, Medit, Abaqus, TetGen, SU2, Netgen, UNV, Nastran, Exodus II, XDMF, DOLFIN XML and SimVascular folders
+compared with Gmsh, meshio, Netgen, pyNastran and VTK."""
 import gzip
 import itertools
 import os
@@ -756,6 +756,183 @@ def test_gmsh_reads_its_own_unv_mesh_from_a_copy(motet, gmsh_session, tmp_path, 
         assert len(found[kind]) == grouped[kind]
 
 
+NASTRAN_KINDS = [["tetra"], ["triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"],
+                 ["triangle6", "quad8", "tetra10", "hexahedron20"]]
+
+
+def nastran_mesh(kinds):
+    """Return a mesh with properties, whose coordinates fit fields of 8 characters."""
+    mesh = mixed_mesh(kinds)
+    mesh.points = np.round(np.clip(mesh.points, -9, 9), 3) + 0.0
+    mesh.cell_data = {"nastran:ref": [np.full(4, i + 3, np.int32) for i in range(len(kinds))]}
+    return mesh
+
+
+@pytest.mark.parametrize("point_format", ["fixed-small", "fixed-large", "free"])
+@pytest.mark.parametrize("kinds", NASTRAN_KINDS[:2])
+def test_meshio_reads_its_own_nastran_mesh_from_a_copy(motet, tmp_path, kinds, point_format):
+    """Elements of first order: those of second order have names of meshio's own when it writes them."""
+    source, copy = tmp_path / "source.bdf", tmp_path / "copy.nas"
+    meshio.nastran.write(source, nastran_mesh(kinds), point_format=point_format)
+    motet("convert", source, copy)
+    assert_same_mesh(meshio.read(copy, file_format="nastran"), meshio.read(source))
+
+
+def nastran_copy(motet, tmp_path, kinds):
+    """Return a mesh and the Nastran file that motet makes of it."""
+    source, copy = tmp_path / "source.msh", tmp_path / "copy.bdf"
+    mesh = nastran_mesh(kinds)
+    properties = mesh.cell_data.pop("nastran:ref")
+    meshio.write(source, meshio.Mesh(mesh.points, mesh.cells, cell_data={
+        "gmsh:physical": properties, "gmsh:geometrical": properties}), file_format="gmsh22", binary=False)
+    motet("convert", source, copy)
+    mesh.cell_data["nastran:ref"] = properties
+    return mesh, copy
+
+
+@pytest.mark.parametrize("kinds", NASTRAN_KINDS)
+def test_meshio_reads_nastran_files_of_motet(motet, tmp_path, kinds):
+    mesh, copy = nastran_copy(motet, tmp_path, kinds)
+    assert_same_mesh(meshio.read(copy), mesh)
+
+
+@pytest.mark.parametrize("size", [8, 16])
+@pytest.mark.parametrize("kinds", NASTRAN_KINDS)
+def test_pynastran_reads_nastran_files_of_motet(motet, tmp_path, kinds, size):
+    """pyNastran writes what it read, and motet reads that."""
+    bdf = pytest.importorskip("pyNastran.bdf.bdf")
+    mesh, copy = nastran_copy(motet, tmp_path, kinds)
+    again, back = tmp_path / "again.bdf", tmp_path / "back.bdf"
+    model = bdf.read_bdf(copy, xref=False, punch=False, debug=None)
+    assert_same_array(np.array([model.nodes[i].xyz for i in sorted(model.nodes)]), mesh.points, "points")
+    model.write_bdf(again, size=size, interspersed=False)
+    motet("convert", again, back)
+    assert_same_mesh(meshio.read(back), mesh)
+
+
+@pytest.mark.parametrize("fields", [0, 1, 2])
+def test_gmsh_reads_its_own_nastran_mesh_from_a_copy(motet, tmp_path, gmsh_session, fields):
+    """Fields are free, short and long."""
+    tet_box(1)
+    source, copy = tmp_path / "source.bdf", tmp_path / "copy.bdf"
+    gmsh.option.setNumber("Mesh.BdfFieldFormat", fields)
+    gmsh.write(str(source))
+    gmsh.clear()
+    gmsh.open(str(source))
+    expected_points, expected, _ = gmsh_content()
+    motet("convert", source, copy)
+    gmsh.clear()
+    gmsh.open(str(copy))
+    points, found, _ = gmsh_content()
+    np.testing.assert_allclose(points, expected_points, rtol=0, atol=1e-12)
+    for kind in (2, 4):
+        assert sorted(nodes for nodes, *_ in found[kind]) == sorted(nodes for nodes, *_ in expected[kind])
+
+
+def vtk_exodus(path):
+    """Return the blocks and side sets that VTK reads, by name."""
+    reader = vtk.vtkExodusIIReader()
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    for kind in (reader.ELEM_BLOCK, reader.SIDE_SET):
+        for i in range(reader.GetNumberOfObjects(kind)):
+            reader.SetObjectStatus(kind, i, 1)
+    for kind in (reader.NODAL, reader.ELEM_BLOCK):
+        for i in range(reader.GetNumberOfObjectArrays(kind)):
+            reader.SetObjectArrayStatus(kind, i, 1)
+    reader.Update()
+    output = pyvista.wrap(reader.GetOutput())
+    return [{name: output[sort][name] for name in output[sort].keys()} for sort in ("Element Blocks", "Side Sets")]
+
+
+EXODUS_CELLS = [vtk.vtkTetra, vtk.vtkHexahedron, vtk.vtkWedge, vtk.vtkPyramid, vtk.vtkTriangle, vtk.vtkQuad, vtk.vtkQuadraticTetra,
+                vtk.vtkQuadraticHexahedron, vtk.vtkTriQuadraticHexahedron, vtk.vtkQuadraticWedge]
+
+
+@pytest.mark.parametrize("cell", EXODUS_CELLS)
+def test_vtk_reads_nodes_of_exodus_cells_and_arrays_of_motet(motet, tmp_path, cell):
+    cell = cell()
+    n = cell.GetNumberOfPoints()
+    points = np.array([cell.GetParametricCoords()[i] for i in range(3 * n)]).reshape(n, 3)
+    grid = pyvista.UnstructuredGrid(np.r_[n, np.arange(n)], [cell.GetCellType()], points)
+    grid.cell_data["q"], grid.point_data["u"] = [1.5], points
+    grid.save(tmp_path / "one.vtu")
+    motet("convert", tmp_path / "one.vtu", tmp_path / "one.exo")
+    block, = vtk_exodus(tmp_path / "one.exo")[0].values()
+    assert block.celltypes[0] == cell.GetCellType()
+    order = block.cell_connectivity
+    # VTK reads points in single precision.
+    assert_same_array(block.points[order], points.astype(np.float32), "nodes")
+    assert_same_array(np.asarray(block.point_data["u"], np.float32)[order], points.astype(np.float32), "u")
+    assert list(block.cell_data["q"]) == [1.5]
+
+
+def exodus_box(motet, tmp_path):
+    """Return a box with named regions and patches, and the Exodus file that motet makes of it."""
+    tet_box(1)
+    source, copy = tmp_path / "source.msh", tmp_path / "copy.exo"
+    gmsh_write(source, "4.1", "binary")
+    motet("convert", source, copy)
+    return source, copy
+
+
+def facets(points, cells):
+    """Return the corners of facets as a set."""
+    return {tuple(sorted(map(tuple, np.round(np.asarray(points, np.float32)[cell], 5)))) for cell in cells}
+
+
+def test_vtk_reads_side_sets_of_exodus_files_of_motet(motet, tmp_path, gmsh_session):
+    source, copy = exodus_box(motet, tmp_path)
+    blocks, sides = vtk_exodus(copy)
+    mesh = meshio.read(source)
+    names = {int(tag): name for name, (tag, dim) in mesh.field_data.items() if dim == 2}
+    assert {"left half", "right half"} < set(blocks) and set(sides) == set(names.values())
+    tags, triangles = cell_array_of(mesh, "gmsh:physical")["triangle"], cells_of(mesh)["triangle"]
+    for tag, name in names.items():
+        side = sides[name]
+        rows = side.cell_connectivity.reshape(-1, 3) if isinstance(side, pyvista.UnstructuredGrid) else side.faces.reshape(-1, 4)[:, 1:]
+        assert facets(np.asarray(side.points, float), rows) == facets(mesh.points, triangles[tags == tag]), name
+
+
+@pytest.mark.parametrize("form", ["NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA", "NETCDF4", "NETCDF4_CLASSIC"])
+def test_exodus_files_in_each_form_of_netcdf_are_read(motet, tmp_path, gmsh_session, form):
+    """The netCDF library reads a file of motet and writes it again."""
+    netcdf = pytest.importorskip("netCDF4")
+    _, copy = exodus_box(motet, tmp_path)
+    again, one, two = tmp_path / "again.e", tmp_path / "one.vtu", tmp_path / "two.vtu"
+    with netcdf.Dataset(copy) as old, netcdf.Dataset(again, "w", format=form) as new:
+        old.set_auto_mask(False)
+        for name, dimension in old.dimensions.items():
+            new.createDimension(name, None if dimension.isunlimited() else len(dimension))
+        for name, array in old.variables.items():
+            created = new.createVariable(name, array.dtype, array.dimensions)
+            created.setncatts({key: array.getncattr(key) for key in array.ncattrs() if not key.startswith("_")})
+            created[:] = array[:]
+    motet("convert", copy, one)
+    motet("convert", again, two)
+    ours, theirs = pyvista.read(two), pyvista.read(one)
+    assert_same_array(ours.points, theirs.points, "points")
+    assert_same_array(ours.cell_connectivity, theirs.cell_connectivity, "cells")
+    assert set(ours.array_names) == set(theirs.array_names)
+    for name in ("region", "patch"):
+        assert_same_array(ours.cell_data[name], theirs.cell_data[name], name)
+
+
+@pytest.mark.parametrize("kinds", [["tetra"], ["triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"], ["triangle6", "quad8", "tetra10"]])
+def test_meshio_reads_its_own_exodus_mesh_from_a_copy(motet, tmp_path, kinds):
+    pytest.importorskip("netCDF4")
+    mesh = mixed_mesh(kinds)
+    mesh.point_data = {"p": np.random.default_rng(3).normal(size=60)}
+    source, copy = tmp_path / "source.exo", tmp_path / "copy.exo"
+    mesh.write(source)
+    motet("convert", source, copy)
+    ours = meshio.read(copy)
+    assert_same_array(ours.points, mesh.points, "points")
+    assert_same_array(ours.point_data["p"], mesh.point_data["p"], "p")
+    for kind, cells in cells_of(mesh).items():
+        assert_same_array(cells_of(ours)[kind], cells, kind)
+
+
 @pytest.mark.parametrize("data_format", ["XML", "HDF"])
 @pytest.mark.parametrize("kinds", [["tetra"], ["triangle"], ["tetra10"], ["line", "triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"]])
 def test_meshio_reads_its_own_xdmf_mesh_from_a_copy(motet, tmp_path, kinds, data_format):
@@ -773,13 +950,56 @@ def test_meshio_reads_its_own_xdmf_mesh_from_a_copy(motet, tmp_path, kinds, data
 
 def test_meshio_reads_names_of_labels_from_xdmf_files(motet, tmp_path):
     source, copy = tmp_path / "source.msh", tmp_path / "copy.xdmf"
-    mesh = mixed_mesh(["triangle", "tetra"])
-    mesh.cell_data = {"gmsh:physical": [np.full(4, 3), np.full(4, 7)], "gmsh:geometrical": [np.full(4, 3), np.full(4, 7)]}
+    # With volume cells of one kind there would be two grids, of which meshio reads none.
+    mesh = mixed_mesh(["triangle", "tetra", "wedge"])
+    mesh.cell_data = {name: [np.full(4, 3), np.full(4, 7), np.full(4, 7)] for name in ("gmsh:physical", "gmsh:geometrical")}
     mesh.field_data = {"a <wall>": np.array([3, 2]), "blood": np.array([7, 3])}
     meshio.write(source, mesh, file_format="gmsh22", binary=False)
     motet("convert", source, copy)
     found = meshio.read(copy)
     assert {name: list(map(int, value)) for name, value in found.field_data.items()} == {"a <wall>": [3, 2], "blood": [7, 3]}
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "binary"])
+def test_vtk_reads_cells_and_facets_of_xdmf_files_of_motet(motet, tmp_path, encoding):
+    mesh = mixed_mesh(["triangle", "tetra"])
+    mesh.cell_data = {"region": [np.zeros(4, np.int32), np.arange(1, 5, dtype=np.int32)], "patch": [np.arange(5, 9, dtype=np.int32), np.zeros(4, np.int32)]}
+    source, copy = tmp_path / "source.vtu", tmp_path / "copy.xdmf"
+    mesh.write(source)
+    motet("convert", source, copy, "--encoding", encoding)
+    reader = vtk.vtkXdmfReader()
+    reader.SetFileName(str(copy))
+    reader.Update()
+    cells, facets = (pyvista.wrap(reader.GetOutputDataObject(0))[i] for i in range(2))
+    expected = pyvista.read(source)
+    for grid, kind, name in ((cells, 10, "region"), (facets, 5, "patch")):
+        chosen = expected.extract_cells(expected.celltypes == kind)
+        assert_same_array(np.asarray(grid.points, float), np.asarray(expected.points, float), "points")
+        assert_same_array(grid.cell_connectivity, expected.cells_dict[kind].ravel(), "cells")
+        assert_same_array(grid.cell_data[name], chosen.cell_data[name], name)
+
+
+def test_dolfinx_reads_cells_and_facets_of_xdmf_files_of_motet(motet, tmp_path):
+    """Runs where dolfinx is installed; the tags of the facets of a box say across which axis they are."""
+    dolfinx_io, mpi = pytest.importorskip("dolfinx.io"), pytest.importorskip("mpi4py.MPI")
+    grid = pyvista.ImageData(dimensions=(4, 4, 4)).to_tetrahedra(5)
+    surface = grid.extract_surface().cast_to_unstructured_grid()
+    points, tets = np.asarray(grid.points, float), grid.cells_dict[10]
+    triangles = surface.point_data["vtkOriginalPointIds"][surface.cells_dict[5]]
+    patch = 1 + np.argmax(np.ptp(points[triangles], axis=1) == 0, axis=1).astype(np.int32)
+    region = 1 + (points[tets].mean(axis=1)[:, 0] > 1.5).astype(np.int32)
+    n, m = len(tets), len(triangles)
+    source, copy = tmp_path / "source.vtu", tmp_path / "copy.xdmf"
+    meshio.Mesh(points, [("triangle", triangles), ("tetra", tets)], cell_data={
+        "region": [np.zeros(m, np.int32), region], "patch": [patch, np.zeros(n, np.int32)]}).write(source)
+    motet("convert", source, copy)
+    with dolfinx_io.XDMFFile(mpi.COMM_SELF, str(copy), "r") as file:
+        mesh = file.read_mesh(name="mesh")
+        mesh.topology.create_connectivity(2, 3)
+        cell_tags, facet_tags = file.read_meshtags(mesh, name="mesh"), file.read_meshtags(mesh, name="facet_tags")
+    assert mesh.topology.index_map(3).size_global == n
+    assert np.array_equal(np.bincount(cell_tags.values), np.bincount(region))
+    assert np.array_equal(np.bincount(facet_tags.values), np.bincount(patch))
 
 
 @pytest.mark.parametrize("kinds", [["tetra"], ["triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"]])

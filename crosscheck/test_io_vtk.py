@@ -378,3 +378,20 @@ def test_meshio_reads_legacy_files_of_motet(motet, tmp_path, version, encoding):
     ours.point_data = {name: values.astype(name) for name, values in ours.point_data.items()}
     ours.cell_data = {name: [v.astype(name) for v in blocks] for name, blocks in ours.cell_data.items()}
     assert_same_mesh(ours, meshio.read(tmp_path / "source.vtu"))
+
+
+@pytest.mark.parametrize("suffix", [".vtm", ".vtmb"])
+def test_nested_blocks_of_pyvista_are_regions_and_patches(motet, tmp_path, suffix):
+    grid = pv.ImageData(dimensions=(3, 3, 3)).to_tetrahedra(5)
+    plane = {z: pv.Plane(center=(0.0, 0.0, z), i_resolution=2 + z, j_resolution=1).triangulate() for z in range(3)}
+    blocks = pv.MultiBlock({
+        "blood": grid.extract_cells(range(20)), "clot": grid.extract_cells(range(20, 40)),
+        "walls": pv.MultiBlock({"inlet": plane[0], "outlet": plane[1], "none": None}),
+        "others": pv.MultiBlock({"deep": pv.MultiBlock({"outlet": plane[2]})}),
+    })
+    path = tmp_path / f"blocks{suffix}"
+    blocks.save(path)
+    found = motet.json("info", path)
+    assert {name: region["cells"] for name, region in found["regions"].items()} == {"blood": 20, "clot": 20}
+    assert {name: patch["cells"] for name, patch in found["patches"].items()} == {
+        "inlet": 4, "walls/outlet": 6, "others/deep/outlet": 8}

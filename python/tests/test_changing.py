@@ -102,6 +102,16 @@ def test_seeds_name_regions_and_holes_are_left_empty():
     assert shell.mesh.summary().volume == pytest.approx(both.mesh.summary().regions["shell"].volume)
 
 
+def test_membranes_may_have_names_and_be_one():
+    ball = shapes.ball()
+    ball = motet.Mesh(ball.points, {"triangle": ball.triangles})
+    flap = motet.Mesh([[-0.2, -0.2, 0], [0.2, -0.2, 0], [0.2, 0.2, 0], [-0.2, 0.2, 0]], [[0, 1, 2], [0, 2, 3]])
+    for membranes, name in (({"flap": flap}, "flap"), ([flap], "membrane"), (flap, "membrane")):
+        mesh = motet.mesh({"wall": ball}, membranes=membranes, size=0.3).mesh
+        assert set(mesh.patch_names.values()) == {"wall", name}
+    assert mesh.summary().volume == pytest.approx(motet.mesh(ball).mesh.summary().volume)
+
+
 @pytest.mark.parametrize(
     "call, message",
     [

@@ -35,7 +35,7 @@ def test_exit_statuses_tell_errors_apart(tmp_path):
 
 def test_errors_for_foreign_formats_suggest_a_converter(tmp_path):
     for name, content, what in [
-        ("a.cas", b"", "Fluent"), ("a.exo", b"CDF\x01", "Exodus"), ("a.xdmf2", b"<Xdmf>", "XDMF"), ("a.msh", b"(0 \"x\")\n(2 3)\n", "Fluent"),
+        ("a.cas", b"", "Fluent"), ("a.vtu", b"CDF\x01", "Exodus"), ("a.xdmf2", b"<Xdmf>", "XDMF"), ("a.msh", b"(0 \"x\")\n(2 3)\n", "Fluent"),
     ]:  # fmt: skip
         (tmp_path / name).write_bytes(content)
         with pytest.raises(motet.InputError, match=what) as error:

@@ -355,7 +355,7 @@ class _Filling:
 def mesh(
     surfaces: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike],
     *,
-    membranes: Sequence[MeshLike] = (),
+    membranes: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike] = (),
     size: float | Literal["auto"] | None = None,
     surface: Literal["auto", "divide", "keep"] = "auto",
     growth: float | None = None,
@@ -382,7 +382,7 @@ def mesh(
     surfaces : MeshLike, sequence of MeshLike, or mapping of str to MeshLike
         Surfaces that are closed, each alone or together with others that end at the same edges. They may be
         nested, adjacent or share triangles; each enclosed space becomes a region.
-    membranes : sequence of MeshLike, optional
+    membranes : MeshLike, sequence of MeshLike, or mapping of str to MeshLike, optional
         Surfaces that may end inside the others, such as a flap.
     size : float or "auto", optional
         Edge length inside, in units of the surfaces. ``"auto"`` starts from the edge length of the surface
@@ -437,7 +437,7 @@ def mesh(
         If a surface cannot be filled; the message gives the first fault and its position.
     """
     given = [(as_mesh(one), name, False) for name, one in named(surfaces, "surface").items()]
-    given += [(as_mesh(one), name, True) for name, one in named(list(membranes), "membrane").items()]
+    given += [(as_mesh(one), name, True) for name, one in named(membranes, "membrane").items()]
     request = _Filling(
         size=size, surface=surface, growth=growth, size_array=size_array,
         seeds=[(point(place), name) for name, place in (seeds or {}).items()], holes=[point(place) for place in holes], min_eas=min_eas,

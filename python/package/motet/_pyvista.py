@@ -115,8 +115,8 @@ class MotetAccessor:
         return to_pyvista(cap(self.to_mesh()))
 
     @_documented(mesh)
-    def mesh(self, **options: Any) -> Any:
-        return _result(mesh(_blocks_of(self._data), **options))
+    def mesh(self, membranes: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike] = (), **options: Any) -> Any:
+        return _result(mesh(_blocks_of(self._data), membranes=_blocks_of(membranes), **options))
 
     @_documented(remesh)
     def remesh(self, **options: Any) -> Any:
@@ -263,6 +263,15 @@ def _with_gaps(block: Any, gaps: Gaps, shift: int) -> Any:
     return block
 
 
+# Little shading, so that colours are those of the bar.
+_FLAT = {"ambient": 0.5, "diffuse": 0.5, "specular": 0.0}
+
+
+def _bar(title: str) -> dict[str, Any]:
+    """Return a vertical bar, whose title stands above it."""
+    return {"title": title, "vertical": True, "position_x": 0.88, "position_y": 0.25, "height": 0.5, "width": 0.06, "n_labels": 6, "fmt": "%.1f" if title == "EAS" else "%.3g"}
+
+
 def _add_quality(plotter: Any, data: Any, cut: str | Sequence[float] | None, bad: float) -> None:
     given = as_mesh(data)
     grid = to_pyvista(given)
@@ -278,7 +287,7 @@ def _add_quality(plotter: Any, data: Any, cut: str | Sequence[float] | None, bad
         shortest = int(np.argmin(high - low))
         cut, view = np.eye(3)[shortest], (np.eye(3)[shortest], np.eye(3)[(shortest + 2) % 3])
     shown = tets if cut is None else tets.clip(cut, crinkle=True)
-    plotter.add_mesh(shown, scalars="EAS", cmap="viridis", clim=(0.0, 1.0), show_edges=True, scalar_bar_args={"title": "EAS"})
+    plotter.add_mesh(shown, scalars="EAS", cmap="viridis", clim=(0.0, 1.0), show_edges=True, scalar_bar_args=_bar("EAS"), **_FLAT)
     worst = tets.extract_cells(tets.cell_data["EAS"] < bad)
     if worst.n_cells:
         plotter.add_mesh(worst, color="red", show_edges=True, label=f"{worst.n_cells} tets below {bad:g}")
@@ -304,7 +313,7 @@ def _add_gaps(plotter: Any, data: Any) -> None:
     limits = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
     for block in blocks.values():
         opacity = 0.3 if block is largest and len(blocks) > 1 else 1.0
-        plotter.add_mesh(block, scalars="gap", cmap="viridis_r", clim=limits, opacity=opacity, scalar_bar_args={"title": "gap"})
+        plotter.add_mesh(block, scalars="gap", cmap="viridis_r", clim=limits, opacity=opacity, scalar_bar_args=_bar("gap"), **_FLAT)
 
 
 def _surface(grid: Any) -> Any:

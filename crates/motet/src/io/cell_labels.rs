@@ -5,7 +5,7 @@ use crate::mesh::{CellKind, Field, Labels, Mesh};
 
 /// Arrays that may hold labels of curves and points.
 const LOW_DIM_LABEL_ARRAYS: &[&str] =
-    &["gmsh:physical", "medit:ref", "tetgen:ref", "su2:tag", "netgen:index", "elemTag"];
+    &["gmsh:physical", "medit:ref", "tetgen:ref", "su2:tag", "netgen:index", "nastran:ref", "elemTag"];
 
 /// The label of each cell: its region or patch, or for curves and points the value of `gmsh:physical` or a
 /// similar array; 0 where there is none, and where the label could only come from the array `except`.

@@ -27,17 +27,7 @@ const FOREIGN: &[ForeignFormat] = &[
         extensions: &[".cas.h5", ".msh.h5", ".dat.h5"],
         remedy: PARAVIEW,
     },
-    ForeignFormat {
-        name: "an Exodus II file",
-        extensions: &[".e", ".ex2", ".exo", ".exii", ".g", ".gen"],
-        remedy: MESHIO_HDF,
-    },
     ForeignFormat { name: "an XDMF file of version 2", extensions: &[".xdmf2"], remedy: MESHIO_HDF },
-    ForeignFormat {
-        name: "a Nastran file",
-        extensions: &[".bdf", ".nas", ".fem", ".nastran"],
-        remedy: MESHIO,
-    },
     ForeignFormat { name: "a MED file (Salome, Code_Aster)", extensions: &[".med"], remedy: MESHIO_HDF },
     ForeignFormat { name: "a MOAB file", extensions: &[".h5m"], remedy: MESHIO_HDF },
     ForeignFormat {
@@ -73,7 +63,7 @@ const FOREIGN: &[ForeignFormat] = &[
     ForeignFormat {
         name: "a COMSOL file",
         extensions: &[".mphtxt", ".mphbin"],
-        remedy: "export it from COMSOL as .nas, and convert that with meshio",
+        remedy: "export it from COMSOL as .nas",
     },
     ForeignFormat { name: "a Gmsh geometry", extensions: &[".geo", ".geo_unrolled"], remedy: GEOMETRY },
     ForeignFormat {
@@ -122,8 +112,8 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     let is = |extension: &str| extensions.contains(&extension);
     let start = bytes.trim_ascii_start();
     let named = |what: &str, remedy: &str| Err(not_supported(what, remedy, path));
-    if bytes.starts_with(b"CDF\x01") || bytes.starts_with(b"CDF\x02") || bytes.starts_with(b"CDF\x05") {
-        return named("a netCDF file, perhaps Exodus II", MESHIO_HDF);
+    if bytes.starts_with(b"CDF") && matches!(bytes.get(3), Some(1 | 2 | 5)) && !is(".exo") {
+        return named("a netCDF file, perhaps Exodus II", "give it the extension of its format: .exo");
     }
     if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xfd7zXZ\x00") || bytes.starts_with(b"BZh") {
         return named("a compressed file", "decompress it first");
@@ -131,8 +121,8 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     if bytes.starts_with(b"\x1f\x8b") && !extensions.iter().any(|e| e.ends_with(".gz")) {
         return named("a gzip file", "decompress it first: gunzip -c FILE");
     }
-    if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && !is(".cgns") && !is(".vtkhdf") {
-        return named("an HDF5 file", "give it the extension of its format: .vtkhdf or .cgns");
+    if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && ![".cgns", ".vtkhdf", ".exo"].into_iter().any(is) {
+        return named("an HDF5 file", "give it the extension of its format: .vtkhdf, .cgns or .exo");
     }
     if start.starts_with(b"ISO-10303-21") {
         return named("a CAD model (STEP)", CAD);
@@ -164,8 +154,8 @@ mod tests {
     fn foreign_files_are_reported_with_a_converter() {
         let of = |name: &str| by_extension(Path::new(name)).map(|e| e.to_string()).unwrap_or_default();
         assert!(
-            of("a/Wing.EXO").contains("Exodus II")
-                && of("a/Wing.EXO").contains("meshio convert Wing.EXO mesh.vtu")
+            of("a/Wing.MED").contains("MED file")
+                && of("a/Wing.MED").contains("meshio convert Wing.MED mesh.vtu")
         );
         assert!(
             of("x.xdmf2").contains("XDMF")

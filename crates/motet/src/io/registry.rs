@@ -7,8 +7,8 @@ use crate::io::format::{Format, Notes, Write, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{can_have_folder, replace_all, replace_folder, replace_with};
 use crate::io::{
-    abaqus, cgns, dolfin, foreign, legacy, medit, msh, netgen, obj, off, opencarp, ply, polymesh,
-    simvascular, stl, su2, tetgen, unv, vtkhdf, vtkxml, xdmf,
+    abaqus, cgns, dolfin, exodus, foreign, legacy, medit, msh, nastran, netgen, obj, off, opencarp, ply,
+    polymesh, simvascular, stl, su2, tetgen, unv, vtkhdf, vtkxml, xdmf,
 };
 use crate::mesh::Mesh;
 
@@ -40,6 +40,8 @@ const FORMATS: &[Format] = &[
     netgen::VOL,
     netgen::VOL_GZ,
     unv::FORMAT,
+    nastran::FORMAT,
+    exodus::FORMAT,
     xdmf::FORMAT,
     dolfin::FORMAT,
     polymesh::FORMAT,

@@ -1,5 +1,5 @@
-//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, XDMF and DOLFIN files: written files are read
-//! back; damage is reported.
+//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, Nastran, Exodus II, XDMF and DOLFIN files:
+//! written files are read back; damage is reported.
 
 use std::fs;
 use std::path::Path;
@@ -142,6 +142,34 @@ const NETGEN_KINDS: &[CellKind] = &[
     CellKind::QUADRATIC_HEXAHEDRON,
 ];
 
+const NASTRAN_KINDS: &[CellKind] = &[
+    CellKind::LINE,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::TETRA,
+    CellKind::HEXAHEDRON,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::QUADRATIC_TRIANGLE,
+    CellKind::QUADRATIC_QUAD,
+    CellKind::QUADRATIC_TETRA,
+    CellKind::QUADRATIC_HEXAHEDRON,
+    CellKind::QUADRATIC_WEDGE,
+    CellKind::QUADRATIC_PYRAMID,
+];
+/// Volume cells, then surface cells.
+const EXODUS_KINDS: &[CellKind] = &[
+    CellKind::TETRA,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::HEXAHEDRON,
+    CellKind::QUADRATIC_TETRA,
+    CellKind::QUADRATIC_HEXAHEDRON,
+    CellKind::TRIQUADRATIC_HEXAHEDRON,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::QUADRATIC_TRIANGLE,
+];
 const UNV_KINDS: &[CellKind] = &[
     CellKind::LINE,
     CellKind::TRIANGLE,
@@ -323,6 +351,50 @@ proptest! {
     }
 
     #[test]
+    fn nastran_comes_back((mut mesh, labels) in meshes(NASTRAN_KINDS, false)) {
+        // Fields of 16 characters hold no more than single precision of all numbers.
+        mesh.points.iter_mut().flatten().for_each(|x| *x = f64::from(*x as f32).clamp(-1e9, 1e9));
+        let refs = labels.iter().zip(mesh.cells.kinds()).map(|(&label, kind)| 1 + label + 10 * kind.dim().unwrap() as i32);
+        mesh.set_cell_field(Field::scalars("nastran:ref", refs.collect::<Vec<_>>()));
+        let (bytes, lost) = print(".bdf", &mesh, &WriteOptions::default());
+        prop_assert!(lost.iter().all(|what| what.ends_with("coordinates are rounded to the 16 characters of a field")), "{lost:?}");
+        let back = parse(".bdf", &bytes).unwrap();
+        prop_assert_eq!(&back.cells, &mesh.cells);
+        prop_assert_eq!(back.cell_field("nastran:ref"), mesh.cell_field("nastran:ref").filter(|_| !labels.is_empty()));
+        for (x, y) in back.points.iter().flatten().zip(mesh.points.iter().flatten()) {
+            prop_assert!((x - y).abs() <= 1e-10 * y.abs(), "{x} {y}");
+            prop_assert!(!lost.is_empty() || x.to_bits() == y.to_bits());
+        }
+    }
+
+    #[test]
+    fn exodus_comes_back((mut mesh, labels) in meshes(EXODUS_KINDS, false), seed in any::<u32>()) {
+        set_labels(&mut mesh, &labels, [1, 7]);
+        // The places of cells, by which the order of the file is undone.
+        let n = mesh.cells.len();
+        mesh.set_cell_field(Field::scalars("place", (1..=n).map(|i| i as f64).collect::<Vec<_>>()));
+        let values: Vec<f64> = (0..3 * mesh.points.len()).map(|i| f64::from(seed) / (i as f64 + 3.0)).collect();
+        mesh.set_point_field(Field { name: "u".into(), components: 3, values: values.into() });
+        let (bytes, lost) = print(".exo", &mesh, &WriteOptions::default());
+        let back = parse(".exo", &bytes).unwrap();
+        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+        prop_assert_eq!(back.point_field("u"), mesh.point_field("u"));
+        prop_assert_eq!(back.cells.len(), n);
+        // Facets of volume cells lose their values, and take their vertices from the cells.
+        if lost.iter().all(|what| !what.contains("side sets")) {
+            let places = back.cell_field("place").map(|f| f.values.to_i64().unwrap()).unwrap_or_default();
+            for (cell, place) in places.iter().map(|place| *place as usize - 1).enumerate() {
+                prop_assert_eq!(back.cells.kinds()[cell], mesh.cells.kinds()[place]);
+                prop_assert_eq!(back.cells.connectivity().list(cell), mesh.cells.connectivity().list(place));
+                for (found, given) in [(back.regions(), mesh.regions()), (back.patches(), mesh.patches())] {
+                    let id = |labels: &Option<motet::mesh::Labels>, i: usize| labels.as_ref().map_or(0, |labels| labels.ids[i]);
+                    prop_assert_eq!(id(&found, cell), id(&given, place));
+                }
+            }
+        }
+    }
+
+    #[test]
     fn xdmf_comes_back((mut mesh, labels) in meshes(XDMF_KINDS, false), seed in any::<u32>()) {
         let values = |n: usize| (0..n).map(|i| f64::from(seed) / (i as f64 + 3.0)).collect::<Vec<_>>();
         mesh.set_point_field(Field { name: "u v".into(), components: 3, values: values(3 * mesh.points.len()).into() });
@@ -331,7 +403,11 @@ proptest! {
         mesh.label_names.regions.insert(1, "the <blood>".into());
         let back = round_trip(".xdmf", &mesh)?;
         prop_assert_eq!(&back.point_data, &mesh.point_data);
-        prop_assert_eq!(&back.cell_data, &mesh.cell_data);
+        // Arrays may come back in another order.
+        prop_assert_eq!(back.cell_data.len(), mesh.cell_data.len());
+        for field in &mesh.cell_data {
+            prop_assert_eq!(back.cell_field(&field.name), Some(field));
+        }
         prop_assert_eq!(&back.label_names, &mesh.label_names);
     }
 
@@ -429,6 +505,8 @@ proptest! {
             (".su2", WriteOptions::default()),
             (".vol", WriteOptions::default()),
             (".unv", WriteOptions::default()),
+            (".bdf", WriteOptions::default()),
+            (".exo", WriteOptions::default()),
             (".xdmf", WriteOptions::default()),
             (".obj", WriteOptions::default()),
             (".stl", WriteOptions::default()),

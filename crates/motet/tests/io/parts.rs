@@ -124,6 +124,34 @@ fn blocks_form_one_mesh_and_name_its_regions() {
 }
 
 #[test]
+fn nested_blocks_of_one_name_are_told_apart_and_parts_of_a_block_are_not() {
+    let (folder, whole) = (Folder::new(), cube());
+    for (i, third) in THIRDS.iter().enumerate() {
+        folder.mesh(&format!("b{i}.vtu"), &part(&whole, *third, 0.0));
+    }
+    let names = |blocks: &str| {
+        let text = format!(
+            "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>{blocks}</vtkMultiBlockDataSet></VTKFile>"
+        );
+        let (mesh, _) = read(folder.write("all.vtm", text));
+        is_whole(&mesh, &whole);
+        mesh.regions().expect("regions").names.into_values().collect::<Vec<String>>()
+    };
+    let set = |name: &str, i: usize| format!("<DataSet name=\"{name}\" file=\"b{i}.vtu\"/>");
+    let block = |name: &str, inner: &str| format!("<Block name=\"{name}\">{inner}</Block>");
+    let nested =
+        block("left", &set("wall", 0)) + &block("right", &block("deep", &set("wall", 1))) + &set("rest", 2);
+    assert_eq!(names(&nested), ["left/wall", "right/deep/wall", "rest"]);
+    let pieces = format!(
+        "<VTKFile type=\"vtkMultiPieceDataSet\"><vtkMultiPieceDataSet>{}{}</vtkMultiPieceDataSet></VTKFile>",
+        "<DataSet file=\"b0.vtu\"/>", "<DataSet file=\"b1.vtu\"/>"
+    );
+    folder.write("two.vtm", pieces);
+    let two = "<DataSet name=\"blood\" file=\"two.vtm\"/>".to_owned() + &set("rest", 2);
+    assert_eq!(names(&two), ["blood", "rest"]);
+}
+
+#[test]
 fn files_that_refer_to_each_other_or_to_missing_files_are_refused() {
     let folder = Folder::new();
     let file = |to: &str| {

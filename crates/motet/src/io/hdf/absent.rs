@@ -84,4 +84,5 @@ never! { Array {
     fn ints(Range<usize>) -> Result<Vec<i64>>;
     fn error(impl Into<String>) -> Error;
     fn is_supported() -> bool;
+    fn text(&str) -> Result<Option<String>>;
 } }

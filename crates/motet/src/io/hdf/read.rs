@@ -188,6 +188,13 @@ impl Array {
         values.to_i64().ok_or_else(|| self.error("expected whole numbers"))
     }
 
+    /// An attribute that is a text, without padding.
+    pub(in crate::io) fn text(&self, name: &str) -> Result<Option<String>> {
+        let attributes = guarded(&self.path, || self.inner.attrs())?;
+        let text = attributes.get(name).and_then(AttrValue::as_str);
+        Ok(text.map(|text| text.trim_end_matches(['\0', ' ']).to_owned()))
+    }
+
     /// An error that names this array.
     pub(in crate::io) fn error(&self, what: impl Into<String>) -> Error {
         Error::input(what).at(self.path.as_str()).remedy("the file is damaged or invalid: write it again")

@@ -7,14 +7,21 @@
 //! the first grid is read, with a note. Names of labels are those that meshio puts into `Information`.
 //! Structured grids, functions of arrays and other collections are refused or skipped with a note.
 //!
+//! A mesh whose cells of the highest dimension are of one kind is written as dolfinx reads it: a grid `mesh`
+//! of these, and further grids of the same points, `facet_tags` for those of the next dimension, with their
+//! arrays, labels first. An array that is zero in a grid is left out there. Where this changes the order of
+//! the cells, the array `motet:cell` says where each was. Other meshes are one grid of mixed cells.
+//!
 //! Files are written in version 3, with the numbers in `NAME.h5` beside `NAME.xdmf`, or as text in the file
 //! itself for the encoding `ascii` and without the feature `hdf5`.
 //!
-//! Layout: "XDMF Model and Format" (xdmf.org). The nodes of cells are in VTK's order.
+//! Layout: "XDMF Model and Format" (xdmf.org), and files of dolfinx 0.9 (2024). The nodes of cells are in
+//! VTK's order.
 
 mod data;
 mod grid;
 mod kinds;
+mod parts;
 mod read;
 mod tags;
 #[cfg(test)]

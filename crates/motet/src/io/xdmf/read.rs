@@ -2,7 +2,7 @@
 
 use super::data::Source;
 use super::grid::{Center, attributes, cells, either, points};
-use super::tags::{add_tags, extend};
+use super::tags::{add_cells, extend, put_in_order};
 use crate::base::{Error, Result};
 use crate::io::format::{Input, Notes};
 use crate::io::text::quoted;
@@ -40,7 +40,8 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
                 let cells = cells(topology, &mut source)?;
                 let n = [mesh.points.len(), cells.len()];
                 let fields = attributes(grid, &mut source, n, input.notes)?;
-                add_tags(mesh, &cells, fields, input.notes);
+                let name = grid.attribute("Name").unwrap_or_default();
+                add_cells(mesh, name, &cells, fields, input.notes);
             }
             (Some(mesh), None, None) => add_arrays(mesh, n_cells, grid, &mut source, input.notes)?,
             (Some(_), ..) => {
@@ -54,9 +55,11 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
             }
         }
     }
-    mesh.ok_or_else(|| {
+    let mut mesh = mesh.ok_or_else(|| {
         Error::input("there is no grid").remedy("the file contains no mesh or is truncated: get a new copy")
-    })
+    })?;
+    put_in_order(&mut mesh);
+    Ok(mesh)
 }
 
 /// The grid itself, or the first of a collection over time.

@@ -1,8 +1,9 @@
-//! Writes a uniform grid, with the numbers in an HDF5 file or as text.
+//! Writes a grid, or one for each kind of cells, with the numbers in an HDF5 file or as text.
 
 use std::fmt::Write as _;
 
 use super::kinds::Topology;
+use super::parts::{Part, arrays_of, parts, places};
 use crate::base::{Result, Threads};
 use crate::io::format::{Compression, Encoding, WriteOptions, Written};
 use crate::io::hdf::{Node, Storage};
@@ -82,18 +83,42 @@ impl Sink<'_, '_> {
 
 fn write_grid(mesh: &Mesh, sink: &mut Sink<'_, '_>) -> Result<Vec<String>> {
     let (mesh, mut lost) = keep_cells(mesh, "XDMF", |kind| Topology::of(kind).is_some());
-    sink.put("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n")?;
-    sink.put("<Grid Name=\"mesh\" GridType=\"Uniform\">\n")?;
+    let parts = parts(&mesh.cells);
+    let (labels, _) = label_fields(&mesh);
+    let places = parts.as_ref().and_then(|parts| places(parts, mesh.cells.len()));
+    let cell_fields: Vec<&Field> = mesh.cell_data.iter().chain(&labels).chain(&places).collect();
+    let (first, further) = match &parts {
+        None => (cell_fields.into_iter().cloned().collect(), Vec::new()),
+        Some(parts) => {
+            let mut arrays = arrays_of(parts, &cell_fields).into_iter();
+            (arrays.next().unwrap_or_default(), parts.iter().skip(1).zip(arrays).collect())
+        }
+    };
+    sink.put("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"")?;
+    sink.put(if further.is_empty() { ">\n" } else { " xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n" })?;
+    sink.put("<Domain>\n<Grid Name=\"mesh\" GridType=\"Uniform\">\n")?;
     names(sink, &mesh.label_names, &mut lost)?;
     sink.put("<Geometry GeometryType=\"XYZ\">\n")?;
     sink.item(&Values::F64(mesh.points.as_flattened().to_vec()), &[mesh.points.len(), 3])?;
     sink.put("</Geometry>\n")?;
-    topology(sink, &mesh.cells)?;
-    let (labels, _) = label_fields(&mesh);
+    match parts.as_deref() {
+        Some([part, ..]) => uniform(sink, &mesh.cells, part)?,
+        _ => topology(sink, &mesh.cells)?,
+    }
+    // The first array is the one that dolfinx takes for tags of the cells.
+    arrays(sink, "Cell", first.iter(), &mut lost)?;
     arrays(sink, "Node", mesh.point_data.iter(), &mut lost)?;
-    arrays(sink, "Cell", mesh.cell_data.iter().chain(&labels), &mut lost)?;
     arrays(sink, "Grid", mesh.field_data.iter(), &mut lost)?;
-    sink.put("</Grid>\n</Domain>\n</Xdmf>\n")?;
+    sink.put("</Grid>\n")?;
+    for (part, fields) in further {
+        sink.put(&format!("<Grid Name=\"{}\" GridType=\"Uniform\">\n", part.name))?;
+        sink.put("<xi:include xpointer=\"xpointer(/Xdmf/Domain/Grid[@Name='mesh']/Geometry)\"/>\n")?;
+        uniform(sink, &mesh.cells, part)?;
+        arrays(sink, "Cell", fields.iter(), &mut lost)?;
+        sink.put("</Grid>\n")?;
+    }
+    sink.put("</Domain>\n</Xdmf>\n")?;
+    lost.dedup();
     Ok(lost)
 }
 
@@ -113,27 +138,31 @@ fn names(sink: &mut Sink<'_, '_>, names: &LabelNames, lost: &mut Vec<String>) ->
     sink.put(&format!("<Information Name=\"Information\"><![CDATA[<main>{maps}</main>]]></Information>\n"))
 }
 
-/// Writes the cells: as rows of ids if all are of one kind with a fixed number of nodes, otherwise mixed.
+/// Writes all cells: as rows of ids if they are of one kind with a fixed number of nodes, otherwise mixed.
 fn topology(sink: &mut Sink<'_, '_>, cells: &Cells) -> Result<()> {
-    let n = cells.len();
     let first = cells.kinds().first().copied().unwrap_or(CellKind::TETRA);
-    let uniform = Topology::of(first).filter(|_| cells.kinds().iter().all(|&kind| kind == first));
-    match uniform.zip(first.n_vertices()) {
-        Some((topology, n_nodes)) => {
-            let name = topology.names[0];
-            sink.put(&format!(
-                "<Topology TopologyType=\"{name}\" NumberOfElements=\"{n}\" NodesPerElement=\"{n_nodes}\">\n"
-            ))?;
-            let ids = cells.connectivity().items().iter().map(|v| v.0);
-            sink.item(&Values::U32(ids.collect()), &[n, n_nodes])?;
-        }
-        None => {
-            sink.put(&format!("<Topology TopologyType=\"Mixed\" NumberOfElements=\"{n}\">\n"))?;
-            let numbers = mixed(cells);
-            let n = numbers.len();
-            sink.item(&Values::U32(numbers), &[n])?;
-        }
+    if first.n_vertices().is_some() && cells.kinds().iter().all(|&kind| kind == first) {
+        let part = Part { name: String::new(), kind: first, cells: (0..cells.len()).collect() };
+        return uniform(sink, cells, &part);
     }
+    sink.put(&format!("<Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\">\n", cells.len()))?;
+    let numbers = mixed(cells);
+    let n = numbers.len();
+    sink.item(&Values::U32(numbers), &[n])?;
+    sink.put("</Topology>\n")
+}
+
+/// Writes cells of one kind as rows of ids.
+fn uniform(sink: &mut Sink<'_, '_>, cells: &Cells, part: &Part) -> Result<()> {
+    let Some((topology, n_nodes)) = Topology::of(part.kind).zip(part.kind.n_vertices()) else {
+        return Ok(());
+    };
+    let (name, n) = (topology.names[0], part.cells.len());
+    sink.put(&format!(
+        "<Topology TopologyType=\"{name}\" NumberOfElements=\"{n}\" NodesPerElement=\"{n_nodes}\">\n"
+    ))?;
+    let ids = part.cells.iter().flat_map(|&cell| cells.connectivity().list(cell)).map(|v| v.0);
+    sink.item(&Values::U32(ids.collect()), &[n, n_nodes])?;
     sink.put("</Topology>\n")
 }
 
