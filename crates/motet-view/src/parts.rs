@@ -46,6 +46,8 @@ struct Part {
     /// How near it may come to them: a fraction of the length of its edges, so that tets between them can be
     /// good.
     clearance: f64,
+    /// How far it may go in any direction without coming that near.
+    free: f64,
 }
 
 /// The fraction of the median edge length that a part keeps to others.
@@ -87,11 +89,16 @@ impl Apart {
                 vertices: vertices_of(&surface, |other| other == patch),
                 others: triangles_of(&surface, |other| other != patch),
                 clearance: CLEARANCE * median_edge(&mesh.points, &triangles),
+                free: 0.0,
                 triangles,
             }
         };
-        let parts = apart.iter().map(part).collect();
-        let contact = Contact::new(mesh.points.clone(), bodies, Options::default(), threads)?;
+        let mut parts: Vec<Part> = apart.iter().map(part).collect();
+        let mut contact = Contact::new(mesh.points.clone(), bodies, Options::default(), threads)?;
+        for part in &mut parts {
+            let gap = nearest(&mut contact, part.patch, threads).map_or(0.0, |(gap, _)| gap);
+            part.free = gap - part.clearance;
+        }
         Ok(Some(Self { contact, parts }))
     }
 
@@ -105,8 +112,9 @@ impl Apart {
         Ok((gaps.at_points(points.len()), gaps.least()))
     }
 
-    /// How far a patch gets towards a displacement `by`: it stops before it comes nearer to another part than
-    /// its clearance, and slides along it. Others patches go all the way.
+    /// How far a patch gets from `points`, the positions of the mesh, towards a displacement `by`: it stops
+    /// before it comes nearer to another part than its clearance, and slides along it. Other patches go all
+    /// the way.
     ///
     /// # Errors
     /// When a position is not finite.
@@ -118,6 +126,9 @@ impl Apart {
         threads: &Threads,
     ) -> Result<Point> {
         let Some(part) = self.parts.iter().find(|part| part.patch == patch) else { return Ok(by) };
+        if norm(by) <= part.free {
+            return Ok(by);
+        }
         let (mut at, mut velocity) = (points.to_vec(), vec![[0.0; 3]; points.len()]);
         let (mut done, mut left) = ([0.0; 3], by);
         for _ in 0..TURNS {
@@ -133,22 +144,24 @@ impl Apart {
             }
             part.vertices.iter().for_each(|v| at[v.index()] = add(points[v.index()], done));
             self.contact.refit(&at, threads)?;
-            let Some(away) = away(&mut self.contact, patch, threads) else { break };
+            let Some(away) = nearest(&mut self.contact, patch, threads).and_then(|(_, away)| unit(away))
+            else {
+                break;
+            };
             left = sub(left, scale(away, dot(left, away).min(0.0)));
         }
         Ok(done)
     }
 }
 
-/// The unit vector from the nearest point of other bodies to that of one.
-fn away(contact: &mut Contact, patch: i32, threads: &Threads) -> Option<Point> {
+/// The distance of a patch from the nearest other body, and the vector from there to the patch.
+fn nearest(contact: &mut Contact, patch: i32, threads: &Threads) -> Option<(f64, Point)> {
     let name = patch.to_string();
     let nearest = contact.nearest(threads).into_iter().filter_map(|(bodies, nearest)| {
         let side = bodies.iter().position(|&body| contact.name(body) == name)?;
         nearest.map(|nearest| (nearest.distance, sub(nearest.points[side], nearest.points[1 - side])))
     });
-    let (_, between) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    unit(between)
+    nearest.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 fn median_edge(points: &[Point], triangles: &[[VertexId; 3]]) -> f64 {

@@ -51,8 +51,8 @@ class Live {
     const hit = this.hit(e), chosen = byId("grabbed").value;
     if (!hit || this.isDropped || chosen === NONE) return null;
     const patch = this.patches.find(({ name, id }) => (chosen === ANY ? id === hit.patch && hit.isOpaque : name === chosen));
-    // A part that was chosen is dragged by any part that can be seen, unless it is seen itself, elsewhere.
-    if (!patch || (chosen !== ANY && hit.patch !== patch.id && hit.isOpaque)) return null;
+    // A part that was chosen is dragged wherever the mesh is seen.
+    if (!patch) return null;
     const { camera, canvas } = this.view, [right, up] = camera.rows;
     // How long a picture's height is, there.
     const height = (2 * hit.away * Math.tan(FIELD / 2)) / camera.zoom, by = [0, 0, 0];
