@@ -110,8 +110,8 @@ impl Threads {
         };
         list.reserve(n);
         self.in_parts(&mut list.spare_capacity_mut()[..n], min_part, &write);
-        // SAFETY: there is room for `n` more items. Each of their places was in one of the parts, all of which
-        // were written; otherwise a call has panicked.
+        // SAFETY: there is room for `n` more items. Each of their places was in one of the parts, all of
+        // which were written; otherwise a call has panicked.
         unsafe { list.set_len(list.len() + n) };
     }
 
