@@ -101,7 +101,7 @@ impl Scene {
             }
             Err(e) => State::Still(Box::new(mesh), format!("This mesh cannot be moved: {e}")),
         };
-        let shown = Shown::of(now.mesh(), name, &threads)?;
+        let shown = Shown::of(&now, name, &threads)?;
         Ok(Self { name: name.to_owned(), threads, now, past: Vec::new(), patches: movable, shown })
     }
 
@@ -196,9 +196,9 @@ impl Scene {
             true => displacement,
             false => old.iter().zip(&displacement).map(reached).collect(),
         };
-        let shown = Shown::of(moving.mesh(), &self.name, &self.threads)?;
-        let before = std::mem::replace(&mut self.now, State::Moving(Box::new(moving), displacement));
-        self.shown = shown;
+        let now = State::Moving(Box::new(moving), displacement);
+        self.shown = Shown::of(&now, &self.name, &self.threads)?;
+        let before = std::mem::replace(&mut self.now, now);
         if self.past.len() == MAX_UNDONE {
             self.past.remove(0);
         }
@@ -212,9 +212,9 @@ impl Scene {
     /// When there is none.
     pub fn undo(&mut self) -> Result<String> {
         let begin = Instant::now();
-        let before = self.past.pop().ok_or_else(|| Error::options("there is nothing to undo"))?;
-        self.shown = Shown::of(before.mesh(), &self.name, &self.threads)?;
-        self.now = before;
+        let before = self.past.last().ok_or_else(|| Error::options("there is nothing to undo"))?;
+        self.shown = Shown::of(before, &self.name, &self.threads)?;
+        self.now = self.past.remove(self.past.len() - 1);
         json(&self.said(Some(begin), Some("Undone.".to_owned())))
     }
 
@@ -265,9 +265,14 @@ impl State {
 }
 
 impl Shown {
-    fn of(mesh: &Mesh, name: &str, threads: &Threads) -> Result<Self> {
+    fn of(state: &State, name: &str, threads: &Threads) -> Result<Self> {
+        let mesh = state.mesh();
         let tets = OrientedTets::of(mesh, threads);
-        let mut apart = Apart::of(mesh, threads)?;
+        // Distances of what cannot be moved are not needed, and its points need not be finite.
+        let mut apart = match state {
+            State::Still(..) => None,
+            State::Moving(..) => Apart::of(mesh, threads)?,
+        };
         let preview = Preview::of(&tets, apart.as_mut(), &mesh.points, threads)?;
         let mut pictured = mesh.clone();
         if let Some(gaps) = preview.gaps {

@@ -163,6 +163,15 @@ fn a_surface_is_shown_but_not_moved() {
     assert!(scene.shift(&shift("1", [0.0; 3])).is_err());
 }
 
+#[test]
+fn a_mesh_with_a_point_that_is_not_finite_is_shown() {
+    let mut mesh = sphere_in_box(2, 2);
+    mesh.points[0][1] = f64::NAN;
+    let scene = scene(mesh);
+    assert!(facts(&scene.facts().unwrap())["cannot"].as_str().unwrap().contains("not finite"));
+    assert!(scene.page().unwrap().contains("id=\"live\""));
+}
+
 /// Status and text of an answer.
 fn get(server: &Server, request: &str) -> (u16, String) {
     let address = server.address();
