@@ -125,7 +125,7 @@ def test_a_coil_is_dragged_by_hand_and_the_mesh_follows(window, tmp_path):
     moved = np.linalg.norm((places(after) - places(before))[0])
     assert moved == pytest.approx(0.3, abs=length / 10)
     assert window.facts()["inverted"] == 0 and window.facts()["tets"] == len(after.tets)
-    assert window.facts()["worst"] == pytest.approx(after.summary().quality.eas.min, abs=1e-6)
+    assert window.facts()["eas"]["worst"] == pytest.approx(after.summary().quality.eas.min, abs=1e-6)
     second = window.get("mesh.vtu")
 
     # Far beyond the wall: it stops before it, and what became bad is repaired.

@@ -23,8 +23,6 @@ def test_meshio_writes_and_reads_formats_of_motet(ending, tmp_path):
 
 
 def test_what_meshio_reads_itself_stays_so():
-    from meshio._helpers import extension_to_filetypes
-
     import motet.meshio  # noqa: F401
 
-    assert extension_to_filetypes[".vtu"] == ["vtu"] and extension_to_filetypes[".unv"] == ["motet.unv"]
+    assert meshio.extension_to_filetypes[".vtu"] == ["vtu"] and meshio.extension_to_filetypes[".unv"] == ["motet.unv"]

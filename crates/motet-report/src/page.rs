@@ -113,7 +113,8 @@ impl Page<'_> {
         text
     }
 
-    /// The same data as one object, with the blocks as `texts`.
+    /// The description of all inputs and blocks, and as `texts` each block in base64: what replaces the data
+    /// of a page that is open.
     pub(crate) fn update(&self) -> Value {
         let mut manifest = self.manifest();
         manifest["texts"] = json!(self.texts());

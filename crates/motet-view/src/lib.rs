@@ -17,5 +17,6 @@ mod preview;
 mod scene;
 mod server;
 
-pub use scene::{Asked, Scene, Shift};
+pub use preview::PreviewRequest;
+pub use scene::{MoveRequest, Scene};
 pub use server::Server;

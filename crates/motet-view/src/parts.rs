@@ -1,9 +1,12 @@
 //! The patches that can be dragged, and the distances between those that stand apart.
 
-use motet::base::{Point, Threads, VertexId};
+use std::collections::BTreeMap;
+
+use motet::base::{BodyId, Point, Threads, VertexId};
 use motet::contact::{Body, Contact, Options, Room, sweep_apart};
-use motet::geometry::vector::{add, distance, dot, norm, scale, sub, unit};
-use motet::mesh::Surface;
+use motet::geometry::vector::{add, dot, norm, scale, sub, unit};
+use motet::mesh::{Surface, edge_lengths};
+use motet::motion::FacetSet;
 use motet::{Mesh, Result};
 use serde::Serialize;
 
@@ -12,26 +15,26 @@ use serde::Serialize;
 pub(crate) struct Patch {
     pub(crate) name: String,
     pub(crate) id: i32,
-    /// Its vertices, as indices of driven vertices.
+    /// The vertices of the patch, as positions in the list of driven vertices.
     #[serde(skip)]
     pub(crate) nodes: Vec<usize>,
 }
 
 /// The patches of a mesh with driven vertices; `driven` is in rising order.
 pub(crate) fn patches(mesh: &Mesh, driven: &[VertexId]) -> Vec<Patch> {
-    let surface = Surface::own_or_boundary_of(mesh);
+    let Some(labels) = mesh.patches() else { return Vec::new() };
     let patch = |id: i32| {
-        let vertices = vertices_of(&surface, |other| other == id);
+        let FacetSet { name, vertices, .. } = FacetSet::of_patch(mesh, id);
         let nodes = vertices.iter().filter_map(|v| driven.binary_search(v).ok());
-        let name = surface.patch_names.get(&id).cloned().unwrap_or_else(|| id.to_string());
         Patch { name, id, nodes: nodes.collect() }
     };
-    ids(&surface).into_iter().map(patch).filter(|patch| !patch.nodes.is_empty()).collect()
+    labels.used().into_iter().map(patch).filter(|patch| !patch.nodes.is_empty()).collect()
 }
 
 /// The parts of a surface that stand apart: each patch that shares no vertex with another one, and all other
 /// patches together.
-pub(crate) struct Apart {
+pub(crate) struct SeparateParts {
+    /// The bodies are the parts, in their order, then the other patches.
     contact: Contact,
     parts: Vec<Part>,
 }
@@ -41,63 +44,64 @@ struct Part {
     patch: i32,
     triangles: Vec<[VertexId; 3]>,
     vertices: Vec<VertexId>,
-    /// The triangles of all other parts.
+    /// The triangles of everything else.
     others: Vec<[VertexId; 3]>,
-    /// How near it may come to them: a fraction of the length of its edges, so that tets between them can be
-    /// good.
+    /// The distance that it keeps from everything else: a fraction of the length of its edges, so that tets
+    /// between them can be good.
     clearance: f64,
-    /// How far it may go in any direction without coming that near.
-    free: f64,
+    /// How far it can move in any direction and keep that distance.
+    free_path: f64,
 }
 
-/// The fraction of the median edge length that a part keeps to others.
+/// The fraction of its median edge length that a part keeps from others.
 const CLEARANCE: f64 = 0.5;
-/// How often a part turns aside within one displacement.
-const TURNS: usize = 4;
-/// A displacement below this fraction of what was asked for is not worth another turn.
-const LEAST: f64 = 1e-3;
+/// How often a part changes direction within one displacement.
+const MAX_SLIDES: usize = 4;
+/// The fraction of a displacement below which the rest is not worth another change of direction.
+const MIN_REST: f64 = 1e-3;
 
-impl Apart {
+impl SeparateParts {
     /// The parts of a mesh; `None` if there are fewer than two.
     ///
     /// # Errors
     /// When distances cannot be measured on this mesh.
     pub(crate) fn of(mesh: &Mesh, threads: &Threads) -> Result<Option<Self>> {
         let surface = Surface::own_or_boundary_of(mesh);
-        let ids = ids(&surface);
+        let mut by_patch = BTreeMap::<i32, Vec<[VertexId; 3]>>::new();
+        for (triangle, id) in surface.triangles.iter().zip(&surface.patches) {
+            by_patch.entry(*id).or_default().push(*triangle);
+        }
         let mut n_patches_at = vec![0u32; mesh.points.len()];
-        for &id in &ids {
-            vertices_of(&surface, |other| other == id).iter().for_each(|v| n_patches_at[v.index()] += 1);
-        }
-        let is_apart = |id: &i32| {
-            vertices_of(&surface, |other| other == *id).iter().all(|v| n_patches_at[v.index()] == 1)
-        };
-        let apart: Vec<i32> = ids.iter().copied().filter(is_apart).collect();
-        let body = |name: String, triangles| Body { name, triangles, room: Room::Found };
-        let one = |&id: &i32| body(id.to_string(), triangles_of(&surface, |other| other == id));
-        let mut bodies: Vec<Body> = apart.iter().map(one).collect();
-        if apart.len() < ids.len() {
-            bodies.push(body("others".to_owned(), triangles_of(&surface, |other| !apart.contains(&other))));
-        }
-        if bodies.len() < 2 {
-            return Ok(None);
-        }
+        let vertices: BTreeMap<i32, _> = by_patch.iter().map(|(id, all)| (*id, vertices_of(all))).collect();
+        vertices.values().flatten().for_each(|v| n_patches_at[v.index()] += 1);
+        let is_separate = |id: &i32| vertices[id].iter().all(|v| n_patches_at[v.index()] == 1);
+        let (separate, joined): (Vec<i32>, Vec<i32>) = by_patch.keys().partition(|id| is_separate(id));
+        let all_but = |id: i32| by_patch.iter().filter(move |(other, _)| **other != id).flat_map(|(_, t)| t);
         let part = |&patch: &i32| {
-            let triangles = triangles_of(&surface, |other| other == patch);
+            let triangles = by_patch[&patch].clone();
+            let lengths = edge_lengths(&mesh.points, triangles.iter().copied());
             Part {
                 patch,
-                vertices: vertices_of(&surface, |other| other == patch),
-                others: triangles_of(&surface, |other| other != patch),
-                clearance: CLEARANCE * median_edge(&mesh.points, &triangles),
-                free: 0.0,
+                vertices: vertices[&patch].clone(),
+                others: all_but(patch).copied().collect(),
+                clearance: CLEARANCE * lengths.map_or(0.0, |[_, median, _]| median),
+                free_path: 0.0,
                 triangles,
             }
         };
-        let mut parts: Vec<Part> = apart.iter().map(part).collect();
+        let mut parts: Vec<Part> = separate.iter().map(part).collect();
+        let rest: Vec<_> = joined.iter().flat_map(|id| by_patch[id].iter().copied()).collect();
+        let bodies =
+            parts.iter().map(|part| part.triangles.clone()).chain(Some(rest).filter(|t| !t.is_empty()));
+        let body = |triangles| Body { name: String::new(), triangles, room: Room::Found };
+        let bodies: Vec<Body> = bodies.map(body).collect();
+        if bodies.len() < 2 {
+            return Ok(None);
+        }
         let mut contact = Contact::new(mesh.points.clone(), bodies, Options::default(), threads)?;
-        for part in &mut parts {
-            let gap = nearest(&mut contact, part.patch, threads).map_or(0.0, |(gap, _)| gap);
-            part.free = gap - part.clearance;
+        for (k, part) in parts.iter_mut().enumerate() {
+            let distance = nearest(&mut contact, k, threads).map_or(0.0, |(distance, _)| distance);
+            part.free_path = distance - part.clearance;
         }
         Ok(Some(Self { contact, parts }))
     }
@@ -125,67 +129,45 @@ impl Apart {
         by: Point,
         threads: &Threads,
     ) -> Result<Point> {
-        let Some(part) = self.parts.iter().find(|part| part.patch == patch) else { return Ok(by) };
-        if norm(by) <= part.free {
+        let Some(k) = self.parts.iter().position(|part| part.patch == patch) else { return Ok(by) };
+        let part = &self.parts[k];
+        if norm(by) <= part.free_path {
             return Ok(by);
         }
         let (mut at, mut velocity) = (points.to_vec(), vec![[0.0; 3]; points.len()]);
-        let (mut done, mut left) = ([0.0; 3], by);
-        for _ in 0..TURNS {
-            part.vertices.iter().for_each(|v| velocity[v.index()] = left);
-            let clearance = vec![part.clearance; part.triangles.len()];
-            let bodies = [&part.triangles[..], &part.others[..]];
+        let clearance = vec![part.clearance; part.triangles.len()];
+        let bodies = [&part.triangles[..], &part.others[..]];
+        let (mut done, mut rest) = ([0.0; 3], by);
+        for _ in 0..MAX_SLIDES {
+            part.vertices.iter().for_each(|v| velocity[v.index()] = rest);
             let times = sweep_apart(&at, &velocity, bodies, &clearance, 1.0, threads);
-            let way = times.into_iter().fold(1.0, f64::min);
-            done = add(done, scale(left, way));
-            left = scale(left, 1.0 - way);
-            if way == 1.0 || norm(left) <= LEAST * norm(by) {
+            let fraction = times.into_iter().fold(1.0, f64::min);
+            done = add(done, scale(rest, fraction));
+            rest = scale(rest, 1.0 - fraction);
+            if norm(rest) <= MIN_REST * norm(by) {
                 break;
             }
             part.vertices.iter().for_each(|v| at[v.index()] = add(points[v.index()], done));
             self.contact.refit(&at, threads)?;
-            let Some(away) = nearest(&mut self.contact, patch, threads).and_then(|(_, away)| unit(away))
-            else {
-                break;
-            };
-            left = sub(left, scale(away, dot(left, away).min(0.0)));
+            let normal = nearest(&mut self.contact, k, threads).and_then(|(_, away)| unit(away));
+            let Some(normal) = normal else { break };
+            rest = sub(rest, scale(normal, dot(rest, normal).min(0.0)));
         }
         Ok(done)
     }
 }
 
-/// The distance of a patch from the nearest other body, and the vector from there to the patch.
-fn nearest(contact: &mut Contact, patch: i32, threads: &Threads) -> Option<(f64, Point)> {
-    let name = patch.to_string();
+/// The distance of a part from the nearest other body, and the vector from there to the part.
+fn nearest(contact: &mut Contact, part: usize, threads: &Threads) -> Option<(f64, Point)> {
     let nearest = contact.nearest(threads).into_iter().filter_map(|(bodies, nearest)| {
-        let side = bodies.iter().position(|&body| contact.name(body) == name)?;
+        let side = bodies.iter().position(|&body| body == BodyId::new(part))?;
         nearest.map(|nearest| (nearest.distance, sub(nearest.points[side], nearest.points[1 - side])))
     });
     nearest.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-fn median_edge(points: &[Point], triangles: &[[VertexId; 3]]) -> f64 {
-    let sides = |[a, b, c]: &[VertexId; 3]| [[*a, *b], [*b, *c], [*c, *a]];
-    let length = |[a, b]: [VertexId; 2]| distance(points[a.index()], points[b.index()]);
-    let mut lengths: Vec<f64> = triangles.iter().flat_map(sides).map(length).collect();
-    lengths.sort_unstable_by(f64::total_cmp);
-    lengths.get(lengths.len() / 2).copied().unwrap_or(0.0)
-}
-
-fn ids(surface: &Surface) -> Vec<i32> {
-    let mut ids = surface.patches.clone();
-    ids.sort_unstable();
-    ids.dedup();
-    ids
-}
-
-fn triangles_of(surface: &Surface, is_in: impl Fn(i32) -> bool) -> Vec<[VertexId; 3]> {
-    let triangles = surface.triangles.iter().zip(&surface.patches).filter(|(_, id)| is_in(**id));
-    triangles.map(|(t, _)| *t).collect()
-}
-
-fn vertices_of(surface: &Surface, is_in: impl Fn(i32) -> bool) -> Vec<VertexId> {
-    let mut vertices = triangles_of(surface, is_in).into_flattened();
+fn vertices_of(triangles: &[[VertexId; 3]]) -> Vec<VertexId> {
+    let mut vertices = triangles.as_flattened().to_vec();
     vertices.sort_unstable();
     vertices.dedup();
     vertices

@@ -2,27 +2,24 @@
 
 use motet::Result;
 use motet::base::{CellId, Point, Threads};
-use motet::geometry::quality::eas_of_each;
-use motet::geometry::vector::is_finite;
-use motet::mesh::{BAD_EAS, OrientedTets};
+use motet::mesh::{BAD_EAS, OrientedTets, Qualities, Spread};
 use motet_report::Order;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use crate::parts::Apart;
+use crate::parts::SeparateParts;
 
 /// The names of arrays whose values follow the mesh; the page knows them by these.
 pub(crate) const EAS: &str = "EAS quality";
 pub(crate) const GAP: &str = "gap";
 /// How many bad tets are shown while a part is dragged: the worst.
 const MAX_BAD: usize = 300;
-/// How many tets a thread evaluates at a time.
-const CHUNK: usize = 1 << 13;
 
 /// The numbers that describe a mesh.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Measured {
     pub(crate) tets: usize,
-    pub(crate) worst: Option<f64>,
+    /// The EAS of all tets.
+    pub(crate) eas: Option<Spread>,
     pub(crate) bad: usize,
     pub(crate) inverted: usize,
     /// The least distance between parts that stand apart.
@@ -34,48 +31,50 @@ pub(crate) struct Preview {
     pub(crate) measured: Measured,
     /// The EAS of each tet.
     eas: Vec<f64>,
-    /// The gap at each vertex, where it was asked for.
+    /// The gap at each vertex, where gaps are measured.
     pub(crate) gaps: Option<Vec<f64>>,
     /// Bad tets, as indices of tets.
     bad: Vec<usize>,
 }
 
 impl Preview {
-    /// Judges the tets with their vertices at `points`; measures gaps if `apart` is given.
+    /// Judges the tets with their vertices at `points`; measures gaps if `parts` are given.
     ///
     /// # Errors
     /// When gaps cannot be measured.
     pub(crate) fn of(
         tets: &OrientedTets,
-        apart: Option<&mut Apart>,
+        parts: Option<&mut SeparateParts>,
         points: &[Point],
         threads: &Threads,
     ) -> Result<Self> {
-        let starts: Vec<usize> = (0..tets.tets.len()).step_by(CHUNK).collect();
-        let end = |start: usize| (start + CHUNK).min(tets.tets.len());
-        let eas = threads.each(starts, |start| eas_of_each(points, &tets.tets[start..end(start)])).concat();
+        let eas = Qualities::eas_of_each(points, &tets.tets, threads);
         let low: Vec<usize> = (0..eas.len()).filter(|&i| eas[i] < BAD_EAS).collect();
         let inverted = low.iter().filter(|&&i| tets.is_inverted(i, points)).count();
         let bad = tets.judge(points, low, BAD_EAS).bad;
-        let (gaps, gap) = match apart {
-            Some(apart) => {
-                let (gaps, least) = apart.gaps(points, threads)?;
+        let (gaps, gap) = match parts {
+            Some(parts) => {
+                let (gaps, least) = parts.gaps(points, threads)?;
                 (Some(gaps), Some(least).filter(|gap| gap.is_finite()))
             }
             None => (None, None),
         };
-        let worst = eas.iter().copied().reduce(f64::min);
-        let measured = Measured { tets: eas.len(), worst, bad: bad.len(), inverted, gap };
+        let spread = Spread::of_values(&mut eas.clone(), true);
+        let measured = Measured { tets: eas.len(), eas: spread, bad: bad.len(), inverted, gap };
         Ok(Self { measured, eas, gaps, bad })
     }
 }
 
-/// What the page asks for besides positions.
-#[derive(Clone, Copy)]
-pub(crate) struct Wanted<'a> {
+/// What the page requests while a patch is dragged.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PreviewRequest {
+    pub(crate) patch: String,
+    /// The displacement since the last step.
+    pub(crate) by: Point,
     /// The array whose values are shown.
-    pub(crate) array: Option<&'a str>,
-    /// Whether the inside is shown, too.
+    pub(crate) array: Option<String>,
+    /// Whether the inside is shown.
     pub(crate) inside: bool,
 }
 
@@ -93,16 +92,16 @@ impl Lists {
         order: &Order,
         tets: &OrientedTets,
         points: &[Point],
-        wanted: Wanted<'_>,
+        request: &PreviewRequest,
     ) -> Self {
         let mut lists = Self::default();
-        let is_shown_inside = wanted.inside || !preview.bad.is_empty();
+        let is_shown_inside = request.inside || !preview.bad.is_empty();
         let n = if is_shown_inside { order.vertices.len() } else { order.n_skin };
         let coordinate = |v: usize| points[order.vertices[v].index()].map(|x| x as f32);
         lists.put("points", (0..n).flat_map(coordinate));
         let place_of = |cell: CellId| tets.cells.binary_search(&cell).ok();
         let of_cell = |&cell: &CellId| place_of(cell).map_or(NO_VALUE, |i| preview.eas[i] as f32);
-        match (wanted.array, &preview.gaps) {
+        match (request.array.as_deref(), &preview.gaps) {
             (Some(EAS), _) => {
                 lists.put("skin", order.triangles.iter().map(of_cell));
                 let solids = if is_shown_inside { &order.solids[..] } else { &[] };
@@ -118,15 +117,9 @@ impl Lists {
                 lists.put("inside", std::iter::empty());
             }
         }
-        let mut bad = preview.bad.clone();
-        // More would hide what is dragged.
-        bad.sort_by(|&a, &b| preview.eas[a].total_cmp(&preview.eas[b]));
-        bad.truncate(MAX_BAD);
-        let mut bad: Vec<CellId> = bad.iter().map(|&i| tets.cells[i]).collect();
-        bad.sort_unstable();
-        let is_bad = |(_, cell): &(u32, &CellId)| bad.binary_search(cell).is_ok();
-        let solids = (0u32..).zip(&order.solids);
-        let bad: Vec<u32> = solids.filter(|_| !bad.is_empty()).filter(is_bad).map(|(i, _)| i).collect();
+        let worst = worst_cells(preview, tets);
+        let is_shown = |(_, cell): &(u32, &CellId)| worst.binary_search(cell).is_ok();
+        let bad: Vec<u32> = (0..).zip(&order.solids).filter(is_shown).map(|(i, _)| i).collect();
         lists.lengths.push(("bad", bad.len()));
         lists.bytes.extend(bad.iter().flat_map(|i| i.to_le_bytes()));
         lists
@@ -139,9 +132,18 @@ impl Lists {
     }
 }
 
-/// What the page takes for "no number".
+/// The worst of the bad tets, in rising order: more would hide what is dragged.
+fn worst_cells(preview: &Preview, tets: &OrientedTets) -> Vec<CellId> {
+    let mut bad = preview.bad.clone();
+    bad.sort_by(|&a, &b| preview.eas[a].total_cmp(&preview.eas[b]));
+    let mut cells: Vec<CellId> = bad.iter().take(MAX_BAD).map(|&i| tets.cells[i]).collect();
+    cells.sort_unstable();
+    cells
+}
+
+/// Stands for "no number" on the page.
 const NO_VALUE: f32 = 3e38;
 
 fn number(x: f64) -> f32 {
-    if is_finite([x; 3]) { x as f32 } else { NO_VALUE }
+    if x.is_finite() { x as f32 } else { NO_VALUE }
 }

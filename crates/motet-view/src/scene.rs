@@ -11,8 +11,8 @@ use motet::{Error, Mesh, Result};
 use motet_report::Live;
 use serde::{Deserialize, Serialize};
 
-use crate::parts::{Apart, Patch, patches};
-use crate::preview::{GAP, Lists, Measured, Preview, Wanted};
+use crate::parts::{Patch, SeparateParts, patches};
+use crate::preview::{GAP, Lists, Measured, Preview, PreviewRequest};
 
 /// How many steps can be undone.
 const MAX_UNDONE: usize = 20;
@@ -26,6 +26,8 @@ pub struct Scene {
     past: Vec<State>,
     patches: Vec<Patch>,
     shown: Shown,
+    /// The mesh as it was given.
+    at_first: Measured,
 }
 
 /// The mesh between two steps.
@@ -40,44 +42,35 @@ enum State {
 struct Shown {
     live: Live,
     tets: OrientedTets,
-    apart: Option<Apart>,
+    parts: Option<SeparateParts>,
     measured: Measured,
 }
 
-/// A patch to be moved, and by how much.
+/// What the page requests when a patch is released.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Shift {
+pub struct MoveRequest {
     patch: String,
+    /// The displacement since the last step.
     by: Point,
 }
 
-/// What the page shows while a patch is dragged.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Asked {
-    patch: String,
-    by: Point,
-    array: Option<String>,
-    inside: bool,
-}
-
-/// What is said of the mesh.
+/// What the page tells of the mesh.
 #[derive(Serialize)]
 struct Facts<'a> {
     #[serde(flatten)]
     measured: &'a Measured,
+    at_first: &'a Measured,
     #[serde(skip_serializing_if = "Option::is_none")]
     patches: Option<&'a [Patch]>,
-    /// What the hand drags at first.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    first: Option<&'static str>,
+    /// Whether parts stand apart, which are dragged where they are seen.
+    has_separate_parts: bool,
     /// Why the mesh cannot be moved.
     #[serde(skip_serializing_if = "Option::is_none")]
-    cannot: Option<&'a str>,
-    /// What the last step did.
+    not_movable: Option<&'a str>,
+    /// The outcome of the last step.
     #[serde(skip_serializing_if = "Option::is_none")]
-    happened: Option<String>,
+    outcome: Option<String>,
     can_undo: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     milliseconds: Option<f64>,
@@ -102,7 +95,8 @@ impl Scene {
             Err(e) => State::Still(Box::new(mesh), format!("This mesh cannot be moved: {e}")),
         };
         let shown = Shown::of(&now, name, &threads)?;
-        Ok(Self { name: name.to_owned(), threads, now, past: Vec::new(), patches: movable, shown })
+        let at_first = shown.measured.clone();
+        Ok(Self { name: name.to_owned(), threads, now, past: Vec::new(), patches: movable, shown, at_first })
     }
 
     /// The mesh as it is.
@@ -147,13 +141,11 @@ impl Scene {
     /// # Errors
     /// When it cannot be written.
     pub fn facts(&self) -> Result<String> {
-        let cannot = match &self.now {
+        let not_movable = match &self.now {
             State::Still(_, why) => Some(why.as_str()),
             State::Moving(..) => None,
         };
-        let first = if self.shown.apart.is_some() { "any" } else { "none" };
-        let patches = Some(&self.patches[..]);
-        json(&Facts { patches, first: Some(first), cannot, ..self.said(None, None) })
+        json(&Facts { patches: Some(&self.patches), not_movable, ..self.current_facts(None, None) })
     }
 
     /// Where everything would be, in the order of the page: the length of the facts, in four bytes, the facts
@@ -161,18 +153,17 @@ impl Scene {
     ///
     /// # Errors
     /// When there is no such patch, or the displacement is not finite.
-    pub fn preview(&mut self, asked: &Asked) -> Result<Vec<u8>> {
+    pub fn preview(&mut self, request: &PreviewRequest) -> Result<Vec<u8>> {
         let begin = Instant::now();
-        let displacement = self.shifted(&asked.patch, asked.by)?;
+        let displacement = self.displacement_with(&request.patch, request.by)?;
         let points = self.moving()?.0.preview(&displacement, &self.threads)?;
         let shown = &mut self.shown;
-        let is_of_gaps = asked.array.as_deref() == Some(GAP);
-        let apart = shown.apart.as_mut().filter(|_| is_of_gaps);
-        let preview = Preview::of(&shown.tets, apart, &points, &self.threads)?;
-        let wanted = Wanted { array: asked.array.as_deref(), inside: asked.inside };
-        let lists = Lists::of(&preview, shown.live.order(), &shown.tets, &points, wanted);
-        let facts =
-            Facts { measured: &preview.measured, lists: &lists.lengths, ..self.said(Some(begin), None) };
+        let is_of_gaps = request.array.as_deref() == Some(GAP);
+        let parts = shown.parts.as_mut().filter(|_| is_of_gaps);
+        let preview = Preview::of(&shown.tets, parts, &points, &self.threads)?;
+        let lists = Lists::of(&preview, shown.live.order(), &shown.tets, &points, request);
+        let current = self.current_facts(Some(begin), None);
+        let facts = Facts { measured: &preview.measured, lists: &lists.lengths, ..current };
         let mut facts = json(&facts)?.into_bytes();
         let mut answer = (facts.len() as u32).to_le_bytes().to_vec();
         facts.resize(facts.len().next_multiple_of(4), b' ');
@@ -185,9 +176,9 @@ impl Scene {
     ///
     /// # Errors
     /// When there is no such patch, or the displacement is not finite. Then nothing has changed.
-    pub fn shift(&mut self, shift: &Shift) -> Result<String> {
+    pub fn shift(&mut self, request: &MoveRequest) -> Result<String> {
         let begin = Instant::now();
-        let displacement = self.shifted(&shift.patch, shift.by)?;
+        let displacement = self.displacement_with(&request.patch, request.by)?;
         let (moving, old) = self.moving()?;
         let mut moving = moving.clone();
         let step = moving.advance(moving.time() + 1.0, &displacement, &self.threads)?;
@@ -203,7 +194,7 @@ impl Scene {
             self.past.remove(0);
         }
         self.past.push(before);
-        json(&self.said(Some(begin), Some(happened(&step))))
+        json(&self.current_facts(Some(begin), Some(outcome(&step))))
     }
 
     /// Undoes the last step that is not undone yet. The facts, as JSON.
@@ -215,16 +206,17 @@ impl Scene {
         let before = self.past.last().ok_or_else(|| Error::options("there is nothing to undo"))?;
         self.shown = Shown::of(before, &self.name, &self.threads)?;
         self.now = self.past.remove(self.past.len() - 1);
-        json(&self.said(Some(begin), Some("Undone.".to_owned())))
+        json(&self.current_facts(Some(begin), Some("Undone.".to_owned())))
     }
 
-    fn said(&self, begin: Option<Instant>, happened: Option<String>) -> Facts<'_> {
+    fn current_facts(&self, begin: Option<Instant>, outcome: Option<String>) -> Facts<'_> {
         Facts {
             measured: &self.shown.measured,
+            at_first: &self.at_first,
             patches: None,
-            first: None,
-            cannot: None,
-            happened,
+            has_separate_parts: self.shown.parts.is_some(),
+            not_movable: None,
+            outcome,
             can_undo: !self.past.is_empty(),
             milliseconds: begin.map(|begin| begin.elapsed().as_secs_f64() * 1e3),
             lists: &[],
@@ -239,15 +231,15 @@ impl Scene {
     }
 
     /// The displacement of all driven vertices with one patch moved, as far as others leave it room.
-    fn shifted(&mut self, patch: &str, by: Point) -> Result<Vec<Point>> {
+    fn displacement_with(&mut self, patch: &str, by: Point) -> Result<Vec<Point>> {
         if !in_range(by) {
             return Err(Error::options("the displacement is not finite"));
         }
         let mut displacement = self.moving()?.1.to_vec();
         let found = self.patches.iter().find(|other| other.name == patch);
         let patch = found.ok_or_else(|| Error::options(format!("there is no patch {patch} to move")))?;
-        let by = match &mut self.shown.apart {
-            Some(apart) => apart.reached(patch.id, &self.now.mesh().points, by, &self.threads)?,
+        let by = match &mut self.shown.parts {
+            Some(parts) => parts.reached(patch.id, &self.now.mesh().points, by, &self.threads)?,
             None => by,
         };
         patch.nodes.iter().for_each(|&node| displacement[node] = add(displacement[node], by));
@@ -269,20 +261,20 @@ impl Shown {
         let mesh = state.mesh();
         let tets = OrientedTets::of(mesh, threads);
         // Distances of what cannot be moved are not needed, and its points need not be finite.
-        let mut apart = match state {
+        let mut parts = match state {
             State::Still(..) => None,
-            State::Moving(..) => Apart::of(mesh, threads)?,
+            State::Moving(..) => SeparateParts::of(mesh, threads)?,
         };
-        let preview = Preview::of(&tets, apart.as_mut(), &mesh.points, threads)?;
+        let preview = Preview::of(&tets, parts.as_mut(), &mesh.points, threads)?;
         let mut pictured = mesh.clone();
         if let Some(gaps) = preview.gaps {
             pictured.set_point_field(Field::scalars(GAP, gaps));
         }
-        Ok(Self { live: Live::of(pictured, name)?, tets, apart, measured: preview.measured })
+        Ok(Self { live: Live::of(pictured, name)?, tets, parts, measured: preview.measured })
     }
 }
 
-fn happened(step: &Step) -> String {
+fn outcome(step: &Step) -> String {
     let done = match step.not_reached() {
         Some(why) => format!("Not moved all the way: {why}."),
         None => "Moved.".to_owned(),

@@ -10,8 +10,8 @@ use tiny_http::{Header, Method, Request, Response};
 
 use crate::scene::Scene;
 
-/// The longest question of a page, in bytes.
-const MAX_QUESTION: u64 = 1 << 16;
+/// The longest request of a page, in bytes.
+const MAX_BODY: u64 = 1 << 16;
 
 /// A scene that pages on this machine can show and move.
 ///
@@ -69,17 +69,17 @@ impl Server {
     }
 
     fn answer(&self, request: &mut Request) -> Answer {
-        if !self.is_meant(request) {
+        if !self.names_this_machine(request) {
             return plain(404, "not found");
         }
         let path = request.url().strip_prefix(&format!("/{}/", self.word)).map(str::to_owned);
         let Some(path) = path else { return plain(404, "not found") };
-        let made = self.made(request, &path);
-        made.unwrap_or_else(|e| plain(400, &e.to_string()))
+        let response = self.response(request, &path);
+        response.unwrap_or_else(|e| plain(400, &e.to_string()))
     }
 
     /// Whether a request names this machine: a page of another one could reach it under a name of its own.
-    fn is_meant(&self, request: &Request) -> bool {
+    fn names_this_machine(&self, request: &Request) -> bool {
         let host = request.headers().iter().find(|header| header.field.equiv("Host"));
         let port = self.address.port();
         host.is_some_and(|host| {
@@ -87,7 +87,7 @@ impl Server {
         })
     }
 
-    fn made(&self, request: &mut Request, path: &str) -> Result<Answer> {
+    fn response(&self, request: &mut Request, path: &str) -> Result<Answer> {
         let mut scene = self.scene();
         Ok(match (request.method(), path) {
             (Method::Get, "") => html(scene.page()?),
@@ -95,19 +95,19 @@ impl Server {
             (Method::Get, "mesh.vtu") => typed("application/octet-stream", scene.file()?),
             (Method::Get, "facts") => json(scene.facts()?),
             (Method::Get, "update") => json(scene.update()),
-            (Method::Post, "preview") => typed("application/octet-stream", scene.preview(&asked(request)?)?),
-            (Method::Post, "move") => json(scene.shift(&asked(request)?)?),
+            (Method::Post, "preview") => typed("application/octet-stream", scene.preview(&body(request)?)?),
+            (Method::Post, "move") => json(scene.shift(&body(request)?)?),
             (Method::Post, "undo") => json(scene.undo()?),
             _ => plain(404, "not found"),
         })
     }
 }
 
-fn asked<T: DeserializeOwned>(request: &mut Request) -> Result<T> {
+fn body<T: DeserializeOwned>(request: &mut Request) -> Result<T> {
     let mut text = Vec::new();
-    let read = request.as_reader().take(MAX_QUESTION).read_to_end(&mut text);
-    read.map_err(|e| Error::options(format!("the question cannot be read: {e}")))?;
-    serde_json::from_slice(&text).map_err(|e| Error::options(format!("the question is not understood: {e}")))
+    let read = request.as_reader().take(MAX_BODY).read_to_end(&mut text);
+    read.map_err(|e| Error::options(format!("the request cannot be read: {e}")))?;
+    serde_json::from_slice(&text).map_err(|e| Error::options(format!("the request is not understood: {e}")))
 }
 
 fn html(text: String) -> Answer {

@@ -10,7 +10,7 @@ use motet::geometry::vector::{norm, sub};
 use motet::mesh::Cells;
 use motet::mesh::shapes::sphere_in_box;
 use motet::{Mesh, contact};
-use motet_view::{Asked, Scene, Server, Shift};
+use motet_view::{MoveRequest, PreviewRequest, Scene, Server};
 use serde_json::{Value, json};
 
 fn scene(mesh: Mesh) -> Scene {
@@ -22,11 +22,11 @@ fn sphere() -> Scene {
     scene(sphere_in_box(6, 6))
 }
 
-fn shift(patch: &str, by: Point) -> Shift {
+fn move_request(patch: &str, by: Point) -> MoveRequest {
     serde_json::from_value(json!({ "patch": patch, "by": by })).unwrap()
 }
 
-fn asked(patch: &str, by: Point) -> Asked {
+fn preview_request(patch: &str, by: Point) -> PreviewRequest {
     serde_json::from_value(json!({ "patch": patch, "by": by, "array": "gap", "inside": true })).unwrap()
 }
 
@@ -67,7 +67,7 @@ fn extent(mesh: &Mesh, axis: usize) -> [f64; 2] {
 fn a_preview_changes_nothing_and_tells_where_everything_goes() {
     let mut scene = sphere();
     let before = scene.file().unwrap();
-    let (said, lists) = unpacked(&scene.preview(&asked("sphere", [0.25, 0.0, 0.0])).unwrap());
+    let (said, lists) = unpacked(&scene.preview(&preview_request("sphere", [0.25, 0.0, 0.0])).unwrap());
     assert_eq!(scene.file().unwrap(), before);
     assert_eq!(said["tets"], scene.mesh().cells.tets().count());
     let names: Vec<&str> = lists.iter().map(|(name, _)| name.as_str()).collect();
@@ -90,7 +90,7 @@ fn steps_are_undone_to_the_byte() {
     let mut scene = sphere();
     let mut files = vec![scene.file().unwrap()];
     for by in [[0.9, 0.0, 0.0], [0.0, 0.8, 0.3], [-1.2, 0.0, 0.0]] {
-        let said = facts(&scene.shift(&shift("sphere", by)).unwrap());
+        let said = facts(&scene.shift(&move_request("sphere", by)).unwrap());
         assert!(said["can_undo"] == true && said["inverted"] == 0 && said["bad"] == 0, "{said}");
         let file = scene.file().unwrap();
         assert!(!files.contains(&file));
@@ -108,7 +108,7 @@ fn steps_are_undone_to_the_byte() {
 #[test]
 fn what_is_undone_can_be_done_again_with_the_same_bytes() {
     let mut scene = sphere();
-    let by = shift("sphere", [0.7, 0.7, -0.7]);
+    let by = move_request("sphere", [0.7, 0.7, -0.7]);
     scene.shift(&by).unwrap();
     let file = scene.file().unwrap();
     scene.undo().unwrap();
@@ -119,7 +119,7 @@ fn what_is_undone_can_be_done_again_with_the_same_bytes() {
 #[test]
 fn a_part_stops_before_another_and_slides_along_it() {
     let mut scene = sphere();
-    let said = facts(&scene.shift(&shift("sphere", [50.0, 1.5, 0.0])).unwrap());
+    let said = facts(&scene.shift(&move_request("sphere", [50.0, 1.5, 0.0])).unwrap());
     assert_eq!(said["inverted"], 0, "{said}");
     let room = 5.0 - extent(scene.mesh(), 0)[1];
     assert!(0.01 < room && room < 0.5, "{room}: {said}");
@@ -130,7 +130,7 @@ fn a_part_stops_before_another_and_slides_along_it() {
     assert!((said["gap"].as_f64().unwrap() - room).abs() < 1e-9, "{said}: {room}");
     // Pressed on, it stays; nothing creeps.
     for _ in 0..3 {
-        scene.shift(&shift("sphere", [50.0, 0.0, 0.0])).unwrap();
+        scene.shift(&move_request("sphere", [50.0, 0.0, 0.0])).unwrap();
     }
     assert!(5.0 - extent(scene.mesh(), 0)[1] > 0.8 * room);
 }
@@ -139,10 +139,10 @@ fn a_part_stops_before_another_and_slides_along_it() {
 fn questions_that_make_no_sense_are_refused_and_change_nothing() {
     let mut scene = sphere();
     let file = scene.file().unwrap();
-    assert!(scene.shift(&shift("nothing", [0.0; 3])).unwrap_err().to_string().contains("nothing"));
+    assert!(scene.shift(&move_request("nothing", [0.0; 3])).unwrap_err().to_string().contains("nothing"));
     for by in [[1e300; 3], [1e200, 0.0, 0.0]] {
-        assert!(scene.shift(&shift("sphere", by)).is_err());
-        assert!(scene.preview(&asked("sphere", by)).is_err());
+        assert!(scene.shift(&move_request("sphere", by)).is_err());
+        assert!(scene.preview(&preview_request("sphere", by)).is_err());
     }
     assert!(scene.file().unwrap() == file);
 }
@@ -157,10 +157,10 @@ fn a_surface_is_shown_but_not_moved() {
     let mesh = Mesh::new(mesh.points, cells);
     let mut scene = scene(mesh);
     let said = facts(&scene.facts().unwrap());
-    assert!(said["cannot"].as_str().unwrap().contains("cannot be moved"), "{said}");
+    assert!(said["not_movable"].as_str().unwrap().contains("cannot be moved"), "{said}");
     assert_eq!(said["patches"], json!([]));
     assert!(scene.page().unwrap().contains("id=\"live\""));
-    assert!(scene.shift(&shift("1", [0.0; 3])).is_err());
+    assert!(scene.shift(&move_request("1", [0.0; 3])).is_err());
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn a_mesh_with_a_point_that_is_not_finite_is_shown() {
     let mut mesh = sphere_in_box(2, 2);
     mesh.points[0][1] = f64::NAN;
     let scene = scene(mesh);
-    assert!(facts(&scene.facts().unwrap())["cannot"].as_str().unwrap().contains("not finite"));
+    assert!(facts(&scene.facts().unwrap())["not_movable"].as_str().unwrap().contains("not finite"));
     assert!(scene.page().unwrap().contains("id=\"live\""));
 }
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import Any
 
 import meshio
-from meshio._helpers import extension_to_filetypes
 
 from ._motet import formats
 from ._mesh import Mesh, read
@@ -26,7 +25,7 @@ def _write(path: Any, mesh: Any, **_: Any) -> None:
 
 
 def _register() -> None:
-    known = {extension: can_write for extension, can_write in formats().items() if "/" not in extension and extension not in extension_to_filetypes}
+    known = {extension: can_write for extension, can_write in formats().items() if "/" not in extension and extension not in meshio.extension_to_filetypes}
     for extension, can_write in known.items():
         name = f"motet{extension}"
         meshio.register_format(name, [extension], _read, {name: _write} if can_write else {})

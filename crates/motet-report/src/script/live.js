@@ -5,8 +5,8 @@ const ANY = "any", NONE = "none";
 // The scale of gaps ends at so many times the least one.
 const NEAR = 4;
 
-async function ask(path, question) {
-  const answer = await fetch(path, question === undefined ? {} : { method: "POST", body: JSON.stringify(question) });
+async function request(path, body) {
+  const answer = await fetch(path, body === undefined ? {} : { method: "POST", body: JSON.stringify(body) });
   if (!answer.ok) throw new Error((await answer.text()) || answer.statusText);
   return answer;
 }
@@ -27,10 +27,10 @@ class Live {
   }
   async start() {
     try {
-      const facts = await (await ask("facts")).json();
+      const facts = await (await request("facts")).json();
       this.patches = facts.patches;
       const names = this.patches.map(({ name }) => [name, name]);
-      fill(byId("grabbed"), [[ANY, "what is grabbed"], ...names, [NONE, "nothing"]], facts.first ?? ANY);
+      fill(byId("grabbed"), [[ANY, "what is grabbed"], ...names, [NONE, "nothing"]], facts.has_separate_parts ? ANY : NONE);
       if (facts.gap > 0) this.colourByGap(facts.gap);
       this.tell(facts);
     } catch (error) {
@@ -121,7 +121,7 @@ class Live {
       this.wanted = null;
       try {
         const array = view.state.array < 0 ? null : view.input.arrays[view.state.array].name;
-        const answer = await ask("preview", { ...question, array, inside: view.state.cut !== null });
+        const answer = await request("preview", { ...question, array, inside: view.state.cut !== null });
         const { facts, numbers } = unpackedAnswer(await answer.arrayBuffer());
         this.put(facts, numbers);
       } catch (error) {
@@ -170,7 +170,7 @@ class Live {
     byId("busy").hidden = false;
     if (act === "move") this.say("Moving and repairing\u2026");
     try {
-      const facts = await (await ask(act ?? "facts", act === null ? undefined : question)).json();
+      const facts = await (await request(act ?? "facts", act === null ? undefined : question)).json();
       await this.update();
       this.tell(facts);
     } catch (error) {
@@ -181,7 +181,7 @@ class Live {
   }
   async update() {
     const { view } = this, { state } = view;
-    replaceData(await (await ask("update")).json());
+    replaceData(await (await request("update")).json());
     const array = state.array, range = state.range;
     view.setInputs(0, -1);
     Object.assign(state, { array, range, bad: view.hasBad() });
@@ -191,11 +191,9 @@ class Live {
 
   tell(facts) {
     const said = [];
-    if (facts.cannot) said.push(facts.cannot);
-    if (facts.happened) said.push(facts.happened);
-    if (facts.tets > 0) {
-      said.push(`${withThousands(facts.tets)} tets, worst EAS ${short(facts.worst)}, ${withThousands(facts.bad)} bad, ${withThousands(facts.inverted)} inverted.`);
-    }
+    if (facts.not_movable) said.push(facts.not_movable);
+    if (facts.outcome) said.push(facts.outcome);
+    if (facts.tets > 0) said.push(`${qualityOf(facts)}.`, `At first ${qualityOf(facts.at_first)}.`);
     if (facts.gap !== null && facts.gap !== undefined) said.push(`Least gap ${short(facts.gap)}.`);
     if (facts.milliseconds !== undefined) said.push(`${short(facts.milliseconds)} ms.`);
     byId("undo").disabled = !facts.can_undo;
@@ -208,6 +206,11 @@ class Live {
     this.say(`The program did not answer: ${error.message}`);
     console.error(error);
   }
+}
+
+// Counts and qualities of a mesh in words.
+function qualityOf({ tets, bad, inverted, eas: { worst, p1, mean } }) {
+  return `${withThousands(tets)} tets, ${withThousands(bad)} bad, ${withThousands(inverted)} inverted; EAS worst ${short(worst)}, 1 % ${short(p1)}, mean ${short(mean)}`;
 }
 
 // The weights of the corners of a triangle at a place of the picture; nothing where it lies outside.

@@ -112,8 +112,12 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     let is = |extension: &str| extensions.contains(&extension);
     let start = bytes.trim_ascii_start();
     let named = |what: &str, remedy: &str| Err(not_supported(what, remedy, path));
+    let misnamed = |what: &str, extensions: &str| {
+        let error = Error::input(format!("is {what}, but has the extension of another format"));
+        Err(error.in_file(path).remedy(format!("give it the extension of its format: {extensions}")))
+    };
     if bytes.starts_with(b"CDF") && matches!(bytes.get(3), Some(1 | 2 | 5)) && !is(".exo") {
-        return named("a netCDF file, perhaps Exodus II", "give it the extension of its format: .exo");
+        return misnamed("a netCDF file, perhaps Exodus II", ".exo");
     }
     if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xfd7zXZ\x00") || bytes.starts_with(b"BZh") {
         return named("a compressed file", "decompress it first");
@@ -122,7 +126,7 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
         return named("a gzip file", "decompress it first: gunzip -c FILE");
     }
     if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && ![".cgns", ".vtkhdf", ".exo"].into_iter().any(is) {
-        return named("an HDF5 file", "give it the extension of its format: .vtkhdf, .cgns or .exo");
+        return misnamed("an HDF5 file", ".vtkhdf, .cgns or .exo");
     }
     if start.starts_with(b"ISO-10303-21") {
         return named("a CAD model (STEP)", CAD);
@@ -136,7 +140,7 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     let head = &start[..start.len().min(400)];
     let has = |word: &[u8]| head.windows(word.len()).any(|w| w.eq_ignore_ascii_case(word));
     if has(b"<xdmf") && !is(".xdmf") {
-        return named("an XDMF file", "give it the extension of its format: .xdmf");
+        return misnamed("an XDMF file", ".xdmf");
     }
     if is(".mesh") && (start.starts_with(b"<") || start.starts_with(b"$MeshFormat")) {
         return Err(Error::input("is not a Medit mesh")

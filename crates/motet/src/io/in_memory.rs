@@ -20,6 +20,12 @@ pub(super) fn printed(format: &Format, mesh: &Mesh, options: &WriteOptions) -> (
     (written.files.remove(0).1, written.lost)
 }
 
+/// Writes a mesh in a format of text; returns the first file, and what is lost.
+pub(super) fn printed_text(format: &Format, mesh: &Mesh) -> (String, Vec<String>) {
+    let (bytes, lost) = printed(format, mesh, &WriteOptions::default());
+    (String::from_utf8(bytes).unwrap(), lost)
+}
+
 /// Checks that each text in which a part is replaced by another is refused with a message that names the file
 /// and contains the third text.
 pub(super) fn refuses(format: &Format, name: &str, text: &str, damages: &[(&str, &str, &str)]) {

@@ -44,7 +44,7 @@ impl Qualities {
     }
 
     /// The EAS of each of `tets` with vertices at `points`.
-    pub(crate) fn eas_of_each(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Vec<f64> {
+    pub fn eas_of_each(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Vec<f64> {
         threads.in_runs(tets.len(), CHUNK, |(): &mut (), run| eas_of_each(points, &tets[run]))
     }
 

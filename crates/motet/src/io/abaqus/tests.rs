@@ -3,7 +3,7 @@ use std::path::Path;
 use super::*;
 use crate::base::{Threads, VertexId};
 use crate::io::WriteOptions;
-use crate::io::in_memory::{parsed, printed};
+use crate::io::in_memory::{parsed, printed_text};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 fn parse(text: &str) -> (Mesh, Vec<String>) {
@@ -16,8 +16,7 @@ fn error_of(text: &str) -> String {
 }
 
 fn print(mesh: &Mesh) -> (String, Vec<String>) {
-    let (bytes, lost) = printed(&FORMAT, mesh, &WriteOptions::default());
-    (String::from_utf8(bytes).unwrap(), lost)
+    printed_text(&FORMAT, mesh)
 }
 
 fn ids(mesh: &Mesh, array: &str) -> Vec<i64> {

@@ -139,7 +139,7 @@ fn what_cannot_be_held_is_reported() {
     }
 }
 
-/// The same file with the bytes of `from` replaced.
+/// The bytes of a file in which one sequence of bytes is replaced by another.
 fn replaced(bytes: &[u8], from: &[u8], to: &[u8]) -> Vec<u8> {
     let at = bytes.windows(from.len()).position(|w| w == from).unwrap();
     [&bytes[..at], to, &bytes[at + from.len()..]].concat()

@@ -1,7 +1,6 @@
 use super::*;
 use crate::base::{Result, VertexId};
-use crate::io::WriteOptions;
-use crate::io::in_memory::{parsed, printed, refuses};
+use crate::io::in_memory::{parsed, printed_text, refuses};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 fn parse_noted(text: &str) -> (Result<Mesh>, Vec<String>) {
@@ -13,8 +12,7 @@ fn parse(text: &str) -> Mesh {
 }
 
 fn print(mesh: &Mesh) -> (String, Vec<String>) {
-    let (bytes, lost) = printed(&FORMAT, mesh, &WriteOptions::default());
-    (String::from_utf8(bytes).unwrap(), lost)
+    printed_text(&FORMAT, mesh)
 }
 
 /// Two tets, a triangle, two beams and a point mass, with gaps in the numbering.

@@ -3,7 +3,7 @@ use std::fs;
 use super::*;
 use crate::base::{Result, VertexId};
 use crate::io::WriteOptions;
-use crate::io::in_memory::{parsed, printed, refuses};
+use crate::io::in_memory::{parsed, printed_text, refuses};
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values, shapes};
 
 fn parse_noted(text: &str) -> (Result<Mesh>, Vec<String>) {
@@ -15,8 +15,7 @@ fn parse(text: &str) -> Mesh {
 }
 
 fn print(mesh: &Mesh) -> (String, Vec<String>) {
-    let (bytes, lost) = printed(&FORMAT, mesh, &WriteOptions::default());
-    (String::from_utf8(bytes).unwrap(), lost)
+    printed_text(&FORMAT, mesh)
 }
 
 /// A mesh with tags of facets and of cells and a function over time, in dolfinx's layout with text.
