@@ -1,7 +1,7 @@
 //! A page whose mesh a program keeps up to date while a user moves it.
 //!
 //! The page is the one of [`write`](fn@crate::write), with a mesh in memory as its only input. A program
-//! serves it, and answers what `script/live.js` asks for, relative to the address of the page:
+//! serves it, and answers the requests of `script/live.js`, relative to the address of the page:
 //!
 //! | request | answer |
 //! |---|---|

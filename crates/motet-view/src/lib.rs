@@ -1,9 +1,9 @@
 //! A mesh in a window of the browser: its parts are dragged, and the mesh follows.
 //!
 //! A small server, reachable from this machine alone, sends the page of a report with the mesh in it
-//! ([`motet_report::Live`]). While a part is dragged, the page asks where everything goes: the motion of one
-//! step, without repair, so that answers take milliseconds. When the part is dropped, the step is made, and
-//! what became bad is repaired. Each step can be undone, to the byte.
+//! ([`motet_report::Live`]). While a part is dragged, the page requests the positions of all vertices: the
+//! motion of one step, without repair, so that answers take milliseconds. When the part is released, the step
+//! is made, and bad tets are repaired. Each step can be undone, to the byte.
 //!
 //! | file | idea |
 //! |---|---|

@@ -61,7 +61,7 @@ def view(mesh: MeshLike, *, port: int = 0, browser: bool = False, threads: int =
     """Show a mesh in the browser, and drag its parts: the mesh follows.
 
     A coil, a stent or any other patch is dragged with the mouse. While it moves, so does the mesh, with the worst
-    tets in red; when it is dropped, bad tets are repaired. Parts stop before others and slide along them. Steps
+    tets in red; when it is released, bad tets are repaired. Parts stop before others and slide along them. Steps
     can be undone; the mesh and the page can be saved.
 
     Parameters

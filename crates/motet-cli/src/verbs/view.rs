@@ -14,7 +14,7 @@ use crate::outcome::Outcome;
 /// Show a mesh in the browser, and drag its parts: the mesh follows
 ///
 /// A coil, a stent or any other patch is dragged with the mouse. While it moves, so does the mesh, with the
-/// worst tets in red; when it is dropped, bad tets are repaired. Steps can be undone; the mesh and the page
+/// worst tets in red; when it is released, bad tets are repaired. Steps can be undone; the mesh and the page
 /// can be saved from the browser. Colour by `gap` to see what comes near. Only this machine can reach the
 /// page, under an address that contains a random word. Ctrl-C ends the program.
 #[derive(Debug, Args)]

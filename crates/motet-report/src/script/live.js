@@ -1,5 +1,5 @@
-// The mesh follows the hand: a part is dragged, the program that serves the page says where everything goes, and repairs what
-// became bad when the part is dropped. One question is under way at a time; what was asked for since is asked next.
+// A part is dragged with the mouse: the program that serves the page computes where all vertices go, and repairs bad tets when
+// the part is released. One request is under way at a time; the latest displacement since is requested next.
 
 const ANY = "any", NONE = "none";
 // The scale of gaps ends at so many times the least one.
@@ -15,11 +15,12 @@ class Live {
   constructor(view) {
     this.view = view;
     this.patches = [];
-    // What is being dragged.
+    // The part that is being dragged.
     this.grip = null;
-    this.wanted = null;
-    this.isAsking = false;
-    this.isDropped = false;
+    // The displacement to be previewed next.
+    this.pending = null;
+    this.isRequesting = false;
+    this.isFinishing = false;
     this.link = location.hash;
     byId("undo").addEventListener("click", () => this.finish("undo", {}));
     byId("shift").addEventListener("click", () => this.shift());
@@ -49,7 +50,7 @@ class Live {
   // The part under a pointer that is to be moved, as `listenToHand` wants it.
   grab(e) {
     const hit = this.hit(e), chosen = byId("grabbed").value;
-    if (!hit || this.isDropped || chosen === NONE) return null;
+    if (!hit || this.isFinishing || chosen === NONE) return null;
     const patch = this.patches.find(({ name, id }) => (chosen === ANY ? id === hit.patch && hit.isOpaque : name === chosen));
     // A part that was chosen is dragged wherever the mesh is seen.
     if (!patch) return null;
@@ -61,7 +62,7 @@ class Live {
       move: (dx, dy) => {
         if (this.grip !== grip) return;
         for (let k = 0; k < 3; k++) by[k] += height * (dx * right[k] - dy * up[k]);
-        this.want({ patch: patch.name, by: [...by] });
+        this.requestPreview({ patch: patch.name, by: [...by] });
       },
       drop: () => {
         if (this.grip === grip && by.some((x) => x !== 0)) this.drop({ patch: patch.name, by });
@@ -109,19 +110,19 @@ class Live {
     return this.drop({ patch, by });
   }
 
-  want(question) {
-    this.wanted = question;
-    if (!this.isAsking) this.preview();
+  requestPreview(displacement) {
+    this.pending = displacement;
+    if (!this.isRequesting) this.preview();
   }
   async preview() {
-    this.isAsking = true;
+    this.isRequesting = true;
     const { view } = this;
-    while (this.wanted) {
-      const question = this.wanted;
-      this.wanted = null;
+    while (this.pending) {
+      const displacement = this.pending;
+      this.pending = null;
       try {
         const array = view.state.array < 0 ? null : view.input.arrays[view.state.array].name;
-        const answer = await request("preview", { ...question, array, inside: view.state.cut !== null });
+        const answer = await request("preview", { ...displacement, array, inside: view.state.cut !== null });
         const { facts, numbers } = unpackedAnswer(await answer.arrayBuffer());
         this.put(facts, numbers);
       } catch (error) {
@@ -130,8 +131,8 @@ class Live {
       // A picture in between.
       await new Promise(requestAnimationFrame);
     }
-    this.isAsking = false;
-    this.asked?.();
+    this.isRequesting = false;
+    this.onIdle?.();
   }
   // New places and values into what is shown.
   put(facts, { points, skin, inside, bad }) {
@@ -149,8 +150,8 @@ class Live {
     this.view.canvas.dataset.previews = Number(this.view.canvas.dataset.previews ?? 0) + 1;
   }
 
-  drop(question) {
-    return this.finish("move", question);
+  drop(displacement) {
+    return this.finish("move", displacement);
   }
   // Puts back what is being dragged.
   cancel() {
@@ -160,24 +161,24 @@ class Live {
   }
 
   // Lets the program move, repair or undo, and shows what became of the mesh.
-  async finish(act, question) {
-    if (this.isDropped) return;
-    this.isDropped = true;
-    this.grip = this.wanted = null;
-    if (this.isAsking) await new Promise((resolve) => (this.asked = resolve));
-    this.asked = null;
+  async finish(act, body) {
+    if (this.isFinishing) return;
+    this.isFinishing = true;
+    this.grip = this.pending = null;
+    if (this.isRequesting) await new Promise((resolve) => (this.onIdle = resolve));
+    this.onIdle = null;
     document.documentElement.dataset.busy = "1";
     byId("busy").hidden = false;
     if (act === "move") this.say("Moving and repairing\u2026");
     try {
-      const facts = await (await request(act ?? "facts", act === null ? undefined : question)).json();
+      const facts = await (await request(act ?? "facts", act === null ? undefined : body)).json();
       await this.update();
       this.tell(facts);
     } catch (error) {
       await this.update();
       this.fail(error);
     }
-    this.isDropped = false;
+    this.isFinishing = false;
   }
   async update() {
     const { view } = this, { state } = view;
