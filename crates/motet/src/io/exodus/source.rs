@@ -7,8 +7,8 @@ use crate::mesh::Values;
 
 /// A file.
 pub(super) enum Source<'a> {
-    Classic(Classic<'a>),
-    Hdf(hdf::Group),
+    Classic(Box<Classic<'a>>),
+    Hdf(Box<hdf::Group>),
 }
 
 /// Values in rows.
@@ -20,10 +20,10 @@ pub(super) struct Table {
 impl<'a> Source<'a> {
     pub(super) fn open(bytes: &'a [u8]) -> Result<Self> {
         if is_classic(bytes) {
-            return Classic::open(bytes).map(Source::Classic);
+            return Classic::open(bytes).map(|file| Source::Classic(Box::new(file)));
         }
         if hdf::is_hdf5(bytes) {
-            return hdf::open(bytes).map(Source::Hdf);
+            return hdf::open(bytes).map(|root| Source::Hdf(Box::new(root)));
         }
         Err(Error::input("is not a netCDF file: the signature is missing")
             .remedy("check the format of the file"))
