@@ -12,7 +12,7 @@ Image = pytest.importorskip("PIL.Image")
 
 SITE = Path(__file__).resolve().parent.parent / "docs" / "site"
 sys.path.insert(0, str(SITE))
-from pictures import SCRIPTS, draw  # noqa: E402
+from draw import SCRIPTS, draw  # noqa: E402
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 

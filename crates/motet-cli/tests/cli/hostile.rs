@@ -177,8 +177,8 @@ fn coordinates_beyond_numbers_are_a_defect_and_no_volume() {
 fn files_of_other_programs_are_named() {
     let folder = Folder::new();
     folder.write("fluent.msh", b"(0 \"by another program\")\n(2 3)\n(10 (0 1 4 0 3))\n");
-    folder.write("wing.exo", b"CDF\x01");
-    for (name, says) in [("fluent.msh", "Ansys Fluent"), ("wing.exo", "Exodus")] {
+    folder.write("wing.med", b"\x89HDF\r\n\x1a\n");
+    for (name, says) in [("fluent.msh", "Ansys Fluent"), ("wing.med", "MED")] {
         let call = folder.motet(["convert", name, "o.vtu"]).assert().code(3);
         assert!(
             stderr(&call).contains(says) && stderr(&call).contains("meshio convert"),

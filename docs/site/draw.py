@@ -1,6 +1,6 @@
 """Makes the pictures of the gallery: runs its scripts without a window.
 
-    python docs/site/pictures.py FOLDER [NAME...]        all pictures that are older than their scripts or motet; or these
+    python docs/site/draw.py FOLDER [NAME...]        all pictures that are older than their scripts or motet; or these
 """
 import contextlib
 import os
