@@ -168,7 +168,7 @@ pub(crate) unsafe extern "C" fn motet_refinement_near(
         }
         let MotetRefinement { refinement, threads, watched } = handle_mut(refinement, "refinement")?;
         let surface = &handle(surface, "surface")?.0;
-        // An error leaves the generations that came before it, whose history would be lost: a copy is refined.
+        // An error leaves the generations before it, whose history would be lost: a copy is refined.
         let mut refined = refinement.clone();
         let reached = watched.call(threads, |threads| {
             let target = Target::of_mesh(surface, threads)?.into();
