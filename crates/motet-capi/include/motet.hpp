@@ -252,10 +252,10 @@ using listener = std::shared_ptr<listening>;
 
 /// Makes a call that may be watched; what the listener threw is thrown, whatever became of the call.
 template <class Call>
-void watched(const listener &listener, Call &&make)
+void watched(const listener &by, Call &&make)
 {
     const auto rethrow = [&] {
-        if (listener && listener->thrown) std::rethrow_exception(std::exchange(listener->thrown, nullptr));
+        if (by && by->thrown) std::rethrow_exception(std::exchange(by->thrown, nullptr));
     };
     try {
         call(make);
@@ -268,10 +268,10 @@ void watched(const listener &listener, Call &&make)
 
 /// Makes a call that may be watched and returns an object.
 template <class Owned, class Call>
-Owned made(const listener &listener, Call &&make)
+Owned made(const listener &by, Call &&make)
 {
     Owned object;
-    watched(listener, [&](motet_error **error) {
+    watched(by, [&](motet_error **error) {
         typename Owned::pointer raw = nullptr;
         const motet_status status = make(&raw, error);
         object.reset(raw);
@@ -294,7 +294,7 @@ public:
     /// A watch that tells nobody: progress is asked for, and calls are stopped, by other threads.
     watch()
         : handle_(detail::made<owned>(
-              [](motet_watch **watch, motet_error **error) { return motet_watch_new(watch, error); }))
+              [](motet_watch **place, motet_error **error) { return motet_watch_new(place, error); }))
     {
     }
     /// `tell` is called on the thread that makes the watched call, every `every` seconds while that runs (0:
@@ -384,8 +384,8 @@ public:
     /// Writes a file and returns what the format cannot hold, a sentence each.
     std::vector<std::string> write_noted(const std::string &path) const
     {
-        const auto lost = detail::made<detail::owned_text>([&](motet_text **lost, motet_error **error) {
-            return motet_mesh_write_noted(get(), path.c_str(), lost, error);
+        const auto lost = detail::made<detail::owned_text>([&](motet_text **place, motet_error **error) {
+            return motet_mesh_write_noted(get(), path.c_str(), place, error);
         });
         return detail::lines(motet_text_get(lost.get()));
     }
@@ -492,7 +492,7 @@ public:
     std::string summary() const
     {
         const auto summary = detail::made<detail::owned_text>(
-            [&](motet_text **summary, motet_error **error) { return motet_mesh_summary(get(), summary, error); });
+            [&](motet_text **place, motet_error **error) { return motet_mesh_summary(get(), place, error); });
         return detail::text(motet_text_get(summary.get()));
     }
 
@@ -521,8 +521,8 @@ class mesh : public mesh_ref {
 public:
     /// Points and no cells.
     explicit mesh(rows<const double> points)
-        : mesh(detail::made<owned>([&](motet_mesh **mesh, motet_error **error) {
-              return motet_mesh_new(points.data(), detail::count(points.size()), detail::count(points.stride()), mesh,
+        : mesh(detail::made<owned>([&](motet_mesh **place, motet_error **error) {
+              return motet_mesh_new(points.data(), detail::count(points.size()), detail::count(points.stride()), place,
                                     error);
           }))
     {
@@ -542,14 +542,14 @@ public:
     static mesh read(const std::string &path)
     {
         return mesh(detail::made<owned>(
-            [&](motet_mesh **mesh, motet_error **error) { return motet_mesh_read(path.c_str(), mesh, error); }));
+            [&](motet_mesh **place, motet_error **error) { return motet_mesh_read(path.c_str(), place, error); }));
     }
     /// Reads a file; `notes` receives what of it is not used, a sentence each.
     static mesh read_noted(const std::string &path, std::vector<std::string> &notes)
     {
         motet_text *sentences = nullptr;
-        mesh read(detail::made<owned>([&](motet_mesh **mesh, motet_error **error) {
-            return motet_mesh_read_noted(path.c_str(), mesh, &sentences, error);
+        mesh read(detail::made<owned>([&](motet_mesh **place, motet_error **error) {
+            return motet_mesh_read_noted(path.c_str(), place, &sentences, error);
         }));
         const detail::owned_text freed(sentences);
         notes = detail::lines(motet_text_get(sentences));
@@ -619,7 +619,7 @@ private:
 inline mesh mesh_ref::copy() const
 {
     return mesh(detail::made<mesh::owned>(
-        [&](motet_mesh **copy, motet_error **error) { return motet_mesh_copy(get(), copy, error); }));
+        [&](motet_mesh **place, motet_error **error) { return motet_mesh_copy(get(), place, error); }));
 }
 
 namespace detail {
@@ -750,8 +750,8 @@ public:
     {
         detail::lists kept;
         const motet_mover_options c = detail::given(options, kept);
-        handle_ = detail::made<owned>(listener_, [&](motet_mover **mover, motet_error **error) {
-            return motet_mover_new(mesh.get(), &c, mover, error);
+        handle_ = detail::made<owned>(listener_, [&](motet_mover **place, motet_error **error) {
+            return motet_mover_new(mesh.get(), &c, place, error);
         });
     }
 
@@ -814,10 +814,10 @@ class point_mover {
 public:
     /// `nodes` are those of the whole boundary, of all processes, in any order.
     point_mover(rows<const double> nodes, rows<const double> points, std::int32_t threads = 1)
-        : handle_(detail::made<owned>([&](motet_point_mover **mover, motet_error **error) {
+        : handle_(detail::made<owned>([&](motet_point_mover **place, motet_error **error) {
               return motet_point_mover_new(nodes.data(), detail::count(nodes.size()), detail::count(nodes.stride()),
                                            points.data(), detail::count(points.size()), detail::count(points.stride()),
-                                           threads, mover, error);
+                                           threads, place, error);
           }))
     {
     }
@@ -897,9 +897,9 @@ namespace detail {
 using owned_outcome = owned<motet_outcome, motet_outcome_free>;
 
 template <class Call>
-outcome made_outcome(const listener &listener, Call &&make)
+outcome made_outcome(const listener &by, Call &&make)
 {
-    return outcome(made<owned_outcome>(listener, make).release());
+    return outcome(made<owned_outcome>(by, make).release());
 }
 
 } // namespace detail
@@ -1100,8 +1100,8 @@ inline outcome remesh(mesh_ref mesh, const remesh_options &options = {})
 {
     detail::lists kept;
     const motet_remesh_options c = detail::given(options, kept);
-    return detail::made_outcome(listener_of(options.watched_by), [&](motet_outcome **outcome, motet_error **error) {
-        return motet_remesh(mesh.get(), &c, outcome, error);
+    return detail::made_outcome(listener_of(options.watched_by), [&](motet_outcome **place, motet_error **error) {
+        return motet_remesh(mesh.get(), &c, place, error);
     });
 }
 
@@ -1119,8 +1119,8 @@ inline outcome implant(mesh_ref host, const std::vector<device> &devices, const 
     std::vector<const motet_mesh *> meshes;
     std::vector<const char *> names;
     for (const device &one : devices) meshes.push_back(one.mesh.get()), names.push_back(one.name.c_str());
-    return detail::made_outcome(listener_of(options.watched_by), [&](motet_outcome **outcome, motet_error **error) {
-        return motet_implant(host.get(), meshes.data(), names.data(), detail::count(devices.size()), &c, outcome,
+    return detail::made_outcome(listener_of(options.watched_by), [&](motet_outcome **place, motet_error **error) {
+        return motet_implant(host.get(), meshes.data(), names.data(), detail::count(devices.size()), &c, place,
                              error);
     });
 }
@@ -1145,8 +1145,8 @@ inline outcome fill(const std::vector<surface> &surfaces, const fill_options &op
         names.push_back(one.name.c_str());
         is_membrane.push_back(one.is_membrane);
     }
-    return detail::made_outcome(listener_of(options.watched_by), [&](motet_outcome **outcome, motet_error **error) {
-        return motet_fill(meshes.data(), names.data(), is_membrane.data(), detail::count(surfaces.size()), &c, outcome,
+    return detail::made_outcome(listener_of(options.watched_by), [&](motet_outcome **place, motet_error **error) {
+        return motet_fill(meshes.data(), names.data(), is_membrane.data(), detail::count(surfaces.size()), &c, place,
                           error);
     });
 }
@@ -1159,8 +1159,8 @@ public:
     {
         detail::lists kept;
         const motet_refinement_options c = detail::given(options, kept);
-        handle_ = detail::made<owned>(listener_, [&](motet_refinement **refinement, motet_error **error) {
-            return motet_refinement_new(mesh.get(), &c, refinement, error);
+        handle_ = detail::made<owned>(listener_, [&](motet_refinement **place, motet_error **error) {
+            return motet_refinement_new(mesh.get(), &c, place, error);
         });
     }
 
@@ -1179,22 +1179,22 @@ public:
     /// each cell. The outcome has a copy of the mesh and the history.
     outcome divide(view<const std::int32_t> marks)
     {
-        return detail::made_outcome(nullptr, [&](motet_outcome **outcome, motet_error **error) {
-            return motet_refinement_divide(get(), marks.data(), detail::count(marks.size()), outcome, error);
+        return detail::made_outcome(nullptr, [&](motet_outcome **place, motet_error **error) {
+            return motet_refinement_divide(get(), marks.data(), detail::count(marks.size()), place, error);
         });
     }
     /// Takes back the divisions of which all parts have a mark that is not 0.
     outcome coarsen(view<const std::int32_t> marks)
     {
-        return detail::made_outcome(nullptr, [&](motet_outcome **outcome, motet_error **error) {
-            return motet_refinement_coarsen(get(), marks.data(), detail::count(marks.size()), outcome, error);
+        return detail::made_outcome(nullptr, [&](motet_outcome **place, motet_error **error) {
+            return motet_refinement_coarsen(get(), marks.data(), detail::count(marks.size()), place, error);
         });
     }
     /// Divides tets until no edge is longer than `at` at a surface, and `growth` more per unit of distance from it.
     outcome near(mesh_ref surface, double at, double growth)
     {
-        return detail::made_outcome(listener_, [&](motet_outcome **outcome, motet_error **error) {
-            return motet_refinement_near(get(), surface.get(), at, growth, outcome, error);
+        return detail::made_outcome(listener_, [&](motet_outcome **place, motet_error **error) {
+            return motet_refinement_near(get(), surface.get(), at, growth, place, error);
         });
     }
 
@@ -1286,9 +1286,9 @@ public:
         }
         detail::lists kept;
         const motet_contact_options c = detail::given(options, kept);
-        handle_ = detail::made<owned>([&](motet_contact **contact, motet_error **error) {
+        handle_ = detail::made<owned>([&](motet_contact **place, motet_error **error) {
             return motet_contact_new(points.data(), n_points_, detail::count(points.stride()), triangles.data(),
-                                     counts.data(), is_room.data(), detail::count(bodies.size()), &c, contact, error);
+                                     counts.data(), is_room.data(), detail::count(bodies.size()), &c, place, error);
         });
     }
 
@@ -1460,8 +1460,8 @@ using moving_step = motet_step;
 class moving {
 public:
     explicit moving(mesh_ref mesh, const moving_options &options = {})
-        : moving(options, [&](const motet_moving_options &c, motet_moving **moving, motet_error **error) {
-              return motet_moving_new(mesh.get(), &c, moving, error);
+        : moving(options, [&](const motet_moving_options &c, motet_moving **place, motet_error **error) {
+              return motet_moving_new(mesh.get(), &c, place, error);
           })
     {
     }
@@ -1469,8 +1469,8 @@ public:
     /// are not remembered.
     static moving load(const std::string &path, const moving_options &options = {})
     {
-        return moving(options, [&](const motet_moving_options &c, motet_moving **moving, motet_error **error) {
-            return motet_moving_load(path.c_str(), &c, moving, error);
+        return moving(options, [&](const motet_moving_options &c, motet_moving **place, motet_error **error) {
+            return motet_moving_load(path.c_str(), &c, place, error);
         });
     }
     /// Writes all that later steps depend on to a .vtu file.
@@ -1561,8 +1561,8 @@ public:
     /// outcome::transfer. None where the mesh did not change, so that arrays fit as they are.
     std::optional<outcome> since(std::int64_t step) const
     {
-        auto changes = detail::made<detail::owned_outcome>([&](motet_outcome **outcome, motet_error **error) {
-            return motet_moving_since(get(), step, outcome, error);
+        auto changes = detail::made<detail::owned_outcome>([&](motet_outcome **place, motet_error **error) {
+            return motet_moving_since(get(), step, place, error);
         });
         if (!changes) return std::nullopt;
         return outcome(changes.release());
@@ -1579,7 +1579,7 @@ private:
         detail::lists kept;
         const motet_moving_options c = detail::given(options, kept);
         handle_ = detail::made<owned>(
-            listener_, [&](motet_moving **moving, motet_error **error) { return make(c, moving, error); });
+            listener_, [&](motet_moving **place, motet_error **error) { return make(c, place, error); });
     }
 
     template <class Call>
