@@ -1,4 +1,4 @@
-"""The cases of testdata: the interfaces in Rust, Python, C and Fortran give the same numbers."""
+"""The cases of testdata: the interfaces in Rust, Python, C, C++ and Fortran give the same numbers."""
 import os
 import tomllib
 from pathlib import Path
@@ -9,6 +9,7 @@ from conftest import ROOT, Program
 
 motet = pytest.importorskip("motet", reason="the package is not installed: ./test does it")
 CLIENTS = Path(os.environ.get("CARGO_TARGET_DIR") or ROOT / "target") / "capi" / "clients"
+CLIENTS_OF_C = ("cases_c", "cases_cpp", "cases_f")
 CASES = sorted((ROOT / "testdata").glob("*.toml"))
 
 
@@ -90,7 +91,7 @@ def test_every_interface_gives_the_same_numbers(path, tmp_path, example):
     arguments = [*files, *case["words"]]
     results = {"Rust": numbers(example("cases")(case["program"], *arguments).stdout)}
     results["Python"] = {name: float(value) for name, value in PYTHON[case["program"]](*map(str, arguments)).items()}
-    for client in ("cases_c", "cases_f"):
+    for client in CLIENTS_OF_C:
         if (CLIENTS / client).exists():
             results[client] = numbers(Program(CLIENTS / client)(case["program"], *arguments).stdout)
     for interface, values in results.items():
@@ -101,8 +102,8 @@ def test_every_interface_gives_the_same_numbers(path, tmp_path, example):
         assert results["Rust"][name] == pytest.approx(value, rel=0.02), name
 
 
-def test_the_clients_in_c_and_fortran_are_built():
-    missing = [client for client in ("cases_c", "cases_f") if not (CLIENTS / client).exists()]
+def test_the_clients_in_c_cpp_and_fortran_are_built():
+    missing = [client for client in CLIENTS_OF_C if not (CLIENTS / client).exists()]
     if missing and os.environ.get("MOTET_TEST_STRICT") != "1":
         pytest.skip(f"{', '.join(missing)} not built: crates/motet-capi/check")
     assert not missing

@@ -4,17 +4,21 @@
     crates/motet-capi/fortran.py            writes the module
     crates/motet-capi/fortran.py --check    fails, and prints the difference, where the module is out of date
 
-The template is the hand-written part of the module: the types with procedures, and these procedures. Three of its
+The template is the hand-written part of the module: the types with procedures, and these procedures. Four of its
 lines are replaced by what the header declares, with the comments of the header:
 
     !{constants}     all constants
-    !{types}         all structs, without the prefix `motet_`
-    !{interfaces}    all functions, with the prefix `c_` for `motet_`
+    !{types}         all structs, without the prefix `motet_`. Options are structs twice: as C has them, with the
+                     prefix `c_`, and as Fortran has them, with arrays of texts and numbers, and with a pointer
+                     to each object
+    !{interfaces}    all functions and types of functions, with the prefix `c_` for `motet_`
+    !{conversions}   `give_NAME` for all options: those of Fortran as C has them
 
 Rules that the header has to follow, beyond those of C:
 - A comment right above a declaration belongs to it, and so does one behind a member or a constant.
 - `default X` in the comment of a member is its initial value, and so is the -1 of `-1 where`; others are 0 or NULL.
 - A pointer to numbers is an array where a count, an `int64_t`, stands after it, and a single number otherwise.
+- The count of an array in options is the member behind it: the name of the array with `n_`.
 """
 import difflib
 import re
@@ -81,6 +85,7 @@ class Header:
     enums: list = field(default_factory=list)  # each its comment and its constants
     structs: list = field(default_factory=list)
     functions: list = field(default_factory=list)
+    callbacks: list = field(default_factory=list)  # types of functions
 
 
 # ---- Reading ------------------------------------------------------------------------------------------------
@@ -88,6 +93,7 @@ class Header:
 COMMENT = r"/\*(?:[^*]|\*(?!/))*\*/"
 DECLARATIONS = [
     ("comment", re.compile(COMMENT)),
+    ("callback", re.compile(r"typedef (\w+) \(\*(\w+)\)\(([^()]*)\);")),
     ("define", re.compile(r"#define (\w+) (\d+)\n")),
     ("skipped", re.compile(r"#[^\n]*\n|extern \"C\" \{|typedef \w+ \w+;|typedef struct (\w+) \1;|\}")),
     ("enum", re.compile(r"enum \{(.*?)\};", re.S)),
@@ -150,6 +156,9 @@ def read(text):
             header.enums.append((comment, constants(match[1])))
         elif kind == "struct":
             header.structs.append(Struct(match[1], comment, members(match[2])))
+        elif kind == "callback":
+            result = variable(match[1])
+            header.callbacks.append(Function(match[2], comment, result, parameters(match[3])))
         elif kind == "function":
             result = variable(match[1])
             header.functions.append(Function(match[2], comment, result, parameters(match[3])))
@@ -207,16 +216,78 @@ def write_constants(header):
         yield ""
 
 
+def is_options(struct):
+    return struct.name.endswith("_options")
+
+
+def type_in_c(struct):
+    """The name of the type that C has."""
+    return ("c_" if is_options(struct) else "") + type_name(struct.name)
+
+
 def write_types(header):
     for struct in header.structs:
-        yield from comment_lines("  ", struct.comment)
-        yield f"  type, bind(c) :: {type_name(struct.name)}"
+        yield from comment_lines("  ", f"{struct.comment} As C has them." if is_options(struct) else struct.comment)
+        yield f"  type, bind(c) :: {type_in_c(struct)}"
         for member in struct.members:
-            yield from comment_lines("    ", member.comment)
+            yield from () if is_options(struct) else comment_lines("    ", member.comment)
             kind = "type(c_ptr)" if member.pointers else NUMBERS[member.type]
             shape = f"({member.length})" if member.length else ""
             yield f"    {kind} :: {member.name}{shape} = {initial(member)}"
         yield "  end type"
+        yield ""
+        if is_options(struct):
+            yield from write_options(struct)
+
+
+def own_members(struct):
+    """The members of options that Fortran has: neither the size nor counts of arrays."""
+    arrays = {member.name for member in struct.members if member.pointers}
+    return [one for one in struct.members[1:] if one.name.removeprefix("n_") not in arrays or one.pointers]
+
+
+def write_options(struct):
+    yield from comment_lines("  ", struct.comment)
+    yield f"  type, public :: {type_name(struct.name)}"
+    for member in own_members(struct):
+        yield from comment_lines("    ", member.comment)
+        if member.type == "char":
+            yield f"    character(MOTET_NAME_LENGTH), allocatable :: {member.name}(:)"
+        elif member.pointers and member.type in NUMBERS:
+            yield f"    {NUMBERS[member.type]}, allocatable :: {member.name}(:)"
+        elif member.pointers:
+            yield f"    type({type_name(member.type)}), pointer :: {member.name} => null()"
+        else:
+            yield f"    {NUMBERS[member.type]} :: {member.name} = {initial(member)}"
+    yield "  end type"
+    yield ""
+
+
+def write_conversions(header):
+    for struct in filter(is_options, header.structs):
+        name, own = type_name(struct.name), own_members(struct)
+        lists = [member.name for member in own if member.type == "char"]
+        yield f"  subroutine give_{name}(options, given, kept)"
+        yield f"    type({name}), intent(in), optional, target :: options"
+        yield f"    type({type_in_c(struct)}), intent(out) :: given"
+        yield "    type(texts), allocatable, intent(out), target :: kept(:)"
+        yield f"    allocate(kept({len(lists)}))"
+        yield "    given%size = c_sizeof(given)"
+        yield "    if (.not. present(options)) return"
+        for member in own:
+            one = member.name
+            if member.type == "char":
+                yield f"    call keep(options%{one}, kept({lists.index(one) + 1}), given%{one}, given%n_{one})"
+            elif member.pointers and member.type in NUMBERS:
+                yield f"    if (allocated(options%{one})) then"
+                yield f"      given%n_{one} = size(options%{one}, kind=c_int64_t)"
+                yield f"      if (given%n_{one} > 0) given%{one} = c_loc(options%{one})"
+                yield "    end if"
+            elif member.pointers:
+                yield f"    if (associated(options%{one})) given%{one} = options%{one}%handle"
+            else:
+                yield f"    given%{one} = options%{one}"
+        yield "  end subroutine"
         yield ""
 
 
@@ -226,7 +297,9 @@ def declaration(one, has_count_after, structs):
     if one.name in NULLABLE:
         return "type(c_ptr), value", ""
     if one.type in structs and one.pointers == 1:
-        return f"type({type_name(one.type)}), intent({intent})", ""
+        return f"type({structs[one.type]}), intent({intent})", ""
+    if one.type not in NUMBERS and one.pointers == 0:
+        return "type(c_funptr), value", ""
     if one.type == "char" and one.pointers == 1:
         return f"character(kind=c_char), intent({intent})", "(*)"
     if one.type in NUMBERS and one.length:
@@ -242,17 +315,18 @@ def declaration(one, has_count_after, structs):
     return f"type(c_ptr), intent({intent})", "(*)" if one.is_const else ""
 
 
-def write_interface(function, structs):
+def write_interface(function, structs, is_linked=True):
     name = "c_" + function.name.removeprefix("motet_")
     # A parameter does not hide the type that it has.
     names = [
-        f"{one.name}_" if one.type in structs and one.name == type_name(one.type) else one.name
+        f"{one.name}_" if one.name == structs.get(one.type) else one.name
         for one in function.parameters
     ]
     is_function = function.result.pointers > 0 or function.result.type != "void"
     what = "function" if is_function else "subroutine"
     yield from comment_lines("    ", function.comment)
-    yield from statement("    ", f"{what} {name}({', '.join(names)}) bind(c, name='{function.name}')")
+    bound = f", name='{function.name}'" if is_linked else ""
+    yield from statement("    ", f"{what} {name}({', '.join(names)}) bind(c{bound})")
     yield "      import"
     grouped = []
     for i, one in enumerate(function.parameters):
@@ -271,7 +345,12 @@ def write_interface(function, structs):
 
 
 def write_interfaces(header):
-    structs = {struct.name for struct in header.structs}
+    structs = {struct.name: type_in_c(struct) for struct in header.structs}
+    yield "  abstract interface"
+    for function in header.callbacks:
+        yield from write_interface(function, structs, is_linked=False)
+    yield "  end interface"
+    yield ""
     yield "  interface"
     for function in header.functions:
         yield from write_interface(function, structs)
@@ -285,6 +364,7 @@ def module():
         "  !{constants}": write_constants,
         "  !{types}": write_types,
         "  !{interfaces}": write_interfaces,
+        "  !{conversions}": write_conversions,
     }
     lines = ["! Written by fortran.py from motet.h and motet.in.f90. Change these, not this file.", "!"]
     for line in TEMPLATE.read_text().splitlines():

@@ -10,15 +10,19 @@
 ! cut to its length. Without `status` an error stops the program and prints the message. Objects are freed when
 ! they go out of scope, or by `free`; they must not be copied by assignment.
 !
-! A list of names in options is a list of C: c_loc of an array of c_ptr to texts that end with c_null_char.
+! Lists in options are arrays of Fortran, such as `options%slide = [character(8) :: 'inlet', 'outlet']`; blanks at
+! the end of a name do not count. A call is watched by `options%watched_by => mine`, a `type(watch), target`.
 module motet
   use, intrinsic :: iso_c_binding
   implicit none
   private
 
   public :: motet_version
-  public :: mover_options, certificate, remesh_options, implant_options, contact_options, moving_options
-  public :: moving_step
+  public :: certificate, moving_step, progress
+
+  ! The largest length of a name in options. Their lengths are not deferred: gfortran 12 copies such components
+  ! wrongly.
+  integer, parameter, public :: MOTET_NAME_LENGTH = 256
 
   ! The version of the header.
   integer(c_int32_t), parameter, public :: MOTET_VERSION_MAJOR = 0
@@ -35,6 +39,8 @@ module motet
   integer(c_int32_t), parameter, public :: MOTET_ERROR_INPUT = 3
   ! MOTET_ERROR_IO: the operating system refused access to a file
   integer(c_int32_t), parameter, public :: MOTET_ERROR_IO = 4
+  ! MOTET_ERROR_STOPPED: a watch stopped the call; inputs and handles are as before
+  integer(c_int32_t), parameter, public :: MOTET_ERROR_STOPPED = 5
 
   ! Kinds of cells: VTK's numbers, with VTK's order of vertices. VTK's other kinds are accepted as well.
   integer(c_int32_t), parameter, public :: MOTET_VERTEX = 1
@@ -107,9 +113,32 @@ module motet
   ! MOTET_ROOM_YES: a room that contains the others
   integer(c_int32_t), parameter, public :: MOTET_ROOM_YES = 1
 
-  ! Options of a mover.
-  type, bind(c) :: mover_options
+  ! Options of a mover. As C has them.
+  type, bind(c) :: c_mover_options
     integer(c_size_t) :: size = 0
+    integer(c_int32_t) :: method = MOTET_DELAUNAY
+    integer(c_int32_t) :: within_walls = 0
+    integer(c_int32_t) :: smooth = 0
+    integer(c_int32_t) :: substeps = 50
+    integer(c_int32_t) :: threads = 1
+    integer(c_int32_t) :: rigid_layer_cells = 0
+    real(c_double) :: rigid_layer = 0
+    real(c_double) :: residual = 1e-6_c_double
+    real(c_double) :: factor_gib = 0
+    type(c_ptr) :: slide = c_null_ptr
+    integer(c_int64_t) :: n_slide = 0
+    type(c_ptr) :: bodies = c_null_ptr
+    integer(c_int64_t) :: n_bodies = 0
+    type(c_ptr) :: wall = c_null_ptr
+    integer(c_int64_t) :: n_wall = 0
+    type(c_ptr) :: also_moved = c_null_ptr
+    integer(c_int64_t) :: n_also_moved = 0
+    real(c_double) :: slide_tolerance = 0.05_c_double
+    type(c_ptr) :: watched_by = c_null_ptr
+  end type
+
+  ! Options of a mover.
+  type, public :: mover_options
     ! how vertices follow the boundary; default MOTET_DELAUNAY
     integer(c_int32_t) :: method = MOTET_DELAUNAY
     ! 1: no vertex follows the wall of another lumen or the far side of a flap; default 0
@@ -129,21 +158,19 @@ module motet
     ! gibibytes that a factor of the matrix may take to be kept; default 0
     real(c_double) :: factor_gib = 0
     ! names (or labels as text) of flat patches whose vertices slide in their plane; default none
-    type(c_ptr) :: slide = c_null_ptr
-    integer(c_int64_t) :: n_slide = 0
+    character(MOTET_NAME_LENGTH), allocatable :: slide(:)
     ! names of patches that are rigid bodies, for MOTET_BODIES; default none: every separate part of the moved
     ! walls but the outer one
-    type(c_ptr) :: bodies = c_null_ptr
-    integer(c_int64_t) :: n_bodies = 0
+    character(MOTET_NAME_LENGTH), allocatable :: bodies(:)
     ! names of patches that have the rigid layer; default none: all of the boundary that does not slide
-    type(c_ptr) :: wall = c_null_ptr
-    integer(c_int64_t) :: n_wall = 0
+    character(MOTET_NAME_LENGTH), allocatable :: wall(:)
     ! inner vertices that the caller moves as well; default none
-    type(c_ptr) :: also_moved = c_null_ptr
-    integer(c_int64_t) :: n_also_moved = 0
+    integer(c_int32_t), allocatable :: also_moved(:)
     ! largest distance of a vertex of a sliding patch from the plane of the patch, as a fraction of the radius
     ! of the patch; default 0.05
     real(c_double) :: slide_tolerance = 0.05_c_double
+    ! tells the progress of calls and stops them; default NULL: nobody
+    type(watch), pointer :: watched_by => null()
   end type
 
   ! What an advance reached.
@@ -180,9 +207,27 @@ module motet
     real(c_double) :: leaves_plane_distance = 0
   end type
 
-  ! Options of a repair, which finds bad tets and repairs these only.
-  type, bind(c) :: remesh_options
+  ! Options of a repair, which finds bad tets and repairs these only. As C has them.
+  type, bind(c) :: c_remesh_options
     integer(c_size_t) :: size = 0
+    real(c_double) :: min_eas = 0.2_c_double
+    real(c_double) :: min_dihedral_deg = 0
+    integer(c_int32_t) :: best = 0
+    integer(c_int32_t) :: surface = MOTET_SURFACE_KEEP
+    real(c_double) :: distance = 0
+    integer(c_int32_t) :: repair_layers = 0
+    integer(c_int32_t) :: rounds = 20
+    integer(c_int32_t) :: threads = 0
+    real(c_double) :: edge_length = 0
+    type(c_ptr) :: sizes = c_null_ptr
+    integer(c_int64_t) :: n_sizes = 0
+    type(c_ptr) :: hold = c_null_ptr
+    integer(c_int64_t) :: n_hold = 0
+    type(c_ptr) :: watched_by = c_null_ptr
+  end type
+
+  ! Options of a repair, which finds bad tets and repairs these only.
+  type, public :: remesh_options
     ! tets with a lower EAS are bad; default 0.2
     real(c_double) :: min_eas = 0.2_c_double
     ! tets with a smaller dihedral angle are bad as well, in degrees; default 0
@@ -202,16 +247,33 @@ module motet
     ! requested length of all edges; default 0: edges keep their lengths
     real(c_double) :: edge_length = 0
     ! requested length of edges at each point; default NULL
-    type(c_ptr) :: sizes = c_null_ptr
-    integer(c_int64_t) :: n_sizes = 0
+    real(c_double), allocatable :: sizes(:)
     ! names (or labels as text) of regions and patches that are kept to the bit; default none
-    type(c_ptr) :: hold = c_null_ptr
-    integer(c_int64_t) :: n_hold = 0
+    character(MOTET_NAME_LENGTH), allocatable :: hold(:)
+    ! tells the progress and stops the call; default NULL: nobody
+    type(watch), pointer :: watched_by => null()
+  end type
+
+  ! Options of an implantation, which puts devices into a mesh of tets. As C has them.
+  type, bind(c) :: c_implant_options
+    integer(c_size_t) :: size = 0
+    integer(c_int32_t) :: inside = MOTET_INSIDE_OWN
+    integer(c_int32_t) :: conform = 0
+    real(c_double) :: tolerance = 0
+    integer(c_int32_t) :: keep_outside = 0
+    integer(c_int32_t) :: adapt = MOTET_ADAPT_WALLS
+    real(c_double) :: stray = -1.0_c_double
+    real(c_double) :: edge_length = 0
+    real(c_double) :: growth = 0.5_c_double
+    real(c_double) :: carve = 1.0_c_double
+    real(c_double) :: reach = 3.0_c_double
+    real(c_double) :: min_eas = 0.2_c_double
+    integer(c_int32_t) :: threads = 0
+    type(c_ptr) :: watched_by = c_null_ptr
   end type
 
   ! Options of an implantation, which puts devices into a mesh of tets.
-  type, bind(c) :: implant_options
-    integer(c_size_t) :: size = 0
+  type, public :: implant_options
     ! the space inside devices; default MOTET_INSIDE_OWN
     integer(c_int32_t) :: inside = MOTET_INSIDE_OWN
     ! 1: devices get a new surface near theirs, for surfaces that touch or cross themselves; default 0: every
@@ -239,11 +301,30 @@ module motet
     real(c_double) :: min_eas = 0.2_c_double
     ! default 0
     integer(c_int32_t) :: threads = 0
+    ! tells the progress and stops the call; default NULL: nobody
+    type(watch), pointer :: watched_by => null()
+  end type
+
+  ! Options of filling, which makes tets inside closed surfaces. As C has them.
+  type, bind(c) :: c_fill_options
+    integer(c_size_t) :: size = 0
+    real(c_double) :: edge_length = 0
+    integer(c_int32_t) :: graded = 0
+    real(c_double) :: growth = 0
+    real(c_double) :: min_eas = 0
+    integer(c_int32_t) :: layers = 0
+    real(c_double) :: first_layer = 0
+    real(c_double) :: layer_growth = 1.2_c_double
+    integer(c_int32_t) :: keep_prisms = 0
+    integer(c_int32_t) :: repair = 0
+    integer(c_int32_t) :: threads = 0
+    integer(c_int32_t) :: cut = 0
+    integer(c_int32_t) :: voids = 0
+    type(c_ptr) :: watched_by = c_null_ptr
   end type
 
   ! Options of filling, which makes tets inside closed surfaces.
-  type, bind(c) :: fill_options
-    integer(c_size_t) :: size = 0
+  type, public :: fill_options
     ! length of inner edges, the largest where sizes grow; default 0: only necessary points
     real(c_double) :: edge_length = 0
     ! 1: lengths are those of the surface and grow inwards; default 0
@@ -268,11 +349,38 @@ module motet
     integer(c_int32_t) :: cut = 0
     ! 1: spaces inside closed surfaces that are turned inward stay empty; default 0
     integer(c_int32_t) :: voids = 0
+    ! tells the progress and stops the call; default NULL: nobody
+    type(watch), pointer :: watched_by => null()
+  end type
+
+  ! Options of a refinement. As C has them.
+  type, bind(c) :: c_refinement_options
+    integer(c_size_t) :: size = 0
+    integer(c_int32_t) :: threads = 0
+    type(c_ptr) :: watched_by = c_null_ptr
+  end type
+
+  ! Options of a refinement.
+  type, public :: refinement_options
+    ! default 0
+    integer(c_int32_t) :: threads = 0
+    ! tells the progress of calls and stops them; default NULL: nobody
+    type(watch), pointer :: watched_by => null()
+  end type
+
+  ! Options of contact. As C has them.
+  type, bind(c) :: c_contact_options
+    integer(c_size_t) :: size = 0
+    real(c_double) :: warn = 0
+    real(c_double) :: within = 0
+    real(c_double) :: fold = 3.0_c_double
+    integer(c_int32_t) :: own = 0
+    integer(c_int32_t) :: facing = 0
+    integer(c_int32_t) :: threads = 0
   end type
 
   ! Options of contact.
-  type, bind(c) :: contact_options
-    integer(c_size_t) :: size = 0
+  type, public :: contact_options
     ! vertices with a smaller gap warn; default 0: none
     real(c_double) :: warn = 0
     ! largest distance that is searched; default 0: no limit
@@ -288,9 +396,50 @@ module motet
     integer(c_int32_t) :: threads = 0
   end type
 
-  ! Options of a moving mesh.
-  type, bind(c) :: moving_options
+  ! Options of a moving mesh. As C has them.
+  type, bind(c) :: c_moving_options
     integer(c_size_t) :: size = 0
+    integer(c_int32_t) :: method = MOTET_DELAUNAY
+    integer(c_int32_t) :: within_walls = 0
+    integer(c_int32_t) :: smooth = 0
+    integer(c_int32_t) :: rigid_layer_cells = 0
+    real(c_double) :: rigid_layer = 0
+    type(c_ptr) :: inside = c_null_ptr
+    integer(c_int64_t) :: n_inside = 0
+    type(c_ptr) :: slide = c_null_ptr
+    integer(c_int64_t) :: n_slide = 0
+    type(c_ptr) :: bodies = c_null_ptr
+    integer(c_int64_t) :: n_bodies = 0
+    type(c_ptr) :: wall = c_null_ptr
+    integer(c_int64_t) :: n_wall = 0
+    integer(c_int32_t) :: no_repair = 0
+    integer(c_int32_t) :: surface = MOTET_SURFACE_KEEP
+    real(c_double) :: distance = 0
+    real(c_double) :: min_eas = 0.2_c_double
+    real(c_double) :: margin = 0.05_c_double
+    real(c_double) :: floor = 0.05_c_double
+    real(c_double) :: improve_below = 0.75_c_double
+    type(c_ptr) :: contents = c_null_ptr
+    integer(c_int64_t) :: n_contents = 0
+    type(c_ptr) :: watch = c_null_ptr
+    integer(c_int64_t) :: n_watch = 0
+    real(c_double) :: warn = 0
+    real(c_double) :: within = 0
+    real(c_double) :: horizon = 0
+    real(c_double) :: hold = 0
+    integer(c_int32_t) :: remembered = 64
+    integer(c_int32_t) :: threads = 0
+    type(c_ptr) :: hold_names = c_null_ptr
+    integer(c_int64_t) :: n_hold_names = 0
+    real(c_double) :: slide_tolerance = 0.05_c_double
+    integer(c_int32_t) :: valid_at_start = 0
+    integer(c_int32_t) :: strain_in_band = 0
+    integer(c_int32_t) :: returns = 0
+    type(c_ptr) :: watched_by = c_null_ptr
+  end type
+
+  ! Options of a moving mesh.
+  type, public :: moving_options
     ! how vertices follow the walls; default MOTET_DELAUNAY
     integer(c_int32_t) :: method = MOTET_DELAUNAY
     ! 1: no vertex follows the wall of another lumen or the far side of a flap; default 0
@@ -302,18 +451,14 @@ module motet
     ! thickness of the rigid layer as a distance; default 0: no layer
     real(c_double) :: rigid_layer = 0
     ! names (or labels as text) of patches inside the volume that are driven, such as a flap; default none
-    type(c_ptr) :: inside = c_null_ptr
-    integer(c_int64_t) :: n_inside = 0
+    character(MOTET_NAME_LENGTH), allocatable :: inside(:)
     ! names of flat patches whose vertices slide in their plane; default none
-    type(c_ptr) :: slide = c_null_ptr
-    integer(c_int64_t) :: n_slide = 0
+    character(MOTET_NAME_LENGTH), allocatable :: slide(:)
     ! names of patches that are rigid bodies, for MOTET_BODIES; default none: every separate part of the moved
     ! walls but the outer one
-    type(c_ptr) :: bodies = c_null_ptr
-    integer(c_int64_t) :: n_bodies = 0
+    character(MOTET_NAME_LENGTH), allocatable :: bodies(:)
     ! names of patches that have the rigid layer; default none: all of the boundary that does not slide
-    type(c_ptr) :: wall = c_null_ptr
-    integer(c_int64_t) :: n_wall = 0
+    character(MOTET_NAME_LENGTH), allocatable :: wall(:)
     ! 1: nothing is repaired, and a step stops before a cell is inverted; default 0
     integer(c_int32_t) :: no_repair = 0
     ! what a repair does to walls; default MOTET_SURFACE_KEEP
@@ -331,11 +476,9 @@ module motet
     real(c_double) :: improve_below = 0.75_c_double
     ! names of cell arrays that are densities of something that stays in its cell: their integrals are kept;
     ! default none
-    type(c_ptr) :: contents = c_null_ptr
-    integer(c_int64_t) :: n_contents = 0
+    character(MOTET_NAME_LENGTH), allocatable :: contents(:)
     ! names of patches whose gaps are measured at each step; default none
-    type(c_ptr) :: watch = c_null_ptr
-    integer(c_int64_t) :: n_watch = 0
+    character(MOTET_NAME_LENGTH), allocatable :: watch(:)
     ! vertices with a smaller gap warn; default 0: none
     real(c_double) :: warn = 0
     ! largest distance that is searched; default 0: no limit
@@ -350,8 +493,7 @@ module motet
     ! default 0
     integer(c_int32_t) :: threads = 0
     ! names of regions and patches that a repair keeps to the bit; default none
-    type(c_ptr) :: hold_names = c_null_ptr
-    integer(c_int64_t) :: n_hold_names = 0
+    character(MOTET_NAME_LENGTH), allocatable :: hold_names(:)
     ! largest distance of a vertex of a sliding patch from the plane of the patch, as a fraction of the radius
     ! of the patch; default 0.05
     real(c_double) :: slide_tolerance = 0.05_c_double
@@ -364,6 +506,8 @@ module motet
     ! 1: the walls return to their first places again and again: tets are improved to be good there as well,
     ! and a mesh that does not settle is replaced by the first mesh when the walls are back; default 0
     integer(c_int32_t) :: returns = 0
+    ! tells the progress of calls and stops them; default NULL: nobody
+    type(watch), pointer :: watched_by => null()
   end type
 
   ! The result of a step.
@@ -410,6 +554,42 @@ module motet
     real(c_double) :: seconds = 0
   end type
 
+  ! Texts as C takes them: each ends with c_null_char.
+  type :: texts
+    character(kind=c_char), allocatable :: letters(:)
+    type(c_ptr), allocatable :: places(:)
+  end type
+
+  abstract interface
+    ! Is told the progress: what is being done (empty at first), how much of it is done, and how much there is to
+    ! do, 0 where that is unknown. Returns .true. to stop the watched call. It must not use the objects of that
+    ! call.
+    function progress(stage, done, of) result(stops)
+      import
+      character(*), intent(in) :: stage
+      integer(c_int64_t), intent(in) :: done, of
+      logical :: stops
+    end function
+  end interface
+
+  type :: listener
+    procedure(progress), pointer, nopass :: tell => null()
+  end type
+
+  ! Tells the progress of long calls and stops them; see motet_watch in motet.h. `new` takes the function that is
+  ! told the progress (without one, nobody is told) and the seconds between two calls of it (0.05 by default).
+  type, public :: watch
+    private
+    type(c_ptr) :: handle = c_null_ptr
+    type(listener), pointer :: told => null()
+  contains
+    procedure :: new => watch_new
+    procedure :: stop => watch_stop
+    procedure :: progress => watch_progress
+    procedure :: free => watch_free
+    final :: watch_final
+  end type
+
   type, public :: mesh
     private
     type(c_ptr) :: handle = c_null_ptr
@@ -419,6 +599,11 @@ module motet
     procedure :: write => mesh_write
     procedure :: add_cells => mesh_add_cells
     procedure :: set_points => mesh_set_points
+    procedure :: set_labels => mesh_set_labels
+    procedure :: name_region => mesh_name_region
+    procedure :: name_patch => mesh_name_patch
+    procedure :: set_array => mesh_set_array
+    procedure :: array => mesh_array
     procedure :: n_points => mesh_n_points
     procedure :: n_cells => mesh_n_cells
     procedure :: n_of_kind => mesh_n_of_kind
@@ -458,19 +643,36 @@ module motet
     final :: point_mover_final
   end type
 
-  ! The result of `remesh` and `implant`; `mesh` copies the new mesh.
+  ! The result of `remesh`, `implant` and `fill`; `mesh` copies the new mesh.
   type, public :: outcome
     private
     type(c_ptr) :: handle = c_null_ptr
   contains
     procedure :: remesh => outcome_remesh
     procedure :: implant => outcome_implant
+    procedure :: fill => outcome_fill
     procedure :: complete => outcome_complete
     procedure :: mesh => outcome_mesh
     procedure :: to_old => outcome_to_old
     procedure :: transfer => outcome_transfer
     procedure :: free => outcome_free
     final :: outcome_final
+  end type
+
+  ! A mesh whose tets are divided over many steps, and whose divisions are taken back; `mesh` copies the current
+  ! mesh.
+  type, public :: refinement
+    private
+    type(c_ptr) :: handle = c_null_ptr
+  contains
+    procedure :: new => refinement_new
+    procedure :: mesh => refinement_mesh
+    procedure :: generations => refinement_generations
+    procedure :: divide => refinement_divide
+    procedure :: coarsen => refinement_coarsen
+    procedure :: near => refinement_near
+    procedure :: free => refinement_free
+    final :: refinement_final
   end type
 
   type, public :: contact
@@ -507,6 +709,20 @@ module motet
     procedure :: free => moving_free
     final :: moving_final
   end type
+
+  abstract interface
+    ! Is told the progress: what is being done (empty at first; valid during this call only), how much of it
+    ! is done, and how much there is to do as far as is known by now, 0 where that is unknown. A stage may
+    ! occur more than once. Returns 0 to go on, another number to stop the watched call. It must not return by
+    ! longjmp or an exception, nor use the handles of the watched call.
+    function c_progress(data, stage, done, of) bind(c)
+      import
+      type(c_ptr), value :: data
+      character(kind=c_char), intent(in) :: stage(*)
+      integer(c_int64_t), value :: done, of
+      integer(c_int32_t) :: c_progress
+    end function
+  end interface
 
   interface
     ! The version of the linked library: major * 10000 + minor * 100 + patch.
@@ -554,6 +770,50 @@ module motet
       import
       type(c_ptr), value :: error
     end subroutine
+    ! Creates a watch that tells nobody.
+    function c_watch_new(watch, error) bind(c, name='motet_watch_new')
+      import
+      type(c_ptr), intent(inout) :: watch, error
+      integer(c_int32_t) :: c_watch_new
+    end function
+    ! Frees a watch that watches no call at the time. Handles made with it remain usable; nobody watches them
+    ! any longer.
+    subroutine c_watch_free(watch) bind(c, name='motet_watch_free')
+      import
+      type(c_ptr), value :: watch
+    end subroutine
+    ! Sets the function that is told the progress, on the thread that makes the watched call, every `every`
+    ! seconds while the call runs (0: 0.05), whether or not there is progress; the work goes on meanwhile, on
+    ! another thread. NULL for none: the call works on the thread of the caller. `data` is passed on to the
+    ! function. Has an effect on later calls.
+    function c_watch_on_progress(watch, tell, data, every, error) bind(c, name='motet_watch_on_progress')
+      import
+      type(c_ptr), value :: watch
+      type(c_funptr), value :: tell
+      type(c_ptr), value :: data
+      real(c_double), value :: every
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_watch_on_progress
+    end function
+    ! Stops the watched call soon, or the next one if none is running: it returns MOTET_ERROR_STOPPED, and the
+    ! request is used up. May be called from any thread, from the function that is told the progress, and by a
+    ! handler of signals.
+    subroutine c_watch_stop(watch) bind(c, name='motet_watch_stop')
+      import
+      type(c_ptr), value :: watch
+    end subroutine
+    ! Copies the progress of the watched call, or of the last one, from any thread. `stage` receives up to n
+    ! bytes with the zero at the end; 64 are enough for all stages. `done` and `of` are as those of
+    ! motet_progress; they may be NULL.
+    function c_watch_progress(watch, stage, n, done, of, error) bind(c, name='motet_watch_progress')
+      import
+      type(c_ptr), value :: watch
+      character(kind=c_char), intent(inout) :: stage(*)
+      integer(c_int64_t), value :: n
+      integer(c_int64_t), intent(out) :: done, of
+      type(c_ptr), intent(inout) :: error
+      integer(c_int32_t) :: c_watch_progress
+    end function
     ! Creates a mesh of n points and no cells.
     function c_mesh_new(points, n, stride, mesh, error) bind(c, name='motet_mesh_new')
       import
@@ -638,6 +898,31 @@ module motet
       character(kind=c_char), intent(in) :: path(*)
       type(c_ptr), intent(inout) :: error
       integer(c_int32_t) :: c_mesh_write
+    end function
+    ! The characters of a text, terminated by zero.
+    function c_text_get(text) bind(c, name='motet_text_get')
+      import
+      type(c_ptr), value :: text
+      type(c_ptr) :: c_text_get
+    end function
+    subroutine c_text_free(text) bind(c, name='motet_text_free')
+      import
+      type(c_ptr), value :: text
+    end subroutine
+    ! Reads a file and says what of it is not used, a sentence a line; NULL where all is.
+    function c_mesh_read_noted(path, mesh, notes, error) bind(c, name='motet_mesh_read_noted')
+      import
+      character(kind=c_char), intent(in) :: path(*)
+      type(c_ptr), intent(inout) :: mesh, notes, error
+      integer(c_int32_t) :: c_mesh_read_noted
+    end function
+    ! Writes a file and says what the format cannot hold, a sentence a line; NULL where it holds all.
+    function c_mesh_write_noted(mesh, path, lost, error) bind(c, name='motet_mesh_write_noted')
+      import
+      type(c_ptr), value :: mesh
+      character(kind=c_char), intent(in) :: path(*)
+      type(c_ptr), intent(inout) :: lost, error
+      integer(c_int32_t) :: c_mesh_write_noted
     end function
     ! Copies a mesh with its arrays and names.
     function c_mesh_copy(mesh, copy, error) bind(c, name='motet_mesh_copy')
@@ -785,27 +1070,17 @@ module motet
       type(c_ptr), intent(inout) :: summary, error
       integer(c_int32_t) :: c_mesh_summary
     end function
-    ! The characters of a text, terminated by zero.
-    function c_text_get(text) bind(c, name='motet_text_get')
-      import
-      type(c_ptr), value :: text
-      type(c_ptr) :: c_text_get
-    end function
-    subroutine c_text_free(text) bind(c, name='motet_text_free')
-      import
-      type(c_ptr), value :: text
-    end subroutine
     ! Sets all members to their defaults; `size` is sizeof(motet_mover_options).
     subroutine c_mover_options_init(options, size) bind(c, name='motet_mover_options_init')
       import
-      type(mover_options), intent(inout) :: options
+      type(c_mover_options), intent(inout) :: options
       integer(c_size_t), value :: size
     end subroutine
     ! Sets up the motion of a mesh; the mesh may be freed afterwards. NULL for options: the defaults.
     function c_mover_new(mesh, options, mover, error) bind(c, name='motet_mover_new')
       import
       type(c_ptr), value :: mesh
-      type(mover_options), intent(in) :: options
+      type(c_mover_options), intent(in) :: options
       type(c_ptr), intent(inout) :: mover, error
       integer(c_int32_t) :: c_mover_new
     end function
@@ -967,21 +1242,21 @@ module motet
     ! Sets all members to their defaults; `size` is sizeof(motet_remesh_options).
     subroutine c_remesh_options_init(options, size) bind(c, name='motet_remesh_options_init')
       import
-      type(remesh_options), intent(inout) :: options
+      type(c_remesh_options), intent(inout) :: options
       integer(c_size_t), value :: size
     end subroutine
     ! Repairs the bad tets of a mesh. NULL for options: the defaults.
     function c_remesh(mesh, options, outcome, error) bind(c, name='motet_remesh')
       import
       type(c_ptr), value :: mesh
-      type(remesh_options), intent(in) :: options
+      type(c_remesh_options), intent(in) :: options
       type(c_ptr), intent(inout) :: outcome, error
       integer(c_int32_t) :: c_remesh
     end function
     ! Sets all members to their defaults; `size` is sizeof(motet_implant_options).
     subroutine c_implant_options_init(options, size) bind(c, name='motet_implant_options_init')
       import
-      type(implant_options), intent(inout) :: options
+      type(c_implant_options), intent(inout) :: options
       integer(c_size_t), value :: size
     end subroutine
     ! Puts devices into a host. `names` has a name for each device: that of its region and its patch. NULL for
@@ -992,14 +1267,14 @@ module motet
       type(c_ptr), value :: host
       type(c_ptr), intent(in) :: devices(*), names(*)
       integer(c_int64_t), value :: n_devices
-      type(implant_options), intent(in) :: options
+      type(c_implant_options), intent(in) :: options
       type(c_ptr), intent(inout) :: outcome, error
       integer(c_int32_t) :: c_implant
     end function
     ! Sets all members to their defaults; `size` is sizeof(motet_fill_options).
     subroutine c_fill_options_init(options, size) bind(c, name='motet_fill_options_init')
       import
-      type(fill_options), intent(inout) :: options
+      type(c_fill_options), intent(inout) :: options
       integer(c_size_t), value :: size
     end subroutine
     ! Fills closed surfaces with tets. `names` has a name for each surface; is_membrane has 1 for surfaces
@@ -1011,15 +1286,21 @@ module motet
       type(c_ptr), intent(in) :: surfaces(*), names(*)
       type(c_ptr), value :: is_membrane
       integer(c_int64_t), value :: n_surfaces
-      type(fill_options), intent(in) :: options
+      type(c_fill_options), intent(in) :: options
       type(c_ptr), intent(inout) :: outcome, error
       integer(c_int32_t) :: c_fill
     end function
-    ! Sets up the refinement of a mesh; the mesh may be freed afterwards.
-    function c_refinement_new(mesh, threads, refinement, error) bind(c, name='motet_refinement_new')
+    ! Sets all members to their defaults; `size` is sizeof(motet_refinement_options).
+    subroutine c_refinement_options_init(options, size) bind(c, name='motet_refinement_options_init')
+      import
+      type(c_refinement_options), intent(inout) :: options
+      integer(c_size_t), value :: size
+    end subroutine
+    ! Sets up the refinement of a mesh; the mesh may be freed afterwards. NULL for options: the defaults.
+    function c_refinement_new(mesh, options, refinement, error) bind(c, name='motet_refinement_new')
       import
       type(c_ptr), value :: mesh
-      integer(c_int32_t), value :: threads
+      type(c_refinement_options), intent(in) :: options
       type(c_ptr), intent(inout) :: refinement, error
       integer(c_int32_t) :: c_refinement_new
     end function
@@ -1066,7 +1347,7 @@ module motet
       integer(c_int32_t) :: c_refinement_coarsen
     end function
     ! Divides tets until no edge is longer than `at` at a surface, and `growth` more per unit of distance from
-    ! it. The outcome is as that of motet_refinement_divide.
+    ! it. The outcome is as that of motet_refinement_divide. On an error nothing is changed.
     function c_refinement_near(refinement, surface, at, growth, outcome, error) &
         bind(c, name='motet_refinement_near')
       import
@@ -1078,7 +1359,7 @@ module motet
     ! Sets all members to their defaults; `size` is sizeof(motet_contact_options).
     subroutine c_contact_options_init(options, size) bind(c, name='motet_contact_options_init')
       import
-      type(contact_options), intent(inout) :: options
+      type(c_contact_options), intent(inout) :: options
       integer(c_size_t), value :: size
     end subroutine
     ! Sets up bodies over n_points points. `triangles` has three vertices for each triangle, body after body;
@@ -1093,7 +1374,7 @@ module motet
       integer(c_int64_t), intent(in) :: counts(*)
       type(c_ptr), value :: is_room
       integer(c_int64_t), value :: n_bodies
-      type(contact_options), intent(in) :: options
+      type(c_contact_options), intent(in) :: options
       type(c_ptr), intent(inout) :: contact, error
       integer(c_int32_t) :: c_contact_new
     end function
@@ -1151,7 +1432,7 @@ module motet
     ! Sets all members to their defaults; `size` is sizeof(motet_moving_options).
     subroutine c_moving_options_init(options, size) bind(c, name='motet_moving_options_init')
       import
-      type(moving_options), intent(inout) :: options
+      type(c_moving_options), intent(inout) :: options
       integer(c_size_t), value :: size
     end subroutine
     ! Sets up the motion of a mesh with its arrays; the mesh may be freed afterwards. NULL for options: the
@@ -1159,7 +1440,7 @@ module motet
     function c_moving_new(mesh, options, moving, error) bind(c, name='motet_moving_new')
       import
       type(c_ptr), value :: mesh
-      type(moving_options), intent(in) :: options
+      type(c_moving_options), intent(in) :: options
       type(c_ptr), intent(inout) :: moving, error
       integer(c_int32_t) :: c_moving_new
     end function
@@ -1176,7 +1457,7 @@ module motet
     function c_moving_load(path, options, moving, error) bind(c, name='motet_moving_load')
       import
       character(kind=c_char), intent(in) :: path(*)
-      type(moving_options), intent(in) :: options
+      type(c_moving_options), intent(in) :: options
       type(c_ptr), intent(inout) :: moving, error
       integer(c_int32_t) :: c_moving_load
     end function
@@ -1355,6 +1636,14 @@ contains
       text = fortran_text(c_error_message(error))
       call c_error_free(error)
     end if
+    call settle(code, text, status, message)
+  end subroutine
+
+  subroutine settle(code, text, status, message)
+    integer(c_int32_t), intent(in) :: code
+    character(*), intent(in) :: text
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
     if (present(message)) message = text
     if (present(status)) then
       status = code
@@ -1376,6 +1665,273 @@ contains
     end do
   end function
 
+  ! Keeps texts for C; `place` and `n` are the list that C takes.
+  subroutine keep(strings, kept, place, n)
+    character(*), intent(in), optional :: strings(:)
+    type(texts), intent(out), target :: kept
+    type(c_ptr), intent(out) :: place
+    integer(c_int64_t), intent(out) :: n
+    integer :: i, k, at
+    place = c_null_ptr
+    n = 0
+    if (.not. present(strings)) return
+    n = size(strings, kind=c_int64_t)
+    if (n == 0) return
+    allocate(kept%letters(sum(len_trim(strings) + 1)), kept%places(n))
+    at = 1
+    do i = 1, size(strings)
+      kept%places(i) = c_loc(kept%letters(at))
+      do k = 1, len_trim(strings(i))
+        kept%letters(at) = strings(i)(k:k)
+        at = at + 1
+      end do
+      kept%letters(at) = c_null_char
+      at = at + 1
+    end do
+    place = c_loc(kept%places)
+  end subroutine
+
+  subroutine give_mover_options(options, given, kept)
+    type(mover_options), intent(in), optional, target :: options
+    type(c_mover_options), intent(out) :: given
+    type(texts), allocatable, intent(out), target :: kept(:)
+    allocate(kept(3))
+    given%size = c_sizeof(given)
+    if (.not. present(options)) return
+    given%method = options%method
+    given%within_walls = options%within_walls
+    given%smooth = options%smooth
+    given%substeps = options%substeps
+    given%threads = options%threads
+    given%rigid_layer_cells = options%rigid_layer_cells
+    given%rigid_layer = options%rigid_layer
+    given%residual = options%residual
+    given%factor_gib = options%factor_gib
+    call keep(options%slide, kept(1), given%slide, given%n_slide)
+    call keep(options%bodies, kept(2), given%bodies, given%n_bodies)
+    call keep(options%wall, kept(3), given%wall, given%n_wall)
+    if (allocated(options%also_moved)) then
+      given%n_also_moved = size(options%also_moved, kind=c_int64_t)
+      if (given%n_also_moved > 0) given%also_moved = c_loc(options%also_moved)
+    end if
+    given%slide_tolerance = options%slide_tolerance
+    if (associated(options%watched_by)) given%watched_by = options%watched_by%handle
+  end subroutine
+
+  subroutine give_remesh_options(options, given, kept)
+    type(remesh_options), intent(in), optional, target :: options
+    type(c_remesh_options), intent(out) :: given
+    type(texts), allocatable, intent(out), target :: kept(:)
+    allocate(kept(1))
+    given%size = c_sizeof(given)
+    if (.not. present(options)) return
+    given%min_eas = options%min_eas
+    given%min_dihedral_deg = options%min_dihedral_deg
+    given%best = options%best
+    given%surface = options%surface
+    given%distance = options%distance
+    given%repair_layers = options%repair_layers
+    given%rounds = options%rounds
+    given%threads = options%threads
+    given%edge_length = options%edge_length
+    if (allocated(options%sizes)) then
+      given%n_sizes = size(options%sizes, kind=c_int64_t)
+      if (given%n_sizes > 0) given%sizes = c_loc(options%sizes)
+    end if
+    call keep(options%hold, kept(1), given%hold, given%n_hold)
+    if (associated(options%watched_by)) given%watched_by = options%watched_by%handle
+  end subroutine
+
+  subroutine give_implant_options(options, given, kept)
+    type(implant_options), intent(in), optional, target :: options
+    type(c_implant_options), intent(out) :: given
+    type(texts), allocatable, intent(out), target :: kept(:)
+    allocate(kept(0))
+    given%size = c_sizeof(given)
+    if (.not. present(options)) return
+    given%inside = options%inside
+    given%conform = options%conform
+    given%tolerance = options%tolerance
+    given%keep_outside = options%keep_outside
+    given%adapt = options%adapt
+    given%stray = options%stray
+    given%edge_length = options%edge_length
+    given%growth = options%growth
+    given%carve = options%carve
+    given%reach = options%reach
+    given%min_eas = options%min_eas
+    given%threads = options%threads
+    if (associated(options%watched_by)) given%watched_by = options%watched_by%handle
+  end subroutine
+
+  subroutine give_fill_options(options, given, kept)
+    type(fill_options), intent(in), optional, target :: options
+    type(c_fill_options), intent(out) :: given
+    type(texts), allocatable, intent(out), target :: kept(:)
+    allocate(kept(0))
+    given%size = c_sizeof(given)
+    if (.not. present(options)) return
+    given%edge_length = options%edge_length
+    given%graded = options%graded
+    given%growth = options%growth
+    given%min_eas = options%min_eas
+    given%layers = options%layers
+    given%first_layer = options%first_layer
+    given%layer_growth = options%layer_growth
+    given%keep_prisms = options%keep_prisms
+    given%repair = options%repair
+    given%threads = options%threads
+    given%cut = options%cut
+    given%voids = options%voids
+    if (associated(options%watched_by)) given%watched_by = options%watched_by%handle
+  end subroutine
+
+  subroutine give_refinement_options(options, given, kept)
+    type(refinement_options), intent(in), optional, target :: options
+    type(c_refinement_options), intent(out) :: given
+    type(texts), allocatable, intent(out), target :: kept(:)
+    allocate(kept(0))
+    given%size = c_sizeof(given)
+    if (.not. present(options)) return
+    given%threads = options%threads
+    if (associated(options%watched_by)) given%watched_by = options%watched_by%handle
+  end subroutine
+
+  subroutine give_contact_options(options, given, kept)
+    type(contact_options), intent(in), optional, target :: options
+    type(c_contact_options), intent(out) :: given
+    type(texts), allocatable, intent(out), target :: kept(:)
+    allocate(kept(0))
+    given%size = c_sizeof(given)
+    if (.not. present(options)) return
+    given%warn = options%warn
+    given%within = options%within
+    given%fold = options%fold
+    given%own = options%own
+    given%facing = options%facing
+    given%threads = options%threads
+  end subroutine
+
+  subroutine give_moving_options(options, given, kept)
+    type(moving_options), intent(in), optional, target :: options
+    type(c_moving_options), intent(out) :: given
+    type(texts), allocatable, intent(out), target :: kept(:)
+    allocate(kept(7))
+    given%size = c_sizeof(given)
+    if (.not. present(options)) return
+    given%method = options%method
+    given%within_walls = options%within_walls
+    given%smooth = options%smooth
+    given%rigid_layer_cells = options%rigid_layer_cells
+    given%rigid_layer = options%rigid_layer
+    call keep(options%inside, kept(1), given%inside, given%n_inside)
+    call keep(options%slide, kept(2), given%slide, given%n_slide)
+    call keep(options%bodies, kept(3), given%bodies, given%n_bodies)
+    call keep(options%wall, kept(4), given%wall, given%n_wall)
+    given%no_repair = options%no_repair
+    given%surface = options%surface
+    given%distance = options%distance
+    given%min_eas = options%min_eas
+    given%margin = options%margin
+    given%floor = options%floor
+    given%improve_below = options%improve_below
+    call keep(options%contents, kept(5), given%contents, given%n_contents)
+    call keep(options%watch, kept(6), given%watch, given%n_watch)
+    given%warn = options%warn
+    given%within = options%within
+    given%horizon = options%horizon
+    given%hold = options%hold
+    given%remembered = options%remembered
+    given%threads = options%threads
+    call keep(options%hold_names, kept(7), given%hold_names, given%n_hold_names)
+    given%slide_tolerance = options%slide_tolerance
+    given%valid_at_start = options%valid_at_start
+    given%strain_in_band = options%strain_in_band
+    given%returns = options%returns
+    if (associated(options%watched_by)) given%watched_by = options%watched_by%handle
+  end subroutine
+
+  subroutine watch_new(self, tell, every, status, message)
+    class(watch), intent(inout) :: self
+    procedure(progress), optional :: tell
+    real(c_double), intent(in), optional :: every
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    real(c_double) :: seconds
+    call self%free()
+    code = c_watch_new(self%handle, error)
+    if (code == MOTET_OK .and. present(tell)) then
+      seconds = 0
+      if (present(every)) seconds = every
+      allocate(self%told)
+      self%told%tell => tell
+      code = c_watch_on_progress(self%handle, c_funloc(tell_progress), c_loc(self%told), seconds, error)
+    end if
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Tells the progress to a function of Fortran, `data`: a listener.
+  function tell_progress(data, stage, done, of) result(stops) bind(c, name='')
+    type(c_ptr), value :: data
+    character(kind=c_char), intent(in) :: stage(*)
+    integer(c_int64_t), value :: done, of
+    integer(c_int32_t) :: stops
+    type(listener), pointer :: told
+    call c_f_pointer(data, told)
+    stops = merge(1_c_int32_t, 0_c_int32_t, told%tell(letters_of(stage), done, of))
+  end function
+
+  ! A text that ends with c_null_char.
+  pure function letters_of(c_text) result(text)
+    character(kind=c_char), intent(in) :: c_text(*)
+    character(:), allocatable :: text
+    integer :: i, n
+    n = 0
+    do while (c_text(n + 1) /= c_null_char)
+      n = n + 1
+    end do
+    allocate(character(len=n) :: text)
+    do i = 1, n
+      text(i:i) = c_text(i)
+    end do
+  end function
+
+  ! Stops the watched call, or the next one if none is running; from any thread.
+  subroutine watch_stop(self)
+    class(watch), intent(in) :: self
+    call c_watch_stop(self%handle)
+  end subroutine
+
+  ! The progress of the watched call, or of the last one; from any thread.
+  subroutine watch_progress(self, stage, done, of, status, message)
+    class(watch), intent(in) :: self
+    character(:), allocatable, intent(out) :: stage
+    integer(c_int64_t), intent(out) :: done, of
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    character(kind=c_char) :: letters(64)
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    letters = c_null_char
+    code = c_watch_progress(self%handle, letters, size(letters, kind=c_int64_t), done, of, error)
+    stage = letters_of(letters)
+    call finish(code, error, status, message)
+  end subroutine
+
+  subroutine watch_free(self)
+    class(watch), intent(inout) :: self
+    call c_watch_free(self%handle)
+    self%handle = c_null_ptr
+    if (associated(self%told)) deallocate(self%told)
+  end subroutine
+
+  impure elemental subroutine watch_final(self)
+    type(watch), intent(inout) :: self
+    call self%free()
+  end subroutine
+
   subroutine mesh_new(self, points, status, message)
     class(mesh), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: points(:, :)
@@ -1388,28 +1944,46 @@ contains
     call finish(code, error, status, message)
   end subroutine
 
-  subroutine mesh_read(self, path, status, message)
+  ! `notes` says what of the file is not used, a sentence a line; empty where all is.
+  subroutine mesh_read(self, path, status, message, notes)
     class(mesh), intent(inout) :: self
     character(*), intent(in) :: path
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(c_ptr) :: error
+    character(:), allocatable, intent(out), optional :: notes
+    type(c_ptr) :: error, sentences
     integer(c_int32_t) :: code
     call self%free()
-    code = c_mesh_read(trim(path)//c_null_char, self%handle, error)
+    sentences = c_null_ptr
+    code = c_mesh_read_noted(trim(path)//c_null_char, self%handle, sentences, error)
+    if (present(notes)) notes = text_of(sentences)
+    call c_text_free(sentences)
     call finish(code, error, status, message)
   end subroutine
 
-  subroutine mesh_write(self, path, status, message)
+  ! `lost` says what the format cannot hold, a sentence a line; empty where it holds all.
+  subroutine mesh_write(self, path, status, message, lost)
     class(mesh), intent(in) :: self
     character(*), intent(in) :: path
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(c_ptr) :: error
+    character(:), allocatable, intent(out), optional :: lost
+    type(c_ptr) :: error, sentences
     integer(c_int32_t) :: code
-    code = c_mesh_write(self%handle, trim(path)//c_null_char, error)
+    sentences = c_null_ptr
+    code = c_mesh_write_noted(self%handle, trim(path)//c_null_char, sentences, error)
+    if (present(lost)) lost = text_of(sentences)
+    call c_text_free(sentences)
     call finish(code, error, status, message)
   end subroutine
+
+  ! The characters of a text of C; none for NULL.
+  function text_of(c_text) result(text)
+    type(c_ptr), intent(in) :: c_text
+    character(:), allocatable :: text
+    text = ''
+    if (c_associated(c_text)) text = fortran_text(c_text_get(c_text))
+  end function
 
   ! `vertices` has a column for each cell.
   subroutine mesh_add_cells(self, kind, vertices, status, message)
@@ -1432,6 +2006,76 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_mesh_set_points(self%handle, points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Sets the label of each cell: regions of volume cells, patches of surface cells; 0 for none.
+  subroutine mesh_set_labels(self, labels, status, message)
+    class(mesh), intent(inout) :: self
+    integer(c_int32_t), contiguous, intent(in) :: labels(:)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_mesh_set_labels(self%handle, labels, size(labels, kind=c_int64_t), error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Names the region that has a label.
+  subroutine mesh_name_region(self, label, name, status, message)
+    class(mesh), intent(inout) :: self
+    integer(c_int32_t), intent(in) :: label
+    character(*), intent(in) :: name
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_mesh_name_region(self%handle, label, trim(name)//c_null_char, error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Names the patch that has a label.
+  subroutine mesh_name_patch(self, label, name, status, message)
+    class(mesh), intent(inout) :: self
+    integer(c_int32_t), intent(in) :: label
+    character(*), intent(in) :: name
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_mesh_name_patch(self%handle, label, trim(name)//c_null_char, error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! `values` has the shape (components, n), a column for each point or cell.
+  subroutine mesh_set_array(self, on, name, values, status, message)
+    class(mesh), intent(inout) :: self
+    integer(c_int32_t), intent(in) :: on
+    character(*), intent(in) :: name
+    real(c_double), contiguous, intent(in) :: values(:, :)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_mesh_set_array(self%handle, on, trim(name)//c_null_char, values, size(values, 2, c_int64_t), &
+        size(values, 1, c_int32_t), error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Allocates values(components, n), a column for each point or cell.
+  subroutine mesh_array(self, on, name, values, status, message)
+    class(mesh), intent(in) :: self
+    integer(c_int32_t), intent(in) :: on
+    character(*), intent(in) :: name
+    real(c_double), allocatable, intent(out) :: values(:, :)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    integer(c_int64_t) :: n
+    n = merge(self%n_points(), self%n_cells(), on == MOTET_ON_POINTS)
+    allocate(values(c_mesh_array_components(self%handle, on, trim(name)//c_null_char), n))
+    code = c_mesh_array(self%handle, on, trim(name)//c_null_char, values, n, error)
     call finish(code, error, status, message)
   end subroutine
 
@@ -1539,7 +2183,7 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine mesh_final(self)
+  impure elemental subroutine mesh_final(self)
     type(mesh), intent(inout) :: self
     call self%free()
   end subroutine
@@ -1550,12 +2194,12 @@ contains
     type(mover_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(mover_options) :: used
+    type(c_mover_options) :: used
+    type(texts), allocatable, target :: kept(:)
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
+    call give_mover_options(options, used, kept)
     code = c_mover_new(of%handle, used, self%handle, error)
     call finish(code, error, status, message)
   end subroutine
@@ -1619,7 +2263,7 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine mover_final(self)
+  impure elemental subroutine mover_final(self)
     type(mover), intent(inout) :: self
     call self%free()
   end subroutine
@@ -1660,7 +2304,7 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine point_mover_final(self)
+  impure elemental subroutine point_mover_final(self)
     type(point_mover), intent(inout) :: self
     call self%free()
   end subroutine
@@ -1671,12 +2315,12 @@ contains
     type(remesh_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(remesh_options) :: used
+    type(c_remesh_options) :: used
+    type(texts), allocatable, target :: kept(:)
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
+    call give_remesh_options(options, used, kept)
     code = c_remesh(of%handle, used, self%handle, error)
     call finish(code, error, status, message)
   end subroutine
@@ -1689,20 +2333,47 @@ contains
     type(implant_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(implant_options) :: used
-    character(kind=c_char), target :: letters(len_trim(name) + 1)
-    type(c_ptr) :: devices(1), names(1), error
-    integer(c_int32_t) :: code, i
+    type(c_implant_options) :: used
+    type(texts), allocatable, target :: kept(:)
+    type(texts), target :: names
+    type(c_ptr) :: devices(1), place, error
+    integer(c_int32_t) :: code
+    integer(c_int64_t) :: n
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
-    do i = 1, len_trim(name)
-      letters(i) = name(i:i)
-    end do
-    letters(len_trim(name) + 1) = c_null_char
+    call give_implant_options(options, used, kept)
     devices(1) = device%handle
-    names(1) = c_loc(letters)
-    code = c_implant(host%handle, devices, names, 1_c_int64_t, used, self%handle, error)
+    call keep([name], names, place, n)
+    code = c_implant(host%handle, devices, names%places, n, used, self%handle, error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Fills closed surfaces with tets; `names` has a name for each. The outcome has no history.
+  subroutine outcome_fill(self, surfaces, names, options, status, message)
+    class(outcome), intent(inout) :: self
+    type(mesh), intent(in) :: surfaces(:)
+    character(*), intent(in) :: names(:)
+    type(fill_options), intent(in), optional :: options
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_fill_options) :: used
+    type(texts), allocatable, target :: kept(:)
+    type(texts), target :: letters
+    type(c_ptr) :: handles(size(surfaces)), place, error
+    integer(c_int32_t) :: code
+    integer(c_int64_t) :: n
+    integer :: i
+    call self%free()
+    if (size(names) /= size(surfaces)) then
+      call settle(MOTET_ERROR_OPTIONS, 'the number of names is not that of surfaces', status, message)
+      return
+    end if
+    call give_fill_options(options, used, kept)
+    do i = 1, size(surfaces)
+      handles(i) = surfaces(i)%handle
+    end do
+    call keep(names, letters, place, n)
+    if (n == 0) allocate(letters%places(0))
+    code = c_fill(handles, letters%places, c_null_ptr, n, used, self%handle, error)
     call finish(code, error, status, message)
   end subroutine
 
@@ -1770,8 +2441,119 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine outcome_final(self)
+  impure elemental subroutine outcome_final(self)
     type(outcome), intent(inout) :: self
+    call self%free()
+  end subroutine
+
+  subroutine refinement_new(self, of, options, status, message)
+    class(refinement), intent(inout) :: self
+    class(mesh), intent(in) :: of
+    type(refinement_options), intent(in), optional :: options
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_refinement_options) :: used
+    type(texts), allocatable, target :: kept(:)
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    call self%free()
+    call give_refinement_options(options, used, kept)
+    code = c_refinement_new(of%handle, used, self%handle, error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  subroutine refinement_mesh(self, copy, status, message)
+    class(refinement), intent(in) :: self
+    type(mesh), intent(inout) :: copy
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    call copy%free()
+    code = c_mesh_copy(c_refinement_mesh(self%handle), copy%handle, error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Allocates the number of divisions of each cell of the current mesh.
+  subroutine refinement_generations(self, generations, status, message)
+    class(refinement), intent(in) :: self
+    integer(c_int32_t), allocatable, intent(out) :: generations(:)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    allocate(generations(c_mesh_n_cells(c_refinement_mesh(self%handle))))
+    code = c_refinement_generations(self%handle, generations, size(generations, kind=c_int64_t), error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! `marks` has an entry for each cell of the current mesh; `changes` has the history.
+  subroutine refinement_divide(self, marks, changes, status, message)
+    class(refinement), intent(inout) :: self
+    integer(c_int32_t), contiguous, intent(in) :: marks(:)
+    type(outcome), intent(inout), optional :: changes
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error, made
+    integer(c_int32_t) :: code
+    made = c_null_ptr
+    if (present(changes)) call changes%free()
+    code = c_refinement_divide(self%handle, marks, size(marks, kind=c_int64_t), made, error)
+    if (present(changes)) then
+      changes%handle = made
+    else
+      call c_outcome_free(made)
+    end if
+    call finish(code, error, status, message)
+  end subroutine
+
+  subroutine refinement_coarsen(self, marks, changes, status, message)
+    class(refinement), intent(inout) :: self
+    integer(c_int32_t), contiguous, intent(in) :: marks(:)
+    type(outcome), intent(inout), optional :: changes
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error, made
+    integer(c_int32_t) :: code
+    made = c_null_ptr
+    if (present(changes)) call changes%free()
+    code = c_refinement_coarsen(self%handle, marks, size(marks, kind=c_int64_t), made, error)
+    if (present(changes)) then
+      changes%handle = made
+    else
+      call c_outcome_free(made)
+    end if
+    call finish(code, error, status, message)
+  end subroutine
+
+  subroutine refinement_near(self, surface, at, growth, changes, status, message)
+    class(refinement), intent(inout) :: self
+    class(mesh), intent(in) :: surface
+    real(c_double), intent(in) :: at, growth
+    type(outcome), intent(inout), optional :: changes
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error, made
+    integer(c_int32_t) :: code
+    made = c_null_ptr
+    if (present(changes)) call changes%free()
+    code = c_refinement_near(self%handle, surface%handle, at, growth, made, error)
+    if (present(changes)) then
+      changes%handle = made
+    else
+      call c_outcome_free(made)
+    end if
+    call finish(code, error, status, message)
+  end subroutine
+
+  subroutine refinement_free(self)
+    class(refinement), intent(inout) :: self
+    call c_refinement_free(self%handle)
+    self%handle = c_null_ptr
+  end subroutine
+
+  impure elemental subroutine refinement_final(self)
+    type(refinement), intent(inout) :: self
     call self%free()
   end subroutine
 
@@ -1784,12 +2566,12 @@ contains
     type(contact_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(contact_options) :: used
+    type(c_contact_options) :: used
+    type(texts), allocatable, target :: kept(:)
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
+    call give_contact_options(options, used, kept)
     code = c_contact_new(points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), triangles, counts, c_null_ptr, &
         size(counts, kind=c_int64_t), used, self%handle, error)
     call finish(code, error, status, message)
@@ -1825,7 +2607,7 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine contact_final(self)
+  impure elemental subroutine contact_final(self)
     type(contact), intent(inout) :: self
     call self%free()
   end subroutine
@@ -1836,12 +2618,12 @@ contains
     type(moving_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(moving_options) :: used
+    type(c_moving_options) :: used
+    type(texts), allocatable, target :: kept(:)
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
+    call give_moving_options(options, used, kept)
     code = c_moving_new(of%handle, used, self%handle, error)
     call finish(code, error, status, message)
   end subroutine
@@ -1863,12 +2645,12 @@ contains
     type(moving_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(moving_options) :: used
+    type(c_moving_options) :: used
+    type(texts), allocatable, target :: kept(:)
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
+    call give_moving_options(options, used, kept)
     code = c_moving_load(trim(path)//c_null_char, used, self%handle, error)
     call finish(code, error, status, message)
   end subroutine
@@ -2033,7 +2815,7 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine moving_final(self)
+  impure elemental subroutine moving_final(self)
     type(moving_mesh), intent(inout) :: self
     call self%free()
   end subroutine

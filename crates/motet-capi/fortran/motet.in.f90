@@ -8,18 +8,58 @@
 ! cut to its length. Without `status` an error stops the program and prints the message. Objects are freed when
 ! they go out of scope, or by `free`; they must not be copied by assignment.
 !
-! A list of names in options is a list of C: c_loc of an array of c_ptr to texts that end with c_null_char.
+! Lists in options are arrays of Fortran, such as `options%slide = [character(8) :: 'inlet', 'outlet']`; blanks at
+! the end of a name do not count. A call is watched by `options%watched_by => mine`, a `type(watch), target`.
 module motet
   use, intrinsic :: iso_c_binding
   implicit none
   private
 
   public :: motet_version
-  public :: mover_options, certificate, remesh_options, implant_options, contact_options, moving_options
-  public :: moving_step
+  public :: certificate, moving_step, progress
+
+  ! The largest length of a name in options. Their lengths are not deferred: gfortran 12 copies such components
+  ! wrongly.
+  integer, parameter, public :: MOTET_NAME_LENGTH = 256
 
   !{constants}
   !{types}
+  ! Texts as C takes them: each ends with c_null_char.
+  type :: texts
+    character(kind=c_char), allocatable :: letters(:)
+    type(c_ptr), allocatable :: places(:)
+  end type
+
+  abstract interface
+    ! Is told the progress: what is being done (empty at first), how much of it is done, and how much there is to
+    ! do, 0 where that is unknown. Returns .true. to stop the watched call. It must not use the objects of that
+    ! call.
+    function progress(stage, done, of) result(stops)
+      import
+      character(*), intent(in) :: stage
+      integer(c_int64_t), intent(in) :: done, of
+      logical :: stops
+    end function
+  end interface
+
+  type :: listener
+    procedure(progress), pointer, nopass :: tell => null()
+  end type
+
+  ! Tells the progress of long calls and stops them; see motet_watch in motet.h. `new` takes the function that is
+  ! told the progress (without one, nobody is told) and the seconds between two calls of it (0.05 by default).
+  type, public :: watch
+    private
+    type(c_ptr) :: handle = c_null_ptr
+    type(listener), pointer :: told => null()
+  contains
+    procedure :: new => watch_new
+    procedure :: stop => watch_stop
+    procedure :: progress => watch_progress
+    procedure :: free => watch_free
+    final :: watch_final
+  end type
+
   type, public :: mesh
     private
     type(c_ptr) :: handle = c_null_ptr
@@ -29,6 +69,11 @@ module motet
     procedure :: write => mesh_write
     procedure :: add_cells => mesh_add_cells
     procedure :: set_points => mesh_set_points
+    procedure :: set_labels => mesh_set_labels
+    procedure :: name_region => mesh_name_region
+    procedure :: name_patch => mesh_name_patch
+    procedure :: set_array => mesh_set_array
+    procedure :: array => mesh_array
     procedure :: n_points => mesh_n_points
     procedure :: n_cells => mesh_n_cells
     procedure :: n_of_kind => mesh_n_of_kind
@@ -68,19 +113,36 @@ module motet
     final :: point_mover_final
   end type
 
-  ! The result of `remesh` and `implant`; `mesh` copies the new mesh.
+  ! The result of `remesh`, `implant` and `fill`; `mesh` copies the new mesh.
   type, public :: outcome
     private
     type(c_ptr) :: handle = c_null_ptr
   contains
     procedure :: remesh => outcome_remesh
     procedure :: implant => outcome_implant
+    procedure :: fill => outcome_fill
     procedure :: complete => outcome_complete
     procedure :: mesh => outcome_mesh
     procedure :: to_old => outcome_to_old
     procedure :: transfer => outcome_transfer
     procedure :: free => outcome_free
     final :: outcome_final
+  end type
+
+  ! A mesh whose tets are divided over many steps, and whose divisions are taken back; `mesh` copies the current
+  ! mesh.
+  type, public :: refinement
+    private
+    type(c_ptr) :: handle = c_null_ptr
+  contains
+    procedure :: new => refinement_new
+    procedure :: mesh => refinement_mesh
+    procedure :: generations => refinement_generations
+    procedure :: divide => refinement_divide
+    procedure :: coarsen => refinement_coarsen
+    procedure :: near => refinement_near
+    procedure :: free => refinement_free
+    final :: refinement_final
   end type
 
   type, public :: contact
@@ -147,6 +209,14 @@ contains
       text = fortran_text(c_error_message(error))
       call c_error_free(error)
     end if
+    call settle(code, text, status, message)
+  end subroutine
+
+  subroutine settle(code, text, status, message)
+    integer(c_int32_t), intent(in) :: code
+    character(*), intent(in) :: text
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
     if (present(message)) message = text
     if (present(status)) then
       status = code
@@ -168,6 +238,114 @@ contains
     end do
   end function
 
+  ! Keeps texts for C; `place` and `n` are the list that C takes.
+  subroutine keep(strings, kept, place, n)
+    character(*), intent(in), optional :: strings(:)
+    type(texts), intent(out), target :: kept
+    type(c_ptr), intent(out) :: place
+    integer(c_int64_t), intent(out) :: n
+    integer :: i, k, at
+    place = c_null_ptr
+    n = 0
+    if (.not. present(strings)) return
+    n = size(strings, kind=c_int64_t)
+    if (n == 0) return
+    allocate(kept%letters(sum(len_trim(strings) + 1)), kept%places(n))
+    at = 1
+    do i = 1, size(strings)
+      kept%places(i) = c_loc(kept%letters(at))
+      do k = 1, len_trim(strings(i))
+        kept%letters(at) = strings(i)(k:k)
+        at = at + 1
+      end do
+      kept%letters(at) = c_null_char
+      at = at + 1
+    end do
+    place = c_loc(kept%places)
+  end subroutine
+
+  !{conversions}
+  subroutine watch_new(self, tell, every, status, message)
+    class(watch), intent(inout) :: self
+    procedure(progress), optional :: tell
+    real(c_double), intent(in), optional :: every
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    real(c_double) :: seconds
+    call self%free()
+    code = c_watch_new(self%handle, error)
+    if (code == MOTET_OK .and. present(tell)) then
+      seconds = 0
+      if (present(every)) seconds = every
+      allocate(self%told)
+      self%told%tell => tell
+      code = c_watch_on_progress(self%handle, c_funloc(tell_progress), c_loc(self%told), seconds, error)
+    end if
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Tells the progress to a function of Fortran, `data`: a listener.
+  function tell_progress(data, stage, done, of) result(stops) bind(c, name='')
+    type(c_ptr), value :: data
+    character(kind=c_char), intent(in) :: stage(*)
+    integer(c_int64_t), value :: done, of
+    integer(c_int32_t) :: stops
+    type(listener), pointer :: told
+    call c_f_pointer(data, told)
+    stops = merge(1_c_int32_t, 0_c_int32_t, told%tell(letters_of(stage), done, of))
+  end function
+
+  ! A text that ends with c_null_char.
+  pure function letters_of(c_text) result(text)
+    character(kind=c_char), intent(in) :: c_text(*)
+    character(:), allocatable :: text
+    integer :: i, n
+    n = 0
+    do while (c_text(n + 1) /= c_null_char)
+      n = n + 1
+    end do
+    allocate(character(len=n) :: text)
+    do i = 1, n
+      text(i:i) = c_text(i)
+    end do
+  end function
+
+  ! Stops the watched call, or the next one if none is running; from any thread.
+  subroutine watch_stop(self)
+    class(watch), intent(in) :: self
+    call c_watch_stop(self%handle)
+  end subroutine
+
+  ! The progress of the watched call, or of the last one; from any thread.
+  subroutine watch_progress(self, stage, done, of, status, message)
+    class(watch), intent(in) :: self
+    character(:), allocatable, intent(out) :: stage
+    integer(c_int64_t), intent(out) :: done, of
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    character(kind=c_char) :: letters(64)
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    letters = c_null_char
+    code = c_watch_progress(self%handle, letters, size(letters, kind=c_int64_t), done, of, error)
+    stage = letters_of(letters)
+    call finish(code, error, status, message)
+  end subroutine
+
+  subroutine watch_free(self)
+    class(watch), intent(inout) :: self
+    call c_watch_free(self%handle)
+    self%handle = c_null_ptr
+    if (associated(self%told)) deallocate(self%told)
+  end subroutine
+
+  impure elemental subroutine watch_final(self)
+    type(watch), intent(inout) :: self
+    call self%free()
+  end subroutine
+
   subroutine mesh_new(self, points, status, message)
     class(mesh), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: points(:, :)
@@ -180,28 +358,46 @@ contains
     call finish(code, error, status, message)
   end subroutine
 
-  subroutine mesh_read(self, path, status, message)
+  ! `notes` says what of the file is not used, a sentence a line; empty where all is.
+  subroutine mesh_read(self, path, status, message, notes)
     class(mesh), intent(inout) :: self
     character(*), intent(in) :: path
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(c_ptr) :: error
+    character(:), allocatable, intent(out), optional :: notes
+    type(c_ptr) :: error, sentences
     integer(c_int32_t) :: code
     call self%free()
-    code = c_mesh_read(trim(path)//c_null_char, self%handle, error)
+    sentences = c_null_ptr
+    code = c_mesh_read_noted(trim(path)//c_null_char, self%handle, sentences, error)
+    if (present(notes)) notes = text_of(sentences)
+    call c_text_free(sentences)
     call finish(code, error, status, message)
   end subroutine
 
-  subroutine mesh_write(self, path, status, message)
+  ! `lost` says what the format cannot hold, a sentence a line; empty where it holds all.
+  subroutine mesh_write(self, path, status, message, lost)
     class(mesh), intent(in) :: self
     character(*), intent(in) :: path
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(c_ptr) :: error
+    character(:), allocatable, intent(out), optional :: lost
+    type(c_ptr) :: error, sentences
     integer(c_int32_t) :: code
-    code = c_mesh_write(self%handle, trim(path)//c_null_char, error)
+    sentences = c_null_ptr
+    code = c_mesh_write_noted(self%handle, trim(path)//c_null_char, sentences, error)
+    if (present(lost)) lost = text_of(sentences)
+    call c_text_free(sentences)
     call finish(code, error, status, message)
   end subroutine
+
+  ! The characters of a text of C; none for NULL.
+  function text_of(c_text) result(text)
+    type(c_ptr), intent(in) :: c_text
+    character(:), allocatable :: text
+    text = ''
+    if (c_associated(c_text)) text = fortran_text(c_text_get(c_text))
+  end function
 
   ! `vertices` has a column for each cell.
   subroutine mesh_add_cells(self, kind, vertices, status, message)
@@ -224,6 +420,76 @@ contains
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     code = c_mesh_set_points(self%handle, points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Sets the label of each cell: regions of volume cells, patches of surface cells; 0 for none.
+  subroutine mesh_set_labels(self, labels, status, message)
+    class(mesh), intent(inout) :: self
+    integer(c_int32_t), contiguous, intent(in) :: labels(:)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_mesh_set_labels(self%handle, labels, size(labels, kind=c_int64_t), error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Names the region that has a label.
+  subroutine mesh_name_region(self, label, name, status, message)
+    class(mesh), intent(inout) :: self
+    integer(c_int32_t), intent(in) :: label
+    character(*), intent(in) :: name
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_mesh_name_region(self%handle, label, trim(name)//c_null_char, error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Names the patch that has a label.
+  subroutine mesh_name_patch(self, label, name, status, message)
+    class(mesh), intent(inout) :: self
+    integer(c_int32_t), intent(in) :: label
+    character(*), intent(in) :: name
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_mesh_name_patch(self%handle, label, trim(name)//c_null_char, error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! `values` has the shape (components, n), a column for each point or cell.
+  subroutine mesh_set_array(self, on, name, values, status, message)
+    class(mesh), intent(inout) :: self
+    integer(c_int32_t), intent(in) :: on
+    character(*), intent(in) :: name
+    real(c_double), contiguous, intent(in) :: values(:, :)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_mesh_set_array(self%handle, on, trim(name)//c_null_char, values, size(values, 2, c_int64_t), &
+        size(values, 1, c_int32_t), error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Allocates values(components, n), a column for each point or cell.
+  subroutine mesh_array(self, on, name, values, status, message)
+    class(mesh), intent(in) :: self
+    integer(c_int32_t), intent(in) :: on
+    character(*), intent(in) :: name
+    real(c_double), allocatable, intent(out) :: values(:, :)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    integer(c_int64_t) :: n
+    n = merge(self%n_points(), self%n_cells(), on == MOTET_ON_POINTS)
+    allocate(values(c_mesh_array_components(self%handle, on, trim(name)//c_null_char), n))
+    code = c_mesh_array(self%handle, on, trim(name)//c_null_char, values, n, error)
     call finish(code, error, status, message)
   end subroutine
 
@@ -331,7 +597,7 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine mesh_final(self)
+  impure elemental subroutine mesh_final(self)
     type(mesh), intent(inout) :: self
     call self%free()
   end subroutine
@@ -342,12 +608,12 @@ contains
     type(mover_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(mover_options) :: used
+    type(c_mover_options) :: used
+    type(texts), allocatable, target :: kept(:)
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
+    call give_mover_options(options, used, kept)
     code = c_mover_new(of%handle, used, self%handle, error)
     call finish(code, error, status, message)
   end subroutine
@@ -411,7 +677,7 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine mover_final(self)
+  impure elemental subroutine mover_final(self)
     type(mover), intent(inout) :: self
     call self%free()
   end subroutine
@@ -452,7 +718,7 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine point_mover_final(self)
+  impure elemental subroutine point_mover_final(self)
     type(point_mover), intent(inout) :: self
     call self%free()
   end subroutine
@@ -463,12 +729,12 @@ contains
     type(remesh_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(remesh_options) :: used
+    type(c_remesh_options) :: used
+    type(texts), allocatable, target :: kept(:)
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
+    call give_remesh_options(options, used, kept)
     code = c_remesh(of%handle, used, self%handle, error)
     call finish(code, error, status, message)
   end subroutine
@@ -481,20 +747,47 @@ contains
     type(implant_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(implant_options) :: used
-    character(kind=c_char), target :: letters(len_trim(name) + 1)
-    type(c_ptr) :: devices(1), names(1), error
-    integer(c_int32_t) :: code, i
+    type(c_implant_options) :: used
+    type(texts), allocatable, target :: kept(:)
+    type(texts), target :: names
+    type(c_ptr) :: devices(1), place, error
+    integer(c_int32_t) :: code
+    integer(c_int64_t) :: n
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
-    do i = 1, len_trim(name)
-      letters(i) = name(i:i)
-    end do
-    letters(len_trim(name) + 1) = c_null_char
+    call give_implant_options(options, used, kept)
     devices(1) = device%handle
-    names(1) = c_loc(letters)
-    code = c_implant(host%handle, devices, names, 1_c_int64_t, used, self%handle, error)
+    call keep([name], names, place, n)
+    code = c_implant(host%handle, devices, names%places, n, used, self%handle, error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Fills closed surfaces with tets; `names` has a name for each. The outcome has no history.
+  subroutine outcome_fill(self, surfaces, names, options, status, message)
+    class(outcome), intent(inout) :: self
+    type(mesh), intent(in) :: surfaces(:)
+    character(*), intent(in) :: names(:)
+    type(fill_options), intent(in), optional :: options
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_fill_options) :: used
+    type(texts), allocatable, target :: kept(:)
+    type(texts), target :: letters
+    type(c_ptr) :: handles(size(surfaces)), place, error
+    integer(c_int32_t) :: code
+    integer(c_int64_t) :: n
+    integer :: i
+    call self%free()
+    if (size(names) /= size(surfaces)) then
+      call settle(MOTET_ERROR_OPTIONS, 'the number of names is not that of surfaces', status, message)
+      return
+    end if
+    call give_fill_options(options, used, kept)
+    do i = 1, size(surfaces)
+      handles(i) = surfaces(i)%handle
+    end do
+    call keep(names, letters, place, n)
+    if (n == 0) allocate(letters%places(0))
+    code = c_fill(handles, letters%places, c_null_ptr, n, used, self%handle, error)
     call finish(code, error, status, message)
   end subroutine
 
@@ -562,8 +855,119 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine outcome_final(self)
+  impure elemental subroutine outcome_final(self)
     type(outcome), intent(inout) :: self
+    call self%free()
+  end subroutine
+
+  subroutine refinement_new(self, of, options, status, message)
+    class(refinement), intent(inout) :: self
+    class(mesh), intent(in) :: of
+    type(refinement_options), intent(in), optional :: options
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_refinement_options) :: used
+    type(texts), allocatable, target :: kept(:)
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    call self%free()
+    call give_refinement_options(options, used, kept)
+    code = c_refinement_new(of%handle, used, self%handle, error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  subroutine refinement_mesh(self, copy, status, message)
+    class(refinement), intent(in) :: self
+    type(mesh), intent(inout) :: copy
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    call copy%free()
+    code = c_mesh_copy(c_refinement_mesh(self%handle), copy%handle, error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! Allocates the number of divisions of each cell of the current mesh.
+  subroutine refinement_generations(self, generations, status, message)
+    class(refinement), intent(in) :: self
+    integer(c_int32_t), allocatable, intent(out) :: generations(:)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    allocate(generations(c_mesh_n_cells(c_refinement_mesh(self%handle))))
+    code = c_refinement_generations(self%handle, generations, size(generations, kind=c_int64_t), error)
+    call finish(code, error, status, message)
+  end subroutine
+
+  ! `marks` has an entry for each cell of the current mesh; `changes` has the history.
+  subroutine refinement_divide(self, marks, changes, status, message)
+    class(refinement), intent(inout) :: self
+    integer(c_int32_t), contiguous, intent(in) :: marks(:)
+    type(outcome), intent(inout), optional :: changes
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error, made
+    integer(c_int32_t) :: code
+    made = c_null_ptr
+    if (present(changes)) call changes%free()
+    code = c_refinement_divide(self%handle, marks, size(marks, kind=c_int64_t), made, error)
+    if (present(changes)) then
+      changes%handle = made
+    else
+      call c_outcome_free(made)
+    end if
+    call finish(code, error, status, message)
+  end subroutine
+
+  subroutine refinement_coarsen(self, marks, changes, status, message)
+    class(refinement), intent(inout) :: self
+    integer(c_int32_t), contiguous, intent(in) :: marks(:)
+    type(outcome), intent(inout), optional :: changes
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error, made
+    integer(c_int32_t) :: code
+    made = c_null_ptr
+    if (present(changes)) call changes%free()
+    code = c_refinement_coarsen(self%handle, marks, size(marks, kind=c_int64_t), made, error)
+    if (present(changes)) then
+      changes%handle = made
+    else
+      call c_outcome_free(made)
+    end if
+    call finish(code, error, status, message)
+  end subroutine
+
+  subroutine refinement_near(self, surface, at, growth, changes, status, message)
+    class(refinement), intent(inout) :: self
+    class(mesh), intent(in) :: surface
+    real(c_double), intent(in) :: at, growth
+    type(outcome), intent(inout), optional :: changes
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error, made
+    integer(c_int32_t) :: code
+    made = c_null_ptr
+    if (present(changes)) call changes%free()
+    code = c_refinement_near(self%handle, surface%handle, at, growth, made, error)
+    if (present(changes)) then
+      changes%handle = made
+    else
+      call c_outcome_free(made)
+    end if
+    call finish(code, error, status, message)
+  end subroutine
+
+  subroutine refinement_free(self)
+    class(refinement), intent(inout) :: self
+    call c_refinement_free(self%handle)
+    self%handle = c_null_ptr
+  end subroutine
+
+  impure elemental subroutine refinement_final(self)
+    type(refinement), intent(inout) :: self
     call self%free()
   end subroutine
 
@@ -576,12 +980,12 @@ contains
     type(contact_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(contact_options) :: used
+    type(c_contact_options) :: used
+    type(texts), allocatable, target :: kept(:)
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
+    call give_contact_options(options, used, kept)
     code = c_contact_new(points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), triangles, counts, c_null_ptr, &
         size(counts, kind=c_int64_t), used, self%handle, error)
     call finish(code, error, status, message)
@@ -617,7 +1021,7 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine contact_final(self)
+  impure elemental subroutine contact_final(self)
     type(contact), intent(inout) :: self
     call self%free()
   end subroutine
@@ -628,12 +1032,12 @@ contains
     type(moving_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(moving_options) :: used
+    type(c_moving_options) :: used
+    type(texts), allocatable, target :: kept(:)
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
+    call give_moving_options(options, used, kept)
     code = c_moving_new(of%handle, used, self%handle, error)
     call finish(code, error, status, message)
   end subroutine
@@ -655,12 +1059,12 @@ contains
     type(moving_options), intent(in), optional :: options
     integer(c_int32_t), intent(out), optional :: status
     character(*), intent(inout), optional :: message
-    type(moving_options) :: used
+    type(c_moving_options) :: used
+    type(texts), allocatable, target :: kept(:)
     type(c_ptr) :: error
     integer(c_int32_t) :: code
     call self%free()
-    if (present(options)) used = options
-    used%size = c_sizeof(used)
+    call give_moving_options(options, used, kept)
     code = c_moving_load(trim(path)//c_null_char, used, self%handle, error)
     call finish(code, error, status, message)
   end subroutine
@@ -825,7 +1229,7 @@ contains
     self%handle = c_null_ptr
   end subroutine
 
-  subroutine moving_final(self)
+  impure elemental subroutine moving_final(self)
     type(moving_mesh), intent(inout) :: self
     call self%free()
   end subroutine

@@ -1,7 +1,7 @@
 /* motet: tetrahedral meshes that stay good while the world in them moves.
  *
- * This header is the reference of the C library, for C99 and later and for C++. The Fortran module is made
- * from it by fortran.py.
+ * This header is the reference of the C library, for C99 and later and for C++. motet.hpp is the same for
+ * C++17, with classes; the Fortran module is made from this header by fortran.py.
  *
  * Arrays.    Counts are int64_t, ids are int32_t and start at 0. Coordinates and vectors are rows of three
  *            doubles. A stride is the number of doubles from one row to the next: 3 for contiguous rows,
@@ -19,6 +19,8 @@
  *            handle by pointer to const may run at the same time on one handle, other calls may not.
  *            `threads` in options: 0 for all cores, 1 for the thread of the caller only. Results do not
  *            depend on it.
+ * Long calls. A watch, passed in options as `watched_by`, tells the progress of a call on the thread of the
+ *            caller, and stops the call on request. motet_watch says more.
  * Versions.  A struct of options begins with its size, which its _init function sets; later versions append
  *            members. A program built with an older header gets the defaults of the members that it does not
  *            know. The numbers of constants never change.
@@ -51,7 +53,8 @@ enum {
     MOTET_ERROR_INTERNAL = 1, /* a bug in motet; inputs are unchanged, free the handles that were to change */
     MOTET_ERROR_OPTIONS = 2,  /* options without a meaning, a NULL, a count below 0 */
     MOTET_ERROR_INPUT = 3,    /* data that cannot be read, or that do not meet what the call requires */
-    MOTET_ERROR_IO = 4        /* the operating system refused access to a file */
+    MOTET_ERROR_IO = 4,       /* the operating system refused access to a file */
+    MOTET_ERROR_STOPPED = 5   /* a watch stopped the call; inputs and handles are as before */
 };
 
 /* Why a call failed. */
@@ -70,6 +73,41 @@ const char *motet_error_place(const motet_error *error);
 /* What can be done about the error; NULL where nothing is known. */
 const char *motet_error_remedy(const motet_error *error);
 void motet_error_free(motet_error *error);
+
+/* ---- Long calls ---------------------------------------------------------------------------------------- */
+
+/* Tells the progress of long calls and stops them: those that have `watched_by` in their options, and those of
+ * the handles made with such options, but for motet_mover_step, motet_refinement_divide and
+ * motet_refinement_coarsen. A watch watches one call at a time; a second one is refused with
+ * MOTET_ERROR_OPTIONS. Results do not depend on it. */
+typedef struct motet_watch motet_watch;
+
+/* Is told the progress: what is being done (empty at first; valid during this call only), how much of it is
+ * done, and how much there is to do as far as is known by now, 0 where that is unknown. A stage may occur more
+ * than once. Returns 0 to go on, another number to stop the watched call. It must not return by longjmp or an
+ * exception, nor use the handles of the watched call. */
+typedef int32_t (*motet_progress)(void *data, const char *stage, int64_t done, int64_t of);
+
+/* Creates a watch that tells nobody. */
+motet_status motet_watch_new(motet_watch **watch, motet_error **error);
+/* Frees a watch that watches no call at the time. Handles made with it remain usable; nobody watches them any
+ * longer. */
+void motet_watch_free(motet_watch *watch);
+/* Sets the function that is told the progress, on the thread that makes the watched call, every `every` seconds
+ * while the call runs (0: 0.05), whether or not there is progress; the work goes on meanwhile, on another
+ * thread. NULL for none: the call works on the thread of the caller. `data` is passed on to the function. Has
+ * an effect on later calls. */
+motet_status motet_watch_on_progress(
+    motet_watch *watch, motet_progress tell, void *data, double every, motet_error **error);
+/* Stops the watched call soon, or the next one if none is running: it returns MOTET_ERROR_STOPPED, and the
+ * request is used up. May be called from any thread, from the function that is told the progress, and by a
+ * handler of signals. */
+void motet_watch_stop(const motet_watch *watch);
+/* Copies the progress of the watched call, or of the last one, from any thread. `stage` receives up to n bytes
+ * with the zero at the end; 64 are enough for all stages. `done` and `of` are as those of motet_progress;
+ * they may be NULL. */
+motet_status motet_watch_progress(
+    const motet_watch *watch, char *stage, int64_t n, int64_t *done, int64_t *of, motet_error **error);
 
 /* ---- Meshes -------------------------------------------------------------------------------------------- */
 
@@ -122,6 +160,17 @@ motet_status motet_mesh_set_points(
 motet_status motet_mesh_read(const char *path, motet_mesh **mesh, motet_error **error);
 /* Writes a file; its suffix states the format. */
 motet_status motet_mesh_write(const motet_mesh *mesh, const char *path, motet_error **error);
+/* A text that belongs to the caller. */
+typedef struct motet_text motet_text;
+/* The characters of a text, terminated by zero. */
+const char *motet_text_get(const motet_text *text);
+void motet_text_free(motet_text *text);
+/* Reads a file and says what of it is not used, a sentence a line; NULL where all is. */
+motet_status motet_mesh_read_noted(
+    const char *path, motet_mesh **mesh, motet_text **notes, motet_error **error);
+/* Writes a file and says what the format cannot hold, a sentence a line; NULL where it holds all. */
+motet_status motet_mesh_write_noted(
+    const motet_mesh *mesh, const char *path, motet_text **lost, motet_error **error);
 
 /* Copies a mesh with its arrays and names. */
 motet_status motet_mesh_copy(const motet_mesh *mesh, motet_mesh **copy, motet_error **error);
@@ -167,13 +216,8 @@ motet_status motet_mesh_array(
  * below 0.2; NaN for cells that are not tets. */
 motet_status motet_mesh_eas(const motet_mesh *mesh, double *eas, int64_t n, motet_error **error);
 
-/* A text that belongs to the caller. */
-typedef struct motet_text motet_text;
 /* Writes counts, bounds, volumes, quality and defects as one JSON object, the one of `motet info --json`. */
 motet_status motet_mesh_summary(const motet_mesh *mesh, motet_text **summary, motet_error **error);
-/* The characters of a text, terminated by zero. */
-const char *motet_text_get(const motet_text *text);
-void motet_text_free(motet_text *text);
 
 /* ---- Motion -------------------------------------------------------------------------------------------- */
 
@@ -218,6 +262,7 @@ typedef struct motet_mover_options {
     int64_t n_also_moved;
     double slide_tolerance;    /* largest distance of a vertex of a sliding patch from the plane of the patch,
                                 * as a fraction of the radius of the patch; default 0.05 */
+    motet_watch *watched_by;   /* tells the progress of calls and stops them; default NULL: nobody */
 } motet_mover_options;
 
 /* Sets all members to their defaults; `size` is sizeof(motet_mover_options). */
@@ -354,6 +399,7 @@ typedef struct motet_remesh_options {
     const char *const *hold; /* names (or labels as text) of regions and patches that are kept to the bit;
                               * default none */
     int64_t n_hold;
+    motet_watch *watched_by; /* tells the progress and stops the call; default NULL: nobody */
 } motet_remesh_options;
 
 /* Sets all members to their defaults; `size` is sizeof(motet_remesh_options). */
@@ -380,23 +426,24 @@ enum {
 /* Options of an implantation, which puts devices into a mesh of tets. */
 typedef struct motet_implant_options {
     size_t size;
-    int32_t inside;       /* the space inside devices; default MOTET_INSIDE_OWN */
-    int32_t conform;      /* 1: devices get a new surface near theirs, for surfaces that touch or cross
-                           * themselves; default 0: every triangle is kept */
-    double tolerance;     /* with conform: largest distance of the new surface from that of the device;
-                           * default 0: a fifth of the radius of a wire as thick as the device */
-    int32_t keep_outside; /* 1: the parts of devices outside of the host are kept; default 0: they are cut
-                           * off */
-    int32_t adapt;        /* what is refined first; default MOTET_ADAPT_WALLS */
-    double stray;         /* how far surfaces may stray where a device meets a wall; default -1: a twentieth
-                           * of the edge length of the device */
-    double edge_length;   /* length of edges beside the devices; default 0: as those of the devices */
-    double growth;        /* growth of lengths per unit of distance from the devices; default 0.5 */
-    double carve;         /* tets nearer to a device than this number of edge lengths are replaced; default
-                           * 1 */
-    double reach;         /* tets farther than this number of edge lengths are kept to the bit; default 3 */
-    double min_eas;       /* tets with a lower EAS are repaired; default 0.2 */
-    int32_t threads;      /* default 0 */
+    int32_t inside;          /* the space inside devices; default MOTET_INSIDE_OWN */
+    int32_t conform;         /* 1: devices get a new surface near theirs, for surfaces that touch or cross
+                              * themselves; default 0: every triangle is kept */
+    double tolerance;        /* with conform: largest distance of the new surface from that of the device;
+                              * default 0: a fifth of the radius of a wire as thick as the device */
+    int32_t keep_outside;    /* 1: the parts of devices outside of the host are kept; default 0: they are cut
+                              * off */
+    int32_t adapt;           /* what is refined first; default MOTET_ADAPT_WALLS */
+    double stray;            /* how far surfaces may stray where a device meets a wall; default -1: a twentieth
+                              * of the edge length of the device */
+    double edge_length;      /* length of edges beside the devices; default 0: as those of the devices */
+    double growth;           /* growth of lengths per unit of distance from the devices; default 0.5 */
+    double carve;            /* tets nearer to a device than this number of edge lengths are replaced; default
+                              * 1 */
+    double reach;            /* tets farther than this number of edge lengths are kept to the bit; default 3 */
+    double min_eas;          /* tets with a lower EAS are repaired; default 0.2 */
+    int32_t threads;         /* default 0 */
+    motet_watch *watched_by; /* tells the progress and stops the call; default NULL: nobody */
 } motet_implant_options;
 
 /* Sets all members to their defaults; `size` is sizeof(motet_implant_options). */
@@ -410,21 +457,22 @@ motet_status motet_implant(
 /* Options of filling, which makes tets inside closed surfaces. */
 typedef struct motet_fill_options {
     size_t size;
-    double edge_length;  /* length of inner edges, the largest where sizes grow; default 0: only necessary
-                          * points */
-    int32_t graded;      /* 1: lengths are those of the surface and grow inwards; default 0 */
-    double growth;       /* growth of lengths per unit of distance; default 0: 0.3 */
-    double min_eas;      /* tets with a lower EAS are repaired; default 0: 0.2 with sizes, no repair
-                          * without */
-    int32_t layers;      /* number of thin layers on walls; default 0 */
-    double first_layer;  /* thickness of the first layer */
-    double layer_growth; /* ratio of the thicknesses of a layer and the one before; default 1.2 */
-    int32_t keep_prisms; /* 1: layers are wedges and pyramids, not divided into tets; default 0 */
-    int32_t repair;      /* 1: T-junctions, coincident faces, duplicates, orientation and small holes are
-                          * repaired first; default 0 */
-    int32_t threads;     /* default 0 */
-    int32_t cut;         /* 1: surfaces that cross are divided along their intersection; default 0 */
-    int32_t voids;       /* 1: spaces inside closed surfaces that are turned inward stay empty; default 0 */
+    double edge_length;      /* length of inner edges, the largest where sizes grow; default 0: only necessary
+                              * points */
+    int32_t graded;          /* 1: lengths are those of the surface and grow inwards; default 0 */
+    double growth;           /* growth of lengths per unit of distance; default 0: 0.3 */
+    double min_eas;          /* tets with a lower EAS are repaired; default 0: 0.2 with sizes, no repair
+                              * without */
+    int32_t layers;          /* number of thin layers on walls; default 0 */
+    double first_layer;      /* thickness of the first layer */
+    double layer_growth;     /* ratio of the thicknesses of a layer and the one before; default 1.2 */
+    int32_t keep_prisms;     /* 1: layers are wedges and pyramids, not divided into tets; default 0 */
+    int32_t repair;          /* 1: T-junctions, coincident faces, duplicates, orientation and small holes are
+                              * repaired first; default 0 */
+    int32_t threads;         /* default 0 */
+    int32_t cut;             /* 1: surfaces that cross are divided along their intersection; default 0 */
+    int32_t voids;           /* 1: spaces inside closed surfaces that are turned inward stay empty; default 0 */
+    motet_watch *watched_by; /* tells the progress and stops the call; default NULL: nobody */
 } motet_fill_options;
 
 /* Sets all members to their defaults; `size` is sizeof(motet_fill_options). */
@@ -439,9 +487,19 @@ motet_status motet_fill(
 /* A mesh whose tets are divided over many steps, and whose divisions are taken back. */
 typedef struct motet_refinement motet_refinement;
 
-/* Sets up the refinement of a mesh; the mesh may be freed afterwards. */
+/* Options of a refinement. */
+typedef struct motet_refinement_options {
+    size_t size;
+    int32_t threads;         /* default 0 */
+    motet_watch *watched_by; /* tells the progress of calls and stops them; default NULL: nobody */
+} motet_refinement_options;
+
+/* Sets all members to their defaults; `size` is sizeof(motet_refinement_options). */
+void motet_refinement_options_init(motet_refinement_options *options, size_t size);
+/* Sets up the refinement of a mesh; the mesh may be freed afterwards. NULL for options: the defaults. */
 motet_status motet_refinement_new(
-    const motet_mesh *mesh, int32_t threads, motet_refinement **refinement, motet_error **error);
+    const motet_mesh *mesh, const motet_refinement_options *options, motet_refinement **refinement,
+    motet_error **error);
 void motet_refinement_free(motet_refinement *refinement);
 /* The current mesh; belongs to the refinement and is valid until the next change. */
 const motet_mesh *motet_refinement_mesh(const motet_refinement *refinement);
@@ -459,7 +517,7 @@ motet_status motet_refinement_coarsen(
     motet_refinement *refinement, const int32_t *marks, int64_t n, motet_outcome **outcome,
     motet_error **error);
 /* Divides tets until no edge is longer than `at` at a surface, and `growth` more per unit of distance from
- * it. The outcome is as that of motet_refinement_divide. */
+ * it. The outcome is as that of motet_refinement_divide. On an error nothing is changed. */
 motet_status motet_refinement_near(
     motet_refinement *refinement, const motet_mesh *surface, double at, double growth,
     motet_outcome **outcome, motet_error **error);
@@ -585,6 +643,7 @@ typedef struct motet_moving_options {
     int32_t returns;               /* 1: the walls return to their first places again and again: tets are
                                     * improved to be good there as well, and a mesh that does not settle is
                                     * replaced by the first mesh when the walls are back; default 0 */
+    motet_watch *watched_by;       /* tells the progress of calls and stops them; default NULL: nobody */
 } motet_moving_options;
 
 /* Sets all members to their defaults; `size` is sizeof(motet_moving_options). */

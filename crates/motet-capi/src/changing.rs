@@ -18,6 +18,7 @@ use crate::memory::{
     threads, values, values_mut, versioned,
 };
 use crate::mesh::{MotetMesh, field, json};
+use crate::watch::{MotetWatch, Watched};
 
 /// A new mesh, its history, and the report.
 pub(crate) struct MotetOutcome {
@@ -136,6 +137,7 @@ versioned! {
         n_sizes: i64 = 0,
         hold: *const *const c_char = std::ptr::null(),
         n_hold: i64 = 0,
+        watched_by: *mut MotetWatch = std::ptr::null_mut(),
     }
 }
 
@@ -174,7 +176,9 @@ pub(crate) unsafe extern "C" fn motet_remesh(
         let mesh = &handle(mesh, "mesh")?.0;
         let given = read_versioned(options)?;
         let options = given.words()?.options(mesh)?;
-        let done = remesh_mesh(mesh, &options, &Rules::default(), &threads(given.threads)?)?;
+        let done = Watched::by(given.watched_by).call(&mut threads(given.threads)?, |threads| {
+            remesh_mesh(mesh, &options, &Rules::default(), threads)
+        })?;
         let Changed { mesh, history, report, .. } = done;
         set_handle(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
         Ok(())
@@ -196,6 +200,7 @@ versioned! {
         reach: f64 = 3.0,
         min_eas: f64 = 0.2,
         threads: i32 = 0,
+        watched_by: *mut MotetWatch = std::ptr::null_mut(),
     }
 }
 
@@ -240,7 +245,9 @@ pub(crate) unsafe extern "C" fn motet_implant(
             Ok(words.device(handle(*mesh, "device")?.0.clone(), name))
         };
         let devices: Vec<Device> = meshes.iter().zip(names).map(device).collect::<Result<_>>()?;
-        let made = implant(host, &devices, &options, &Rules::default(), &threads(given.threads)?)?;
+        let made = Watched::by(given.watched_by).call(&mut threads(given.threads)?, |threads| {
+            implant(host, &devices, &options, &Rules::default(), threads)
+        })?;
         let Changed { mesh, history, report, .. } = made;
         set_handle(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
         Ok(())
@@ -262,6 +269,7 @@ versioned! {
         threads: i32 = 0,
         cut: i32 = 0,
         voids: i32 = 0,
+        watched_by: *mut MotetWatch = std::ptr::null_mut(),
     }
 }
 
@@ -303,7 +311,6 @@ pub(crate) unsafe extern "C" fn motet_fill(
     guarded(error, || {
         let place = out_handle(outcome, "outcome")?;
         let given = read_versioned(options)?;
-        let threads = threads(given.threads)?;
         let n = count(n_surfaces, "surfaces")?;
         let (meshes, names) = (values(surfaces, n, "surfaces")?, values(names, n, "names")?);
         let membranes =
@@ -313,15 +320,19 @@ pub(crate) unsafe extern "C" fn motet_fill(
             Ok((&handle(meshes[i], "surface")?.0, role, text(names[i], "name")?))
         };
         let all: Vec<(&Mesh, Role, &str)> = (0..n).map(one).collect::<Result<_>>()?;
-        let mut surfaces = Surfaces::new(&all)?;
         let words = given.words()?;
-        if let Some(repairs) = words.repairs() {
-            surfaces.repair(&repairs, &threads)?;
-        }
-        let preflight = surfaces.preflight(&threads);
-        let options = words.options(&surfaces, None)?;
-        let filled = fill(&surfaces, &preflight, &options, &threads)?;
-        let not_reached = filled.not_reached(&options);
+        let (filled, not_reached) =
+            Watched::by(given.watched_by).call(&mut threads(given.threads)?, |threads| {
+                let mut surfaces = Surfaces::new(&all)?;
+                if let Some(repairs) = words.repairs() {
+                    surfaces.repair(&repairs, threads)?;
+                }
+                let preflight = surfaces.preflight(threads);
+                let options = words.options(&surfaces, None)?;
+                let filled = fill(&surfaces, &preflight, &options, threads)?;
+                let not_reached = filled.not_reached(&options);
+                Ok((filled, not_reached))
+            })?;
         let report = json!({ "filled": filled.report, "improved": filled.improved, "layers": filled.layers });
         set_handle(place, MotetOutcome::new(filled.mesh, None, &report, not_reached)?);
         Ok(())

@@ -30,6 +30,7 @@ pub(crate) const INTERNAL: i32 = 1;
 pub(crate) const OPTIONS: i32 = 2;
 pub(crate) const INPUT: i32 = 3;
 pub(crate) const IO: i32 = 4;
+pub(crate) const STOPPED: i32 = 5;
 
 /// What the rows of an array belong to.
 #[derive(Clone, Copy)]

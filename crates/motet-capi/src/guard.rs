@@ -7,7 +7,7 @@ use std::ptr;
 
 use motet::{Error, ErrorKind, Result};
 
-use crate::constants::{INPUT, INTERNAL, IO, OK, OPTIONS};
+use crate::constants::{INPUT, INTERNAL, IO, OK, OPTIONS, STOPPED};
 
 /// An error, its parts as C strings.
 pub(crate) struct MotetError {
@@ -25,6 +25,7 @@ impl MotetError {
             status: match error.kind() {
                 ErrorKind::Options => OPTIONS,
                 ErrorKind::Io | ErrorKind::Output => IO,
+                ErrorKind::Stopped => STOPPED,
                 _ => INPUT,
             },
             message: text(error.to_string()),

@@ -1,5 +1,5 @@
 //! Tests that `motet.h` declares what this library has: constants and structs, by their names, numbers, types
-//! and defaults.
+//! and defaults; and that `motet.hpp` passes all options on.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,10 @@ use crate::contact::MotetContactOptions;
 use crate::memory::Versioned;
 use crate::motion::{MotetCertificate, MotetMoverOptions};
 use crate::moving::{MotetMovingOptions, MotetStep};
+use crate::refinement::MotetRefinementOptions;
 
 const HEADER: &str = include_str!("../include/motet.h");
+const HEADER_CPP: &str = include_str!("../include/motet.hpp");
 
 /// The parts of the header between an opening text and a closing one.
 fn between<'a>(open: &'a str, close: &'a str) -> impl Iterator<Item = &'a str> {
@@ -82,6 +84,7 @@ fn each_constant_of_the_header_has_the_number_of_its_table() {
         ("MOTET_ERROR_OPTIONS", constants::OPTIONS),
         ("MOTET_ERROR_INPUT", constants::INPUT),
         ("MOTET_ERROR_IO", constants::IO),
+        ("MOTET_ERROR_STOPPED", constants::STOPPED),
     ];
     let tables = [
         statuses.to_vec(),
@@ -128,6 +131,7 @@ fn type_in_c(kind: &str) -> (&str, &str) {
         "*const *const c_char" => ("const char *const *", ""),
         "*const i32" => ("const int32_t *", ""),
         "*const f64" => ("const double *", ""),
+        "*mut MotetWatch" => ("motet_watch *", ""),
         other => panic!("a member has the type {other}"),
     }
 }
@@ -160,6 +164,17 @@ fn check_struct<T: Versioned>() {
             assert_eq!(stated_default(&line.comment, member.kind), member.default, "{name}: {}", member.name);
         }
     }
+    if name.ends_with("_options") {
+        let given = HEADER_CPP.split_once(&format!("inline {name} given(")).expect("motet.hpp has them").1;
+        let given = given.split_once("\n}").expect("a function ends").0;
+        let is_of_name = |c: char| c.is_alphanumeric() || c == '_';
+        let set: Vec<&str> = given
+            .split(" c.")
+            .skip(1)
+            .map(|rest| rest.split(|c| !is_of_name(c)).next().unwrap_or(""))
+            .collect();
+        assert_eq!(set, members.iter().map(|member| member.name).collect::<Vec<_>>(), "{name} in motet.hpp");
+    }
 }
 
 #[test]
@@ -169,8 +184,9 @@ fn each_struct_of_the_header_has_the_members_and_the_defaults_of_the_library() {
     check_struct::<MotetRemeshOptions>();
     check_struct::<MotetImplantOptions>();
     check_struct::<MotetFillOptions>();
+    check_struct::<MotetRefinementOptions>();
     check_struct::<MotetContactOptions>();
     check_struct::<MotetMovingOptions>();
     check_struct::<MotetStep>();
-    assert_eq!(HEADER.matches("    size_t size;").count(), 8);
+    assert_eq!(HEADER.matches("    size_t size;").count(), 9);
 }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `constants` | the constants of the header |
 //! | `guard` | statuses and errors; a panic stops here |
+//! | `watch` | long calls: progress and a way to stop |
 //! | `memory` | data passed by pointer: arrays with strides, texts, handles, structs with a size |
 //! | `mesh`, `motion`, `changing`, `refinement`, `contact`, `moving` | the calls, in the order of the header |
 
@@ -22,6 +23,7 @@ mod mesh;
 mod motion;
 mod moving;
 mod refinement;
+mod watch;
 
 /// The version of this library as one number, `10000 major + 100 minor + patch`.
 #[unsafe(no_mangle)]

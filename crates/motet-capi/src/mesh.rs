@@ -208,6 +208,29 @@ pub(crate) unsafe extern "C" fn motet_mesh_read(
     })
 }
 
+/// Stores sentences as a text, one a line, where there are any.
+fn set_sentences(place: &mut *mut MotetText, sentences: &[String]) {
+    if !sentences.is_empty() {
+        set_handle(place, MotetText(c_text(sentences.join("\n"))));
+    }
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mesh_read_noted(
+    path: *const c_char,
+    mesh: *mut *mut MotetMesh,
+    notes: *mut *mut MotetText,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let (place, notes) = (out_handle(mesh, "mesh")?, out_handle(notes, "notes")?);
+        let (mesh, sentences) = io::read_noted(text(path, "path")?)?;
+        set_sentences(notes, &sentences);
+        set_handle(place, MotetMesh(mesh));
+        Ok(())
+    })
+}
+
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_mesh_write(
     mesh: *const MotetMesh,
@@ -216,6 +239,21 @@ pub(crate) unsafe extern "C" fn motet_mesh_write(
 ) -> i32 {
     guarded(error, || {
         io::write(text(path, "path")?, &handle(mesh, "mesh")?.0, &WriteOptions::default()).map(|_| ())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mesh_write_noted(
+    mesh: *const MotetMesh,
+    path: *const c_char,
+    lost: *mut *mut MotetText,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let lost = out_handle(lost, "lost")?;
+        let options = WriteOptions::default();
+        set_sentences(lost, &io::write(text(path, "path")?, &handle(mesh, "mesh")?.0, &options)?);
+        Ok(())
     })
 }
 

@@ -16,11 +16,13 @@ use crate::memory::{
     read_versioned, rows, set_handle, texts, threads, values, values_mut, versioned, vertex,
 };
 use crate::mesh::MotetMesh;
+use crate::watch::{MotetWatch, Watched};
 
-/// A mover and the threads that it uses.
+/// A mover, the threads that it uses, and who watches its calls.
 pub(crate) struct MotetMover {
     mover: Mover,
     threads: Threads,
+    watched: Watched,
 }
 
 versioned! {
@@ -44,6 +46,7 @@ versioned! {
         also_moved: *const i32 = ptr::null(),
         n_also_moved: i64 = 0,
         slide_tolerance: f64 = SlideTolerance::DEFAULT.0,
+        watched_by: *mut MotetWatch = ptr::null_mut(),
     }
 }
 
@@ -102,9 +105,10 @@ pub(crate) unsafe extern "C" fn motet_mover_new(
         let mesh = &handle(mesh, "mesh")?.0;
         mesh.validate()?;
         let given = read_versioned(options)?;
-        let threads = threads(given.threads)?;
-        let mover = Mover::new(mesh, &given.options(mesh)?, &threads)?;
-        set_handle(place, MotetMover { mover, threads });
+        let (mut threads, watched) = (threads(given.threads)?, Watched::by(given.watched_by));
+        let options = given.options(mesh)?;
+        let mover = watched.call(&mut threads, |threads| Mover::new(mesh, &options, threads))?;
+        set_handle(place, MotetMover { mover, threads, watched });
         Ok(())
     })
 }
@@ -174,7 +178,7 @@ pub(crate) unsafe extern "C" fn motet_mover_step(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let MotetMover { mover, threads } = handle(mover, "mover")?;
+        let MotetMover { mover, threads, .. } = handle(mover, "mover")?;
         expect(n_boundary, mover.boundary().len(), "displacements")?;
         expect(n_points, mover.reference().len(), "points")?;
         let displacement = rows(displacement, n_boundary, displacement_stride, "displacement")?;
@@ -241,13 +245,13 @@ pub(crate) unsafe extern "C" fn motet_mover_advance(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let MotetMover { mover, threads } = handle_mut(mover, "mover")?;
+        let MotetMover { mover, threads, watched } = handle_mut(mover, "mover")?;
         expect(n_boundary, mover.boundary().len(), "displacements")?;
         expect(n_points, mover.reference().len(), "points")?;
         let displacement = rows(displacement, n_boundary, displacement_stride, "displacement")?;
         check_no_overlap(&displacement, points, n_points, points_stride)?;
         let reached = fill_rows(points, n_points, points_stride, "points", |out| {
-            mover.advance(&displacement, out, threads)
+            watched.call(threads, |threads| mover.advance(&displacement, out, threads))
         })?;
         if !certificate.is_null() {
             let size = read_versioned(certificate.cast_const())?.size;

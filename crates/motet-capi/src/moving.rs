@@ -20,11 +20,24 @@ use crate::memory::{
 };
 use crate::mesh::{MotetMesh, field};
 use crate::motion::extent;
+use crate::watch::{MotetWatch, Watched};
 
-/// A moving mesh and the threads that it uses.
+/// A moving mesh, the threads that it uses, and who watches its calls.
 pub(crate) struct MotetMoving {
     moving: MovingMesh,
     threads: Threads,
+    watched: Watched,
+}
+
+impl MotetMoving {
+    /// Makes a call that is watched.
+    fn call<T: Send>(
+        &mut self,
+        work: impl FnOnce(&mut MovingMesh, &Threads) -> Result<T> + Send,
+    ) -> Result<T> {
+        let Self { moving, threads, watched } = self;
+        watched.call(threads, |threads| work(moving, threads))
+    }
 }
 
 versioned! {
@@ -66,6 +79,7 @@ versioned! {
         valid_at_start: i32 = 0,
         strain_in_band: i32 = 0,
         returns: i32 = 0,
+        watched_by: *mut MotetWatch = ptr::null_mut(),
     }
 }
 
@@ -131,9 +145,10 @@ pub(crate) unsafe extern "C" fn motet_moving_new(
         let mesh = &handle(mesh, "mesh")?.0;
         mesh.validate()?;
         let given = read_versioned(options)?;
-        let threads = threads(given.threads)?;
-        let moving = MovingMesh::new(mesh, given.options(mesh)?, &threads)?;
-        set_handle(place, MotetMoving { moving, threads });
+        let (mut threads, watched) = (threads(given.threads)?, Watched::by(given.watched_by));
+        let options = given.options(mesh)?;
+        let moving = watched.call(&mut threads, |threads| MovingMesh::new(mesh, options, threads))?;
+        set_handle(place, MotetMoving { moving, threads, watched });
         Ok(())
     })
 }
@@ -149,9 +164,10 @@ pub(crate) unsafe extern "C" fn motet_moving_load(
         let place = out_handle(moving, "moving")?;
         let path = text(path, "path")?;
         let given = read_versioned(options)?;
-        let threads = threads(given.threads)?;
-        let moving = MovingMesh::load(path, given.options(&io::read(path)?)?, &threads)?;
-        set_handle(place, MotetMoving { moving, threads });
+        let (mut threads, watched) = (threads(given.threads)?, Watched::by(given.watched_by));
+        let options = given.options(&io::read(path)?)?;
+        let moving = watched.call(&mut threads, |threads| MovingMesh::load(path, options, threads))?;
+        set_handle(place, MotetMoving { moving, threads, watched });
         Ok(())
     })
 }
@@ -306,11 +322,11 @@ pub(crate) unsafe extern "C" fn motet_moving_advance(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let MotetMoving { moving, threads } = handle_mut(moving, "moving")?;
-        expect(n_driven, moving.driven_places().len(), "displacements")?;
+        let moving = handle_mut(moving, "moving")?;
+        expect(n_driven, moving.moving.driven_places().len(), "displacements")?;
         let size = read_versioned(step.cast_const())?.size;
-        let reached =
-            moving.advance(time, &rows(displacement, n_driven, stride, "displacement")?, threads)?;
+        let displacement = rows(displacement, n_driven, stride, "displacement")?;
+        let reached = moving.call(|moving, threads| moving.advance(time, &displacement, threads))?;
         copy_out(&MotetStep::of(&reached), step, size);
         Ok(())
     })
@@ -331,19 +347,19 @@ pub(crate) unsafe extern "C" fn motet_moving_repair(
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
-        let MotetMoving { moving, threads } = handle_mut(moving, "moving")?;
-        store_count(moving.repair(threads)?.into_iter().count(), changes);
+        let repaired = handle_mut(moving, "moving")?.call(MovingMesh::repair)?;
+        store_count(repaired.into_iter().count(), changes);
         Ok(())
     })
 }
 
 fn refined(
     moving: *mut MotetMoving,
-    wanted: impl FnOnce(&Threads) -> Result<Wanted>,
+    wanted: impl FnOnce(&Threads) -> Result<Wanted> + Send,
     changes: *mut i64,
 ) -> Result<()> {
-    let MotetMoving { moving, threads } = handle_mut(moving, "moving")?;
-    store_count(moving.refine(&wanted(threads)?, threads)?.len(), changes);
+    let moving = handle_mut(moving, "moving")?;
+    store_count(moving.call(|moving, threads| moving.refine(&wanted(threads)?, threads))?.len(), changes);
     Ok(())
 }
 

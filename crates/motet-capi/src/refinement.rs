@@ -1,5 +1,7 @@
 //! Refinement: tets divided, step after step, and divisions taken back.
 
+use std::ptr;
+
 use motet::base::{TetId, Threads};
 use motet::mesh::history::{Changed, History, Rules};
 use motet::refine::{Criterion, MeshRefinement, Options, RefineWords, Target, Wanted};
@@ -8,27 +10,43 @@ use serde_json::json;
 
 use crate::changing::MotetOutcome;
 use crate::guard::{MotetError, guarded};
-use crate::memory::{expect, free, handle, handle_mut, out_handle, set_handle, threads, values, values_mut};
+use crate::memory::{
+    expect, free, handle, handle_mut, out_handle, read_versioned, set_handle, threads, values, values_mut,
+    versioned,
+};
 use crate::mesh::MotetMesh;
+use crate::watch::{MotetWatch, Watched};
 
-/// A refinement and the threads that it uses.
+/// A refinement, the threads that it uses, and who watches its calls.
 pub(crate) struct MotetRefinement {
     refinement: MeshRefinement,
     threads: Threads,
+    watched: Watched,
+}
+
+versioned! {
+    /// See the header.
+    MotetRefinementOptions, motet_refinement_options_init {
+        threads: i32 = 0,
+        watched_by: *mut MotetWatch = ptr::null_mut(),
+    }
 }
 
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_refinement_new(
     mesh: *const MotetMesh,
-    n_threads: i32,
+    options: *const MotetRefinementOptions,
     refinement: *mut *mut MotetRefinement,
     error: *mut *mut MotetError,
 ) -> i32 {
     guarded(error, || {
         let place = out_handle(refinement, "refinement")?;
-        let threads = threads(n_threads)?;
-        let refinement = MeshRefinement::new(&handle(mesh, "mesh")?.0, Options::default(), &threads)?;
-        set_handle(place, MotetRefinement { refinement, threads });
+        let mesh = &handle(mesh, "mesh")?.0;
+        let given = read_versioned(options)?;
+        let (mut threads, watched) = (threads(given.threads)?, Watched::by(given.watched_by));
+        let new = |threads: &Threads| MeshRefinement::new(mesh, Options::default(), threads);
+        let refinement = watched.call(&mut threads, new)?;
+        set_handle(place, MotetRefinement { refinement, threads, watched });
         Ok(())
     })
 }
@@ -42,8 +60,7 @@ pub(crate) unsafe extern "C" fn motet_refinement_free(refinement: *mut MotetRefi
 pub(crate) unsafe extern "C" fn motet_refinement_mesh(
     refinement: *const MotetRefinement,
 ) -> *const MotetMesh {
-    handle(refinement, "refinement")
-        .map_or(std::ptr::null(), |handle| MotetMesh::of(handle.refinement.mesh()))
+    handle(refinement, "refinement").map_or(ptr::null(), |handle| MotetMesh::of(handle.refinement.mesh()))
 }
 
 #[unsafe(no_mangle)]
@@ -99,7 +116,7 @@ fn change(
     if !outcome.is_null() {
         out_handle(outcome, "outcome")?;
     }
-    let MotetRefinement { refinement, threads } = handle_mut(refinement, "refinement")?;
+    let MotetRefinement { refinement, threads, .. } = handle_mut(refinement, "refinement")?;
     expect(n, refinement.mesh().cells.len(), "marks")?;
     let marks = values(marks, refinement.mesh().cells.len(), "marks")?;
     let cells = refinement.part().tet_to_cell;
@@ -149,12 +166,18 @@ pub(crate) unsafe extern "C" fn motet_refinement_near(
         if !outcome.is_null() {
             out_handle(outcome, "outcome")?;
         }
-        let MotetRefinement { refinement, threads } = handle_mut(refinement, "refinement")?;
-        let target = Target::of_mesh(&handle(surface, "surface")?.0, threads)?.into();
-        let criterion = Criterion::NearSize { target, size: at, growth };
-        let wanted = RefineWords::default().wanted(vec![criterion])?;
-        let wanted = Wanted { keeps_history: true, ..wanted };
-        let reached = refinement.reach(&wanted, &Rules::default(), threads, |_| ())?;
+        let MotetRefinement { refinement, threads, watched } = handle_mut(refinement, "refinement")?;
+        let surface = &handle(surface, "surface")?.0;
+        // An error leaves the generations before it, whose history would be lost: a copy is refined.
+        let mut refined = refinement.clone();
+        let reached = watched.call(threads, |threads| {
+            let target = Target::of_mesh(surface, threads)?.into();
+            let criterion = Criterion::NearSize { target, size: at, growth };
+            let wanted = RefineWords::default().wanted(vec![criterion])?;
+            let wanted = Wanted { keeps_history: true, ..wanted };
+            refined.reach(&wanted, &Rules::default(), threads, |_| ())
+        })?;
+        *refinement = refined;
         let not_reached = reached.not_reached();
         let history = reached.history.ok_or_else(|| Error::input("no history was kept"))?;
         store_outcome(refinement, history, not_reached, outcome)

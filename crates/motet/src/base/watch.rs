@@ -30,6 +30,8 @@ pub struct Progress {
 /// let mesh = shapes::sphere_in_box(6, 4);
 /// let ended = motet::remesh::remesh_mesh(&mesh, &Default::default(), &Rules::default(), &threads);
 /// assert_eq!(ended.unwrap_err().kind(), motet::ErrorKind::Stopped);
+/// watch.resume();
+/// assert!(motet::remesh::remesh_mesh(&mesh, &Default::default(), &Rules::default(), &threads).is_ok());
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Watch(Option<Arc<Channel>>);
@@ -51,6 +53,13 @@ impl Watch {
     pub fn stop(&self) {
         if let Some(channel) = &self.0 {
             channel.is_stopped.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Withdraws a request to stop, so that later calls with this watch run.
+    pub fn resume(&self) {
+        if let Some(channel) = &self.0 {
+            channel.is_stopped.store(false, Ordering::Relaxed);
         }
     }
 
