@@ -32,6 +32,7 @@ mod obj;
 mod off;
 mod opencarp;
 mod output;
+mod owned_faces;
 mod ply;
 mod polygonal;
 mod polyhedra;
