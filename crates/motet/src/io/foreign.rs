@@ -56,8 +56,8 @@ const FOREIGN: &[ForeignFormat] = &[
         remedy: PARAVIEW,
     },
     ForeignFormat {
-        name: "an Ansys Mechanical archive",
-        extensions: &[".cdb", ".rst"],
+        name: "a result of Ansys Mechanical",
+        extensions: &[".rst", ".rth"],
         remedy: "convert it with ansys-mapdl-reader (pip install ansys-mapdl-reader), which saves .vtk",
     },
     ForeignFormat {

@@ -2,6 +2,7 @@
 //! `registry` lists them all.
 
 mod abaqus;
+mod cdb;
 mod cell_labels;
 mod cells_of_faces;
 mod cgns;
