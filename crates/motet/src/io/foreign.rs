@@ -13,15 +13,12 @@ struct ForeignFormat {
 
 const MESHIO: &str = "convert it with meshio (pip install meshio): meshio convert FILE mesh.vtu";
 const MESHIO_HDF: &str = "convert it with meshio (pip install meshio[all]): meshio convert FILE mesh.vtu";
-const FLUENT: &str =
-    "convert it with meshio (pip install meshio): meshio convert --input-format ansys FILE mesh.vtu";
 const PARAVIEW: &str = "open it in ParaView and save the data as .vtu";
 const CAD: &str = "mesh it first: gmsh -2 -format stl FILE -o surface.stl (a surface), or gmsh -3 -format msh41 FILE -o mesh.msh";
 const GEOMETRY: &str = "mesh the geometry first: gmsh -3 -format msh41 FILE -o mesh.msh";
 const TRIMESH: &str = "convert it with trimesh (pip install trimesh) or Blender, to .stl, .obj or .ply";
 
 const FOREIGN: &[ForeignFormat] = &[
-    ForeignFormat { name: "an Ansys Fluent mesh", extensions: &[".cas", ".cas.gz"], remedy: FLUENT },
     ForeignFormat {
         name: "an Ansys Fluent case (HDF5)",
         extensions: &[".cas.h5", ".msh.h5", ".dat.h5"],
@@ -131,12 +128,6 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     if start.starts_with(b"ISO-10303-21") {
         return named("a CAD model (STEP)", CAD);
     }
-    let is_section = |text: &[u8]| {
-        text.first() == Some(&b'(') && text[1..].trim_ascii_start().first().is_some_and(u8::is_ascii_digit)
-    };
-    if is(".msh") && is_section(start) {
-        return named("an Ansys Fluent mesh", FLUENT);
-    }
     let head = &start[..start.len().min(400)];
     let has = |word: &[u8]| head.windows(word.len()).any(|w| w.eq_ignore_ascii_case(word));
     if has(b"<xdmf") && !is(".xdmf") {
@@ -174,9 +165,6 @@ mod tests {
         let refused = |bytes: &[u8], extension: &str| {
             refuse(Path::new("f.msh"), bytes, &[extension]).err().map(|e| e.to_string()).unwrap_or_default()
         };
-        for head in ["(0 \"by another\")\n(2 3)\n", "\n (1 \"x\")", "( 2 3)"] {
-            assert!(refused(head.as_bytes(), ".msh").contains("Ansys Fluent"), "{head}");
-        }
         assert!(refused(b"CDF\x01", ".vtu").contains("netCDF"));
         assert!(
             refused(b"\x1f\x8b\x08", ".vtu").contains("gunzip")

@@ -9,6 +9,7 @@ mod cgns;
 mod dolfin;
 mod exodus;
 mod facet_key;
+mod fluent;
 mod foreign;
 mod format;
 mod ghosts;
