@@ -25,7 +25,6 @@ const FOREIGN: &[ForeignFormat] = &[
         remedy: PARAVIEW,
     },
     ForeignFormat { name: "an XDMF file of version 2", extensions: &[".xdmf2"], remedy: MESHIO_HDF },
-    ForeignFormat { name: "a MED file (Salome, Code_Aster)", extensions: &[".med"], remedy: MESHIO_HDF },
     ForeignFormat { name: "a MOAB file", extensions: &[".h5m"], remedy: MESHIO_HDF },
     ForeignFormat {
         name: "an openCARP mesh in binary form",
@@ -122,8 +121,8 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     if bytes.starts_with(b"\x1f\x8b") && !extensions.iter().any(|e| e.ends_with(".gz")) {
         return named("a gzip file", "decompress it first: gunzip -c FILE");
     }
-    if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && ![".cgns", ".vtkhdf", ".exo"].into_iter().any(is) {
-        return misnamed("an HDF5 file", ".vtkhdf, .cgns or .exo");
+    if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && ![".cgns", ".vtkhdf", ".exo", ".med"].into_iter().any(is) {
+        return misnamed("an HDF5 file", ".vtkhdf, .cgns, .exo or .med");
     }
     if start.starts_with(b"ISO-10303-21") {
         return named("a CAD model (STEP)", CAD);
@@ -149,8 +148,8 @@ mod tests {
     fn foreign_files_are_reported_with_a_converter() {
         let of = |name: &str| by_extension(Path::new(name)).map(|e| e.to_string()).unwrap_or_default();
         assert!(
-            of("a/Wing.MED").contains("MED file")
-                && of("a/Wing.MED").contains("meshio convert Wing.MED mesh.vtu")
+            of("a/Wing.H5M").contains("MOAB file")
+                && of("a/Wing.H5M").contains("meshio convert Wing.H5M mesh.vtu")
         );
         assert!(
             of("x.xdmf2").contains("XDMF")

@@ -22,6 +22,7 @@ mod labels;
 mod latin;
 mod legacy;
 mod lock;
+mod med;
 mod medit;
 mod memory_budget;
 mod msh;

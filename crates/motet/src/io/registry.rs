@@ -7,7 +7,7 @@ use crate::io::format::{Format, Notes, Write, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{can_have_folder, replace_all, replace_folder, replace_with};
 use crate::io::{
-    abaqus, cdb, cgns, dolfin, exodus, fluent, foreign, legacy, medit, msh, nastran, netgen, obj, off,
+    abaqus, cdb, cgns, dolfin, exodus, fluent, foreign, legacy, med, medit, msh, nastran, netgen, obj, off,
     opencarp, ply, polymesh, simvascular, stl, su2, tetgen, unv, vtkhdf, vtkxml, xdmf,
 };
 use crate::mesh::Mesh;
@@ -43,6 +43,7 @@ const FORMATS: &[Format] = &[
     nastran::FORMAT,
     cdb::FORMAT,
     fluent::FORMAT,
+    med::FORMAT,
     exodus::FORMAT,
     xdmf::FORMAT,
     dolfin::FORMAT,
