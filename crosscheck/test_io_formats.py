@@ -1,5 +1,5 @@
-"""MSH, STL, OBJ, Medit, Abaqus, TetGen, SU2, Netgen, UNV, Nastran, Exodus II, XDMF, DOLFIN XML and SimVascular folders
-compared with Gmsh, meshio, Netgen, pyNastran and VTK."""
+"""MSH, STL, OBJ, Medit, Abaqus, TetGen, SU2, Netgen, UNV, Nastran, Ansys archives, Fluent, MED, Exodus II, XDMF, DOLFIN XML and
+SimVascular folders compared with Gmsh, mapdl-archive, meshio, Netgen, pyNastran and VTK."""
 import gzip
 import itertools
 import os
@@ -827,6 +827,301 @@ def test_gmsh_reads_its_own_nastran_mesh_from_a_copy(motet, tmp_path, gmsh_sessi
     np.testing.assert_allclose(points, expected_points, rtol=0, atol=1e-12)
     for kind in (2, 4):
         assert sorted(nodes for nodes, *_ in found[kind]) == sorted(nodes for nodes, *_ in expected[kind])
+
+
+CDB_CELLS = [[10], [5, 9, 10, 12, 13, 14], [22, 23, 24, 25, 26, 27]]
+# Numbers of nodes of VTK's cells, which have volume from 10 on.
+N_NODES = {5: 3, 9: 4, 10: 4, 12: 8, 13: 6, 14: 5, 22: 6, 23: 8, 24: 10, 25: 20, 26: 15, 27: 13}
+
+
+def mixed_grid(types):
+    """Return a grid with four cells of random points of each of VTK's types."""
+    rng = np.random.default_rng(7)
+    points = rng.normal(size=(60, 3)) * 10.0 ** rng.integers(-9, 9, size=(60, 1))
+    rows = [[N_NODES[kind], *rng.choice(60, N_NODES[kind], replace=False)] for kind in np.repeat(types, 4)]
+    return pyvista.UnstructuredGrid(np.concatenate(rows), np.repeat(types, 4), points)
+
+
+def turned_rows(grid):
+    """Return the cells of a grid as type and nodes. Wedges may begin at any corner of their triangles: here at the lowest."""
+    rows = []
+    for i, kind in enumerate(grid.celltypes):
+        nodes = np.array(grid.get_cell(i).point_ids)
+        if kind in (13, 26):
+            first = np.argmin(nodes[:3])
+            nodes = np.concatenate([np.roll(part, -first) for part in np.split(nodes, len(nodes) // 3)])
+        rows.append((int(kind), nodes.tolist()))
+    return rows
+
+
+@pytest.mark.parametrize("types", CDB_CELLS)
+def test_mapdl_archive_reads_cdb_files_of_motet(motet, tmp_path, types):
+    """Runs where mapdl-archive is installed (pip install mapdl-archive)."""
+    archives = pytest.importorskip("mapdl_archive")
+    grid = mixed_grid(types)
+    numbers = np.repeat(np.arange(len(types)) + 3, 4).astype(np.int32)
+    is_volume = np.isin(grid.celltypes, [10, 12, 13, 14, 24, 25, 26, 27])
+    grid.cell_data["region"], grid.cell_data["patch"] = numbers * is_volume, numbers * ~is_volume
+    source, copy = tmp_path / "source.vtu", tmp_path / "copy.cdb"
+    grid.save(source)
+    motet("convert", source, copy)
+    archive = archives.Archive(str(copy))
+    # Its own numbers may differ in the last bit.
+    np.testing.assert_allclose(archive.nodes, grid.points, rtol=1e-15)
+    assert_same_array(np.asarray(archive.material_type), numbers, "materials")
+    components = {f"{'REGION' if volume else 'PATCH'}_{number}" for number, volume in zip(numbers, is_volume)}
+    assert set(archive.element_components) == components
+    # It makes no cells of MESH200.
+    expected = [row for row, volume in zip(turned_rows(grid), is_volume) if volume]
+    assert [row for row in turned_rows(archive.grid) if row[0] not in (0, 5, 9, 22, 23)] == expected
+
+
+@pytest.mark.parametrize("types", [[10], [5, 9, 10, 12, 13, 14], [24, 25, 26, 27]])
+def test_cdb_files_of_mapdl_archive_are_read(motet, tmp_path, types):
+    archives = pytest.importorskip("mapdl_archive")
+    grid = mixed_grid(types)
+    # It writes 13 digits after the point, and only points of cells.
+    grid.points = np.array([[float(f"{x:.13e}") for x in point] for point in grid.points])
+    grid = grid.extract_cells(range(grid.n_cells))
+    rng = np.random.default_rng(9)
+    grid.point_data["ansys_node_num"] = np.cumsum(rng.integers(1, 9, size=grid.n_points)).astype(np.int32)
+    grid.cell_data["ansys_elem_num"] = np.cumsum(rng.integers(1, 9, size=grid.n_cells)).astype(np.int32)
+    grid.cell_data["ansys_material_type"] = np.repeat(np.arange(len(types)) + 2, 4).astype(np.int32)
+    source, copy = tmp_path / "source.cdb", tmp_path / "copy.vtu"
+    archives.save_as_archive(str(source), grid)
+    motet("convert", source, copy)
+    found = pyvista.read(copy)
+    assert_same_array(np.asarray(found.points), np.asarray(grid.points), "points")
+    assert turned_rows(found) == turned_rows(grid)
+    if len(types) > 1:
+        labels = np.array(found.cell_data["region"]) + np.array(found.cell_data.get("patch", 0))
+        assert_same_array(labels, grid.cell_data["ansys_material_type"], "materials")
+
+
+def test_cdb_files_hold_the_same_mesh_as_msh_files(motet, gmsh_session, tmp_path):
+    """Groups of Gmsh are materials and components; motet reads them back as regions and patches with their names."""
+    tet_box(2)
+    source, copy, back = tmp_path / "source.msh", tmp_path / "copy.cdb", tmp_path / "back.msh"
+    gmsh_write(source, "4.1", "binary")
+    motet("convert", source, copy)
+    motet("convert", copy, back)
+    ours, theirs = meshio.read(back), meshio.read(source)
+    assert_same_array(ours.points, theirs.points, "points")
+    for kind in ("tetra10", "triangle6"):
+        assert_same_array(cells_of(ours)[kind], cells_of(theirs)[kind], kind)
+        assert_same_array(cell_array_of(ours, "gmsh:physical")[kind], cell_array_of(theirs, "gmsh:physical")[kind], kind)
+    for name, (tag, dim) in theirs.field_data.items():
+        assert dim < 2 or list(ours.field_data[name.replace(" ", "_")]) == [tag, dim]
+
+
+def vtk_fluent(path):
+    """Return the zones of cells that VTK reads from a Fluent file; it has others for faces."""
+    reader = vtk.vtkFLUENTReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    output = pyvista.wrap(reader.GetOutput())
+    return [output[i] for i in range(output.n_blocks) if output.get_block_name(i).endswith(":fluid")]
+
+
+def cells_at(grid, points=None):
+    """Return the cells of a grid: their type and the coordinates of their points, in any order."""
+    points = np.asarray(grid.points if points is None else points, float)
+    return sorted((int(kind), sorted(map(tuple, points[list(grid.get_cell(i).point_ids)]))) for i, kind in enumerate(grid.celltypes))
+
+
+def volume_cells(path):
+    grid = pyvista.read(path)
+    return grid.extract_cells(np.isin(grid.celltypes, [10, 12, 13, 14, 42]))
+
+
+def fluent_mesh(kind, tmp_path, motet):
+    """Return a .vtu file of a box of one kind of cells or of several, and the Fluent file that motet makes of it."""
+    source, copy = tmp_path / "source.msh", tmp_path / "copy.cas"
+    if kind == "tets":
+        tet_box(1)
+    else:
+        layered_box(kind, 1)
+    gmsh_write(source, "4.1", "binary")
+    motet("convert", source, tmp_path / "source.vtu")
+    motet("convert", source, copy)
+    return tmp_path / "source.vtu", copy
+
+
+def binary_fluent(text, double):
+    """Turn the points, cells and faces of a Fluent file of motet into binary sections."""
+    import re
+    out, at = b"", 0
+    for match in re.finditer(r"\((1[023]) \(([0-9a-f ]+)\)\(\n([^()]*)\)\)\n", text):
+        out += text[at:match.start()].encode()
+        at = match.end()
+        index, header, body = match.groups()
+        number = ("30" if double else "20") + index
+        if index == "10":
+            data = np.array(body.split(), np.float64 if double else np.float32)
+        else:
+            data = np.array([int(word, 16) for word in body.split()], np.int32)
+        out += f"({number} ({header})(".encode() + data.tobytes() + f")\nEnd of Binary Section   {number})\n".encode()
+    assert at
+    return out + text[at:].encode()
+
+
+@pytest.mark.parametrize("form", ["text", "single", "double"])
+@pytest.mark.parametrize("kind", ["tets", "hexahedra", "prisms"])
+def test_vtk_and_motet_read_the_same_cells_from_fluent_files(motet, gmsh_session, tmp_path, kind, form):
+    source, copy = fluent_mesh(kind, tmp_path, motet)
+    if form != "text":
+        copy.write_bytes(binary_fluent(copy.read_text(), form == "double"))
+    expected = volume_cells(source)
+    # VTK reads points in single precision.
+    rounded = np.asarray(expected.points, np.float32).astype(float)
+    assert sorted(itertools.chain(*map(cells_at, vtk_fluent(copy)))) == cells_at(expected, rounded)
+    points = rounded if form == "single" else None
+    for ending in ("cas", "msh"):
+        renamed = tmp_path / f"renamed.{ending}"
+        renamed.write_bytes(copy.read_bytes())
+        motet("convert", renamed, tmp_path / "again.vtu")
+        found = volume_cells(tmp_path / "again.vtu")
+        assert cells_at(found) == cells_at(expected, points)
+        assert (found.compute_cell_sizes()["Volume"] > 0).all()
+    whole, again = pyvista.read(source), pyvista.read(tmp_path / "again.vtu")
+    for name in (name for name in whole.field_data.keys() if name.startswith(("region:", "patch:"))):
+        assert again.field_data[name.replace(" ", "_")] == whole.field_data[name]
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_meshio_files_of_fluent_are_read(motet, tmp_path, binary):
+    """meshio lists the nodes of cells, which Fluent does not."""
+    mesh = mixed_mesh(["triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"])
+    source, copy = tmp_path / "source.msh", tmp_path / "copy.vtu"
+    meshio.ansys.write(source, mesh, binary=binary)
+    motet("convert", source, copy)
+    assert_same_mesh(read_turned(copy), mesh)
+
+
+def read_turned(path):
+    """Read a .vtu file with meshio, which turns the prisms of such files."""
+    mesh = meshio.read(path)
+    for block in mesh.cells:
+        if block.type == "wedge":
+            block.data = block.data[:, [0, 2, 1, 3, 5, 4]]
+    return mesh
+
+
+def test_meshio_reads_points_and_faces_of_fluent_files_of_motet(motet, gmsh_session, tmp_path):
+    source, copy = fluent_mesh("tets", tmp_path, motet)
+    text = copy.read_text()
+    # meshio takes the points of all sections; mixed faces have their number of points in front.
+    (tmp_path / "copy.msh").write_text(text)
+    found, expected = meshio.read(tmp_path / "copy.msh", file_format="ansys"), volume_cells(source)
+    assert sorted(map(tuple, found.points)) == sorted(map(tuple, expected.points))
+    faces = {tuple(sorted(map(tuple, found.points[face]))) for face in cells_of(found)["triangle"]}
+    theirs = {tuple(sorted(map(tuple, expected.points[list(face)]))) for tet in expected.cells_dict[10]
+              for face in itertools.combinations(tet, 3)}
+    assert faces == theirs
+
+
+def labelled_mesh(kinds):
+    """Return a mixed mesh whose volume cells have regions and whose surface cells have patches."""
+    mesh = mixed_mesh(kinds)
+    dims = [meshio._mesh.topological_dimension[kind] for kind in kinds]
+    mesh.cell_data = {name: [np.full(4, i + 3 if dim == of else 0, np.int32) for i, dim in enumerate(dims)]
+                      for name, of in (("region", 3), ("patch", 2)) if of in dims}
+    return mesh
+
+
+MED_KINDS = [["tetra"], ["vertex", "line", "triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron"],
+             ["line3", "triangle6", "quad8", "tetra10", "hexahedron20"]]
+
+
+@pytest.mark.parametrize("kinds", MED_KINDS)
+def test_meshio_files_of_med_are_read(motet, tmp_path, kinds):
+    mesh = mixed_mesh(kinds)
+    rng = np.random.default_rng(8)
+    mesh.point_data = {"u": rng.normal(size=(60, 3)), "p": rng.normal(size=60)}
+    mesh.cell_data = {"q": [rng.normal(size=4) for _ in kinds], "t": [rng.normal(size=(4, 9)) for _ in kinds]}
+    mesh.point_data["point_tags"] = np.arange(60) % 3
+    mesh.cell_data["cell_tags"] = [-(i + 1) * np.ones(4, int) for i in range(len(kinds))]
+    mesh.point_tags = {1: ["ends"], 2: ["ends", "middle part"]}
+    mesh.cell_tags = {-(i + 1): [f"group of {kind}"] for i, kind in enumerate(kinds)}
+    source, copy = tmp_path / "source.med", tmp_path / "copy.vtu"
+    meshio.med.write(source, mesh)
+    motet("convert", source, copy)
+    found = read_turned(copy)
+    assert_same_mesh(found, mesh, ["u", "p"], ["q", "t"])
+    assert_same_array(found.point_data["nset:ends"], (np.arange(60) % 3 > 0).astype(np.uint8), "ends")
+    assert_same_array(found.point_data["nset:middle part"], (np.arange(60) % 3 == 2).astype(np.uint8), "middle part")
+    for i, kind in enumerate(kinds):
+        dim = meshio._mesh.topological_dimension[kind]
+        if dim > 1:
+            name = {2: "patch", 3: "region"}[dim]
+            assert set(cell_array_of(found, name)[kind]) == {i + 1}
+            assert pyvista.read(copy).field_data[f"{name}:group of {kind}"] == [i + 1]
+
+
+@pytest.mark.parametrize("kinds", MED_KINDS)
+def test_meshio_reads_med_files_of_motet(motet, tmp_path, kinds):
+    mesh = labelled_mesh(kinds)
+    rng = np.random.default_rng(8)
+    mesh.point_data = {"u": rng.normal(size=(60, 3)), "n": np.arange(60, dtype=np.int64)}
+    mesh.cell_data["q"] = [rng.normal(size=4) for _ in kinds]
+    source, copy = tmp_path / "source.vtu", tmp_path / "copy.med"
+    mesh.write(source)
+    motet("convert", source, copy)
+    found = meshio.read(copy)
+    assert_same_array(found.points, mesh.points, "points")
+    for kind, cells in cells_of(mesh).items():
+        # meshio takes cells as they are; in MED volume cells run the other way round.
+        same = np.sort(cells_of(found)[kind], axis=1)
+        assert_same_array(same, np.sort(cells, axis=1), kind)
+        if meshio._mesh.topological_dimension[kind] < 3:
+            assert_same_array(cells_of(found)[kind], cells, kind)
+        assert_same_array(cell_array_of(found, "q")[kind], cell_array_of(mesh, "q")[kind], "q")
+    for name, values in mesh.point_data.items():
+        assert_same_array(found.point_data[name], values, name)
+    labels = {-number: [f"{prefix}_{number}"] for name, prefix in (("region", "REGION"), ("patch", "PATCH"))
+              if name in mesh.cell_data for number in map(int, np.unique(np.concatenate(mesh.cell_data[name]))) if number}
+    assert {int(number): groups for number, groups in found.cell_tags.items()} == labels
+
+
+@pytest.mark.parametrize("build", BUILDS)
+def test_gmsh_reads_its_own_med_mesh_from_a_copy(motet, gmsh_session, tmp_path, build):
+    # Prisms of 18 nodes are not written.
+    gmsh.option.setNumber("Mesh.SecondOrderIncomplete", int(build.startswith("prisms")))
+    BUILDS[build]()
+    source, again, vtu = tmp_path / "source.med", tmp_path / "again.med", tmp_path / "mesh.vtu"
+    gmsh.write(str(source))
+    points, elements, names = opened(source)
+    motet("convert", source, again)
+    copy_points, copy_elements, copy_names = opened(again)
+    dims = dict.fromkeys([4, 5, 6, 11, 12, 13, 17, 18], 3) | dict.fromkeys([2, 3, 9, 10, 16], 2)
+
+    def located(points, elements, names):
+        return sorted((kind, tuple(map(tuple, points[list(nodes)])), sorted(names[dims[kind], g] for g in groups))
+                      for kind in set(elements) & set(dims) for nodes, _, groups in elements[kind])
+
+    ours, theirs = located(copy_points, copy_elements, copy_names), located(points, elements, names)
+    assert len(theirs) > 0 and ours == theirs
+    assert {kind: len(rows) for kind, rows in copy_elements.items()} == {kind: len(rows) for kind, rows in elements.items()}
+    motet("convert", source, vtu)
+    grid = pyvista.read(vtu)
+    solid = grid.extract_cells(np.isin(grid.celltypes, [10, 12, 13]))
+    assert (solid.compute_cell_sizes()["Volume"] > 0).all()
+
+
+@pytest.mark.parametrize("element_type", [kind for kind in TYPES if kind != 14])
+def test_nodes_of_every_med_element_are_in_the_order_of_vtk(motet, gmsh_session, tmp_path, element_type):
+    """Gmsh writes one element as MED and as MSH, whose nodes other tests check."""
+    one_element(element_type)
+    med, msh = tmp_path / "one.med", tmp_path / "one.msh"
+    gmsh.write(str(med))
+    gmsh_write(msh, "4.1", "binary")
+    cells = []
+    for source in (med, msh):
+        motet("convert", source, tmp_path / "one.vtu")
+        grid = vtk_grid(tmp_path / "one.vtu")
+        assert grid.GetNumberOfCells() == 1
+        cells.append((grid.GetCellType(0), vtk_to_numpy(grid.GetCell(0).GetPoints().GetData()).tolist()))
+    assert cells[0] == cells[1]
 
 
 def vtk_exodus(path):

@@ -27,6 +27,12 @@ pub fn write(extension: &str, mesh: &Mesh) -> (Vec<u8>, bool) {
     (written.files.swap_remove(0).1, written.lost.is_empty())
 }
 
+/// Writes a mesh like [`write`], if the format can hold it.
+pub fn try_write(extension: &str, mesh: &Mesh) -> Option<(Vec<u8>, bool)> {
+    let mut written = format(extension).to_files(mesh, &WriteOptions::default(), &Threads::single()).ok()?;
+    Some((written.files.swap_remove(0).1, written.lost.is_empty()))
+}
+
 /// Checks that what can be read can be written and read again, with the same number of points, and with the
 /// same cells where nothing was lost.
 pub fn there_and_back(extension: &str, bytes: &[u8]) {

@@ -92,7 +92,7 @@ def test_options_are_checked_as_in_the_functions():
     assert "motet.remesh" in type(grid().motet).remesh.__doc__
 
 
-@pytest.mark.parametrize("suffix", [".mesh", ".meshb", ".msh", ".node", ".su2", ".unv", ".vol", ".elem", ".bdf"])
+@pytest.mark.parametrize("suffix", [".mesh", ".meshb", ".msh", ".node", ".su2", ".unv", ".vol", ".elem", ".bdf", ".cdb", ".med"])
 def test_pyvista_reads_files_with_motet(suffix, tmp_path):
     path = tmp_path / f"box{suffix}"
     BOX.save(path)

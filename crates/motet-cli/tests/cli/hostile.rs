@@ -176,9 +176,9 @@ fn coordinates_beyond_numbers_are_a_defect_and_no_volume() {
 #[test]
 fn files_of_other_programs_are_named() {
     let folder = Folder::new();
-    folder.write("fluent.msh", b"(0 \"by another program\")\n(2 3)\n(10 (0 1 4 0 3))\n");
-    folder.write("wing.med", b"\x89HDF\r\n\x1a\n");
-    for (name, says) in [("fluent.msh", "Ansys Fluent"), ("wing.med", "MED")] {
+    folder.write("wing.ugrid", b"4 0 0 1 0 0 0\n");
+    folder.write("wing.h5m", b"\x89HDF\r\n\x1a\n");
+    for (name, says) in [("wing.ugrid", "UGRID"), ("wing.h5m", "MOAB")] {
         let call = folder.motet(["convert", name, "o.vtu"]).assert().code(3);
         assert!(
             stderr(&call).contains(says) && stderr(&call).contains("meshio convert"),

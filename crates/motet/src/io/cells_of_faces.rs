@@ -1,6 +1,6 @@
 //! Recovers cells from their faces.
 
-use crate::base::{Csr, VertexId};
+use crate::base::{Csr, Error, Result, VertexId};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{CellKind, Cells};
 
@@ -86,4 +86,81 @@ fn successors<'a, T: Copy + PartialEq + 'a>(
 fn is_same_ring(a: &[VertexId], b: &[VertexId]) -> bool {
     let start = b.iter().position(|v| a.first() == Some(v));
     a.len() == b.len() && start.is_some_and(|start| a.iter().eq(b[start..].iter().chain(&b[..start])))
+}
+
+/// Appends a face as a surface cell.
+pub(super) fn push_face(cells: &mut Cells, face: &[u32]) {
+    let kind = match face.len() {
+        3 => CellKind::TRIANGLE,
+        4 => CellKind::QUAD,
+        _ => CellKind::POLYGON,
+    };
+    cells.push(kind, face.iter().map(|&v| VertexId(v)));
+}
+
+/// The faces of each cell, and whether the cell owns them.
+pub(super) struct Sides<'a> {
+    faces: &'a Csr<u32>,
+    of_cells: Vec<Vec<(u32, bool)>>,
+}
+
+impl<'a> Sides<'a> {
+    /// Of faces, each a ring that runs counter-clockwise seen from outside its owner; the first ones have
+    /// neighbours, too, unless these are negative.
+    pub(super) fn new(
+        faces: &'a Csr<u32>,
+        owner: &[i64],
+        neighbour: &[i64],
+        n_points: usize,
+    ) -> Result<Self> {
+        if owner.len() != faces.len() || neighbour.len() > faces.len() {
+            return Err(Error::input(format!(
+                "{} faces have {} owners and {} neighbours",
+                faces.len(),
+                owner.len(),
+                neighbour.len()
+            )));
+        }
+        if let Some(i) =
+            faces.iter().position(|face| face.len() < 3 || face.iter().any(|&v| v as usize >= n_points))
+        {
+            return Err(Error::input("has fewer than three points, or a point that does not exist")
+                .at(format!("face {i}")));
+        }
+        // A cell has at least four faces, so valid cell numbers are below the number of faces.
+        let sides = owner.iter().enumerate().map(|(face, &cell)| (face, cell, true));
+        let sides = sides.chain(neighbour.iter().enumerate().map(|(face, &cell)| (face, cell, false)));
+        let most = faces.len();
+        let mut of_cells: Vec<Vec<(u32, bool)>> = Vec::new();
+        // In some versions of OpenFOAM every face has a neighbour, which is -1 at the boundary.
+        for (face, cell, is_owner) in sides.filter(|&(_, cell, is_owner)| is_owner || cell >= 0) {
+            let cell = usize::try_from(cell).ok().filter(|&cell| cell < most).ok_or_else(|| {
+                Error::input(format!(
+                    "refers to cell {cell}, but cell numbers must be below the number of faces, {most}"
+                ))
+                .at(format!("face {face}"))
+            })?;
+            if of_cells.len() <= cell {
+                of_cells.resize_with(cell + 1, Vec::new);
+            }
+            of_cells[cell].push((face as u32, is_owner));
+        }
+        match of_cells.iter().position(|sides| sides.len() < 4) {
+            Some(cell) => Err(Error::input("has fewer than four faces").at(format!("cell {cell}"))),
+            None => Ok(Self { faces, of_cells }),
+        }
+    }
+
+    /// The cells, in the order of their numbers.
+    pub(super) fn cells(&self) -> Cells {
+        let mut cells = Cells::new();
+        for sides in &self.of_cells {
+            let rings = sides.iter().map(|&(face, is_owner)| {
+                let ring = self.faces.list(face as usize).iter().map(|&v| VertexId(v));
+                if is_owner { ring.collect::<Vec<_>>() } else { ring.rev().collect() }
+            });
+            push(&mut cells, &rings.collect::<Vec<_>>());
+        }
+        cells
+    }
 }

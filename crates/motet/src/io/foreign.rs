@@ -13,22 +13,18 @@ struct ForeignFormat {
 
 const MESHIO: &str = "convert it with meshio (pip install meshio): meshio convert FILE mesh.vtu";
 const MESHIO_HDF: &str = "convert it with meshio (pip install meshio[all]): meshio convert FILE mesh.vtu";
-const FLUENT: &str =
-    "convert it with meshio (pip install meshio): meshio convert --input-format ansys FILE mesh.vtu";
 const PARAVIEW: &str = "open it in ParaView and save the data as .vtu";
 const CAD: &str = "mesh it first: gmsh -2 -format stl FILE -o surface.stl (a surface), or gmsh -3 -format msh41 FILE -o mesh.msh";
 const GEOMETRY: &str = "mesh the geometry first: gmsh -3 -format msh41 FILE -o mesh.msh";
 const TRIMESH: &str = "convert it with trimesh (pip install trimesh) or Blender, to .stl, .obj or .ply";
 
 const FOREIGN: &[ForeignFormat] = &[
-    ForeignFormat { name: "an Ansys Fluent mesh", extensions: &[".cas", ".cas.gz"], remedy: FLUENT },
     ForeignFormat {
         name: "an Ansys Fluent case (HDF5)",
         extensions: &[".cas.h5", ".msh.h5", ".dat.h5"],
         remedy: PARAVIEW,
     },
     ForeignFormat { name: "an XDMF file of version 2", extensions: &[".xdmf2"], remedy: MESHIO_HDF },
-    ForeignFormat { name: "a MED file (Salome, Code_Aster)", extensions: &[".med"], remedy: MESHIO_HDF },
     ForeignFormat { name: "a MOAB file", extensions: &[".h5m"], remedy: MESHIO_HDF },
     ForeignFormat {
         name: "an openCARP mesh in binary form",
@@ -56,8 +52,8 @@ const FOREIGN: &[ForeignFormat] = &[
         remedy: PARAVIEW,
     },
     ForeignFormat {
-        name: "an Ansys Mechanical archive",
-        extensions: &[".cdb", ".rst"],
+        name: "a result of Ansys Mechanical",
+        extensions: &[".rst", ".rth"],
         remedy: "convert it with ansys-mapdl-reader (pip install ansys-mapdl-reader), which saves .vtk",
     },
     ForeignFormat {
@@ -125,17 +121,11 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     if bytes.starts_with(b"\x1f\x8b") && !extensions.iter().any(|e| e.ends_with(".gz")) {
         return named("a gzip file", "decompress it first: gunzip -c FILE");
     }
-    if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && ![".cgns", ".vtkhdf", ".exo"].into_iter().any(is) {
-        return misnamed("an HDF5 file", ".vtkhdf, .cgns or .exo");
+    if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && ![".cgns", ".vtkhdf", ".exo", ".med"].into_iter().any(is) {
+        return misnamed("an HDF5 file", ".vtkhdf, .cgns, .exo or .med");
     }
     if start.starts_with(b"ISO-10303-21") {
         return named("a CAD model (STEP)", CAD);
-    }
-    let is_section = |text: &[u8]| {
-        text.first() == Some(&b'(') && text[1..].trim_ascii_start().first().is_some_and(u8::is_ascii_digit)
-    };
-    if is(".msh") && is_section(start) {
-        return named("an Ansys Fluent mesh", FLUENT);
     }
     let head = &start[..start.len().min(400)];
     let has = |word: &[u8]| head.windows(word.len()).any(|w| w.eq_ignore_ascii_case(word));
@@ -158,8 +148,8 @@ mod tests {
     fn foreign_files_are_reported_with_a_converter() {
         let of = |name: &str| by_extension(Path::new(name)).map(|e| e.to_string()).unwrap_or_default();
         assert!(
-            of("a/Wing.MED").contains("MED file")
-                && of("a/Wing.MED").contains("meshio convert Wing.MED mesh.vtu")
+            of("a/Wing.H5M").contains("MOAB file")
+                && of("a/Wing.H5M").contains("meshio convert Wing.H5M mesh.vtu")
         );
         assert!(
             of("x.xdmf2").contains("XDMF")
@@ -174,9 +164,6 @@ mod tests {
         let refused = |bytes: &[u8], extension: &str| {
             refuse(Path::new("f.msh"), bytes, &[extension]).err().map(|e| e.to_string()).unwrap_or_default()
         };
-        for head in ["(0 \"by another\")\n(2 3)\n", "\n (1 \"x\")", "( 2 3)"] {
-            assert!(refused(head.as_bytes(), ".msh").contains("Ansys Fluent"), "{head}");
-        }
         assert!(refused(b"CDF\x01", ".vtu").contains("netCDF"));
         assert!(
             refused(b"\x1f\x8b\x08", ".vtu").contains("gunzip")

@@ -2,12 +2,14 @@
 //! `registry` lists them all.
 
 mod abaqus;
+mod cdb;
 mod cell_labels;
 mod cells_of_faces;
 mod cgns;
 mod dolfin;
 mod exodus;
 mod facet_key;
+mod fluent;
 mod foreign;
 mod format;
 mod ghosts;
@@ -20,6 +22,7 @@ mod labels;
 mod latin;
 mod legacy;
 mod lock;
+mod med;
 mod medit;
 mod memory_budget;
 mod msh;
@@ -32,6 +35,7 @@ mod obj;
 mod off;
 mod opencarp;
 mod output;
+mod owned_faces;
 mod ply;
 mod polygonal;
 mod polyhedra;

@@ -7,8 +7,8 @@ use crate::io::format::{Format, Notes, Write, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{can_have_folder, replace_all, replace_folder, replace_with};
 use crate::io::{
-    abaqus, cgns, dolfin, exodus, foreign, legacy, medit, msh, nastran, netgen, obj, off, opencarp, ply,
-    polymesh, simvascular, stl, su2, tetgen, unv, vtkhdf, vtkxml, xdmf,
+    abaqus, cdb, cgns, dolfin, exodus, fluent, foreign, legacy, med, medit, msh, nastran, netgen, obj, off,
+    opencarp, ply, polymesh, simvascular, stl, su2, tetgen, unv, vtkhdf, vtkxml, xdmf,
 };
 use crate::mesh::Mesh;
 
@@ -41,6 +41,9 @@ const FORMATS: &[Format] = &[
     netgen::VOL_GZ,
     unv::FORMAT,
     nastran::FORMAT,
+    cdb::FORMAT,
+    fluent::FORMAT,
+    med::FORMAT,
     exodus::FORMAT,
     xdmf::FORMAT,
     dolfin::FORMAT,

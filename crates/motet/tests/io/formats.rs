@@ -1,5 +1,5 @@
-//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, Nastran, Exodus II, XDMF and DOLFIN files:
-//! written files are read back; damage is reported.
+//! MSH, STL, OBJ, Medit, TetGen, Netgen, SU2, openCARP, UNV, Nastran, Ansys, Fluent, MED, Exodus II, XDMF
+//! and DOLFIN files: written files are read back; damage is reported.
 
 use std::fs;
 use std::path::Path;
@@ -169,6 +169,43 @@ const EXODUS_KINDS: &[CellKind] = &[
     CellKind::TRIANGLE,
     CellKind::QUAD,
     CellKind::QUADRATIC_TRIANGLE,
+];
+const CDB_KINDS: &[CellKind] = &[
+    CellKind::LINE,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::TETRA,
+    CellKind::HEXAHEDRON,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::QUADRATIC_LINE,
+    CellKind::QUADRATIC_TRIANGLE,
+    CellKind::QUADRATIC_QUAD,
+    CellKind::QUADRATIC_TETRA,
+    CellKind::QUADRATIC_HEXAHEDRON,
+    CellKind::QUADRATIC_WEDGE,
+    CellKind::QUADRATIC_PYRAMID,
+];
+const MED_KINDS: &[CellKind] = &[
+    CellKind::VERTEX,
+    CellKind::LINE,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::TETRA,
+    CellKind::HEXAHEDRON,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::QUADRATIC_LINE,
+    CellKind::CUBIC_LINE,
+    CellKind::QUADRATIC_TRIANGLE,
+    CellKind::BIQUADRATIC_TRIANGLE,
+    CellKind::QUADRATIC_QUAD,
+    CellKind::BIQUADRATIC_QUAD,
+    CellKind::QUADRATIC_TETRA,
+    CellKind::QUADRATIC_HEXAHEDRON,
+    CellKind::TRIQUADRATIC_HEXAHEDRON,
+    CellKind::QUADRATIC_WEDGE,
+    CellKind::QUADRATIC_PYRAMID,
 ];
 const UNV_KINDS: &[CellKind] = &[
     CellKind::LINE,
@@ -351,6 +388,41 @@ proptest! {
     }
 
     #[test]
+    fn ansys_archives_come_back((mut mesh, labels) in meshes(CDB_KINDS, false)) {
+        // Nodes that coincide would make other cells, so each cell gets those that follow its first.
+        let given = std::mem::take(&mut mesh.cells);
+        mesh.points.resize(27, [0.5; 3]);
+        for (_, kind, vertices) in given.iter() {
+            mesh.cells.push(kind, (0..vertices.len() as u32).map(|k| VertexId((vertices[0].0 + k) % 27)));
+        }
+        let positive: Vec<i32> = labels.iter().map(|label| label + 1).collect();
+        set_labels(&mut mesh, &positive, [0, 6]);
+        let back = round_trip(".cdb", &mesh)?;
+        prop_assert_eq!(&back.cell_data, &mesh.cell_data);
+        prop_assert_eq!(&back.label_names, &mesh.label_names);
+    }
+
+    #[test]
+    fn med_comes_back((mut mesh, labels) in meshes(MED_KINDS, false), seed in any::<u32>()) {
+        set_labels(&mut mesh, &labels, [1, 7]);
+        let values = |n: usize| (0..n).map(|i| f64::from(seed) / (i as f64 + 3.0)).collect::<Vec<_>>();
+        mesh.set_point_field(Field { name: "u v".into(), components: 3, values: values(3 * mesh.points.len()).into() });
+        if !mesh.cells.is_empty() {
+            mesh.set_cell_field(Field { name: "q".into(), components: 2, values: values(2 * mesh.cells.len()).into() });
+            mesh.set_cell_field(Field::scalars("n", labels.iter().map(|&l| i64::from(l)).collect::<Vec<_>>()));
+        }
+        let back = round_trip(".med", &mesh)?;
+        let sorted = |mesh: &Mesh| {
+            let mut fields = mesh.cell_data.clone();
+            fields.sort_by(|a, b| a.name.cmp(&b.name));
+            fields
+        };
+        prop_assert_eq!(sorted(&back), sorted(&mesh));
+        prop_assert_eq!(&back.point_data, &mesh.point_data);
+        prop_assert_eq!(&back.label_names, &mesh.label_names);
+    }
+
+    #[test]
     fn nastran_comes_back((mut mesh, labels) in meshes(NASTRAN_KINDS, false)) {
         // Fields of 16 characters hold no more than single precision of all numbers.
         mesh.points.iter_mut().flatten().for_each(|x| *x = f64::from(*x as f32).clamp(-1e9, 1e9));
@@ -506,6 +578,8 @@ proptest! {
             (".vol", WriteOptions::default()),
             (".unv", WriteOptions::default()),
             (".bdf", WriteOptions::default()),
+            (".cdb", WriteOptions::default()),
+            (".med", WriteOptions::default()),
             (".exo", WriteOptions::default()),
             (".xdmf", WriteOptions::default()),
             (".obj", WriteOptions::default()),

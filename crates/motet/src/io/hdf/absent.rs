@@ -84,5 +84,6 @@ never! { Array {
     fn ints(Range<usize>) -> Result<Vec<i64>>;
     fn error(impl Into<String>) -> Error;
     fn is_supported() -> bool;
+    fn records() -> Result<Vec<Vec<u8>>>;
     fn text(&str) -> Result<Option<String>>;
 } }

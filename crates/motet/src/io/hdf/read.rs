@@ -188,6 +188,19 @@ impl Array {
         values.to_i64().ok_or_else(|| self.error("expected whole numbers"))
     }
 
+    /// The bytes of each row, which may be a record of bytes.
+    pub(in crate::io) fn records(&self) -> Result<Vec<Vec<u8>>> {
+        if self.rows() == 0 || self.components() == 0 {
+            return Ok(Vec::new());
+        }
+        let bytes = guarded(&self.path, || self.inner.read_raw())?;
+        let width = bytes.len() / self.rows();
+        if width * self.rows() != bytes.len() || width == 0 {
+            return Err(self.error(format!("expected {} records, found {} bytes", self.rows(), bytes.len())));
+        }
+        Ok(bytes.chunks_exact(width).map(<[u8]>::to_vec).collect())
+    }
+
     /// An attribute that is a text, without padding.
     pub(in crate::io) fn text(&self, name: &str) -> Result<Option<String>> {
         let attributes = guarded(&self.path, || self.inner.attrs())?;

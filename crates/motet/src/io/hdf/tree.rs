@@ -13,6 +13,10 @@ pub(in crate::io) enum Attribute {
     Ints(Vec<i64>),
     /// 32-bit integers.
     ShortInts(Vec<i32>),
+    /// One 64-bit integer.
+    Int(i64),
+    /// One number of double precision.
+    Real(f64),
 }
 
 /// Storage of an array in the file.
@@ -31,8 +35,32 @@ pub(in crate::io) enum Storage {
 pub(in crate::io) struct Node {
     pub(super) name: String,
     pub(super) attributes: Vec<(String, Attribute)>,
-    pub(super) arrays: Vec<(String, Values, Vec<usize>, Storage)>,
+    pub(super) arrays: Vec<NodeArray>,
     pub(super) groups: Vec<Node>,
+}
+
+/// An array for writing.
+#[derive(Debug)]
+pub(in crate::io) struct NodeArray {
+    pub(super) name: String,
+    pub(super) content: Content,
+    pub(super) attributes: Vec<(String, Attribute)>,
+}
+
+/// The values of an array.
+#[derive(Debug)]
+pub(super) enum Content {
+    /// With this shape.
+    Values(Values, Vec<usize>, Storage),
+    /// Texts as records of so many bytes, padded with zeros.
+    Records(Vec<String>, usize),
+}
+
+impl NodeArray {
+    /// Adds an attribute.
+    pub(in crate::io) fn attribute(&mut self, name: &str, value: Attribute) {
+        self.attributes.push((name.to_owned(), value));
+    }
 }
 
 impl Node {
@@ -47,8 +75,30 @@ impl Node {
     }
 
     /// Adds an array with this shape.
-    pub(in crate::io) fn array(&mut self, name: &str, values: Values, shape: &[usize], storage: Storage) {
-        self.arrays.push((name.to_owned(), values, shape.to_vec(), storage));
+    pub(in crate::io) fn array(
+        &mut self,
+        name: &str,
+        values: Values,
+        shape: &[usize],
+        storage: Storage,
+    ) -> &mut NodeArray {
+        self.add(name, Content::Values(values, shape.to_vec(), storage))
+    }
+
+    /// Adds texts as records of `width` bytes, to which longer ones are cut.
+    pub(in crate::io) fn records(&mut self, name: &str, texts: Vec<String>, width: usize) {
+        self.add(name, Content::Records(texts, width));
+    }
+
+    fn add(&mut self, name: &str, content: Content) -> &mut NodeArray {
+        self.arrays.push(NodeArray { name: name.to_owned(), content, attributes: Vec::new() });
+        let last = self.arrays.len() - 1;
+        &mut self.arrays[last]
+    }
+
+    /// Whether there is nothing in the group.
+    pub(in crate::io) fn is_empty(&self) -> bool {
+        self.attributes.is_empty() && self.arrays.is_empty() && self.groups.is_empty()
     }
 
     /// Adds a group.

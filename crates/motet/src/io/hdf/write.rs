@@ -1,8 +1,10 @@
 //! The bytes of a file that holds a tree of groups and arrays.
 
-use hdf5_pure::{AttrValue, DatasetBuilder, FileBuilder, FinishedGroup, GroupBuilder, LibVer, MaxExtent};
+use hdf5_pure::{
+    AttrValue, DatasetBuilder, FileBuilder, FinishedGroup, GroupBuilder, LibVer, MaxExtent, make_i8_type,
+};
 
-use super::tree::{Attribute, Node, Storage};
+use super::tree::{Attribute, Content, Node, NodeArray, Storage};
 use crate::base::{Error, Result};
 use crate::mesh::Values;
 
@@ -29,8 +31,8 @@ impl Node {
         for (name, value) in self.attributes {
             file.set_attr(&name, attribute(value)?);
         }
-        for (name, values, shape, storage) in self.arrays {
-            fill(file.create_dataset(&name), &values, &shape, storage)?;
+        for array in self.arrays {
+            fill(file.create_dataset(&array.name), array)?;
         }
         for group in self.groups {
             let builder = file.create_group(&group.name);
@@ -43,8 +45,8 @@ impl Node {
         for (name, value) in self.attributes {
             builder.set_attr(&name, attribute(value)?);
         }
-        for (name, values, shape, storage) in self.arrays {
-            fill(builder.create_dataset(&name), &values, &shape, storage)?;
+        for array in self.arrays {
+            fill(builder.create_dataset(&array.name), array)?;
         }
         for group in self.groups {
             let inner = builder.create_group(&group.name);
@@ -64,10 +66,34 @@ fn attribute(value: Attribute) -> Result<AttrValue> {
         Attribute::Padded(text, width) => AttrValue::ascii_string_sized(text, width).map_err(not_storable)?,
         Attribute::Ints(n) => AttrValue::I64Array(n),
         Attribute::ShortInts(n) => AttrValue::I32Array(n),
+        Attribute::Int(n) => AttrValue::I64(n),
+        Attribute::Real(x) => AttrValue::F64(x),
     })
 }
 
-fn fill(array: &mut DatasetBuilder, values: &Values, shape: &[usize], storage: Storage) -> Result<()> {
+fn fill(builder: &mut DatasetBuilder, array: NodeArray) -> Result<()> {
+    for (name, value) in array.attributes {
+        builder.set_attr(&name, attribute(value)?);
+    }
+    match array.content {
+        Content::Values(values, shape, storage) => fill_values(builder, &values, &shape, storage),
+        Content::Records(texts, width) => {
+            fill_records(builder, &texts, width);
+            Ok(())
+        }
+    }
+}
+
+fn fill_records(builder: &mut DatasetBuilder, texts: &[String], width: usize) {
+    let mut bytes = vec![0; texts.len() * width];
+    for (record, text) in bytes.chunks_exact_mut(width.max(1)).zip(texts) {
+        let n = text.len().min(width);
+        record[..n].copy_from_slice(&text.as_bytes()[..n]);
+    }
+    builder.with_array_data(make_i8_type(), &[width as u32], bytes, texts.len() as u64);
+}
+
+fn fill_values(array: &mut DatasetBuilder, values: &Values, shape: &[usize], storage: Storage) -> Result<()> {
     let bytes_per_value = match values {
         Values::I8(v) => (array.with_i8_data(v), 1).1,
         Values::U8(v) => (array.with_u8_data(v), 1).1,

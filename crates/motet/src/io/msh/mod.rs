@@ -24,11 +24,19 @@ mod sink;
 mod source;
 mod write;
 
-use crate::io::{Format, Write};
+use crate::base::Result;
+use crate::io::fluent;
+use crate::io::format::{Format, Input, Write};
+use crate::mesh::Mesh;
 
 pub(super) const FORMAT: Format = Format {
     name: "Gmsh MSH",
     extensions: &[".msh"],
-    read: Some(read::read),
+    read: Some(read),
     write: Some(Write::File(write::write)),
 };
+
+/// Reads the file, which may also be one of Fluent.
+fn read(input: &Input<'_>) -> Result<Mesh> {
+    if fluent::has_sections(input.bytes) { fluent::read(input) } else { read::read(input) }
+}

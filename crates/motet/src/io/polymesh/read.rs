@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use crate::base::{Csr, Error, Result, VertexId};
-use crate::io::cells_of_faces as cells;
+use crate::base::{Error, Result};
+use crate::io::cells_of_faces::{Sides, push_face};
 use crate::io::format::{Input, Notes};
 use crate::io::polymesh::file::File;
 use crate::io::polymesh::folder::{load, mesh_folder};
-use crate::mesh::{CellKind, Cells, Field, Mesh};
+use crate::mesh::{Field, Mesh};
 
 pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let folder = mesh_folder(input.path).ok_or_else(|| {
@@ -151,72 +151,4 @@ fn zones(folder: &Path, mesh: &mut Mesh, n_cells: usize, notes: &Notes) -> Resul
     }
     mesh.set_cell_field(Field::scalars("region", regions));
     Ok(())
-}
-
-fn push_face(cells: &mut Cells, face: &[u32]) {
-    let kind = match face.len() {
-        3 => CellKind::TRIANGLE,
-        4 => CellKind::QUAD,
-        _ => CellKind::POLYGON,
-    };
-    cells.push(kind, face.iter().map(|&v| VertexId(v)));
-}
-
-/// The faces of each cell, and whether the cell owns them.
-struct Sides<'a> {
-    faces: &'a Csr<u32>,
-    of_cells: Vec<Vec<(u32, bool)>>,
-}
-
-impl<'a> Sides<'a> {
-    fn new(faces: &'a Csr<u32>, owner: &[i64], neighbour: &[i64], n_points: usize) -> Result<Self> {
-        if owner.len() != faces.len() || neighbour.len() > faces.len() {
-            return Err(Error::input(format!(
-                "{} faces have {} owners and {} neighbours",
-                faces.len(),
-                owner.len(),
-                neighbour.len()
-            )));
-        }
-        if let Some(i) =
-            faces.iter().position(|face| face.len() < 3 || face.iter().any(|&v| v as usize >= n_points))
-        {
-            return Err(Error::input("has fewer than three points, or a point that does not exist")
-                .at(format!("face {i}")));
-        }
-        // A cell has at least four faces, so valid cell numbers are below the number of faces.
-        let sides = owner.iter().enumerate().map(|(face, &cell)| (face, cell, true));
-        let sides = sides.chain(neighbour.iter().enumerate().map(|(face, &cell)| (face, cell, false)));
-        let most = faces.len();
-        let mut of_cells: Vec<Vec<(u32, bool)>> = Vec::new();
-        // In some versions of OpenFOAM every face has a neighbour, which is -1 at the boundary.
-        for (face, cell, is_owner) in sides.filter(|&(_, cell, is_owner)| is_owner || cell >= 0) {
-            let cell = usize::try_from(cell).ok().filter(|&cell| cell < most).ok_or_else(|| {
-                Error::input(format!(
-                    "refers to cell {cell}, but cell numbers must be below the number of faces, {most}"
-                ))
-                .at(format!("face {face}"))
-            })?;
-            if of_cells.len() <= cell {
-                of_cells.resize_with(cell + 1, Vec::new);
-            }
-            of_cells[cell].push((face as u32, is_owner));
-        }
-        match of_cells.iter().position(|sides| sides.len() < 4) {
-            Some(cell) => Err(Error::input("has fewer than four faces").at(format!("cell {cell}"))),
-            None => Ok(Self { faces, of_cells }),
-        }
-    }
-
-    fn cells(&self) -> Cells {
-        let mut cells = Cells::new();
-        for sides in &self.of_cells {
-            let rings = sides.iter().map(|&(face, is_owner)| {
-                let ring = self.faces.list(face as usize).iter().map(|&v| VertexId(v));
-                if is_owner { ring.collect::<Vec<_>>() } else { ring.rev().collect() }
-            });
-            cells::push(&mut cells, &rings.collect::<Vec<_>>());
-        }
-        cells
-    }
 }
