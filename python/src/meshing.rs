@@ -19,6 +19,8 @@ use crate::watch::watched;
 pub(crate) struct Request {
     size: Option<SizeArg>,
     surface: String,
+    distance: Option<f64>,
+    feature_angle: f64,
     growth: Option<f64>,
     size_array: Option<String>,
     seeds: Vec<(Point, String)>,
@@ -126,6 +128,8 @@ impl Request {
         Ok(MeshingWords {
             size: size.transpose()?,
             surface: Names::of(&self.surface)?,
+            distance: self.distance,
+            feature_angle: self.feature_angle,
             growth: self.growth,
             size_array: self.size_array,
             seeds: self.seeds.into_iter().map(|(place, name)| Seed { place, name }).collect(),

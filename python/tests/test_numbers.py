@@ -70,6 +70,8 @@ OPTIONS = {
     "implant.min_eas": (lambda x: motet.implant(shapes.box(), shapes.coil(), min_eas=x), PART),
     "implant.threads": (lambda x: motet.implant(shapes.box(), shapes.coil(), threads=x), COUNT),
     "mesh.size": (lambda x: motet.mesh(shapes.aneurysm(), size=x), LENGTH),
+    "mesh.distance": (lambda x: motet.mesh(shapes.aneurysm(), size=0.5, surface="adapt", distance=x), LENGTH),
+    "mesh.feature_angle": (lambda x: motet.mesh(shapes.aneurysm(), size=0.5, surface="adapt", feature_angle=x), (-1.0, 181.0, NAN)),
     "mesh.growth": (lambda x: motet.mesh(shapes.aneurysm(), size="auto", growth=x), LENGTH),
     "mesh.min_eas": (lambda x: motet.mesh(shapes.aneurysm(), size=0.5, min_eas=x), PART),
     "mesh.layers": (lambda x: motet.mesh(shapes.aneurysm(), layers=(2, x, 1.2)), LENGTH),

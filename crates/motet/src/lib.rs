@@ -11,6 +11,7 @@
 //! | [`kernel`] | 4 | tets that can be changed: cavity, check, commit, undo |
 //! | [`preflight`] | 4 | what stops closed surfaces from being meshed: found exactly, all of it |
 //! | [`ops`] | 5 | operations that propose a change: split, collapse, swap, smooth, insert |
+//! | [`surface`] | 5 | triangle surfaces made even, within a distance of what they were |
 //! | [`delaunay`] | 6 | the exact Delaunay triangulation of any point set, and the constrained one of surfaces |
 //! | [`refine`] | 6 | tets divided over many generations without loss of shape, and merged again |
 //! | [`remesh`] | 6 | bad tets, and only those, found, classified and repaired |
@@ -75,6 +76,8 @@ pub mod refine;
 #[cfg(feature = "suite")]
 pub mod remesh;
 pub mod spatial;
+#[cfg(feature = "suite")]
+pub mod surface;
 
 pub use base::{Error, ErrorKind, Result};
 pub use mesh::Mesh;

@@ -18,6 +18,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("kernel", 4),
     ("preflight", 4),
     ("ops", 5),
+    ("surface", 5),
     ("delaunay", 6),
     ("refine", 6),
     ("remesh", 6),

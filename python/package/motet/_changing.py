@@ -337,6 +337,8 @@ class _Filling:
 
     size: float | str | None
     surface: str
+    distance: float | None
+    feature_angle: float
     growth: float | None
     size_array: str | None
     seeds: list
@@ -357,7 +359,9 @@ def mesh(
     *,
     membranes: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike] = (),
     size: float | Literal["auto"] | None = None,
-    surface: Literal["auto", "divide", "keep"] = "auto",
+    surface: Literal["auto", "divide", "keep", "adapt"] = "auto",
+    distance: float | None = None,
+    feature_angle: float = 40.0,
     growth: float | None = None,
     size_array: str | None = None,
     seeds: Mapping[str, ArrayLike] | None = None,
@@ -375,7 +379,8 @@ def mesh(
 ) -> Changed:
     """Fill closed surfaces with tets.
 
-    Every triangle becomes a facet of the mesh, unless it is far coarser than `size` and therefore divided.
+    Every triangle becomes a facet of the mesh, unless it is far coarser than `size` and therefore divided, or
+    the surface is adapted.
 
     Parameters
     ----------
@@ -387,10 +392,16 @@ def mesh(
     size : float or "auto", optional
         Edge length inside, in units of the surfaces. ``"auto"`` starts from the edge length of the surface
         and grows inwards. By default only points that are required are inserted inside.
-    surface : {"auto", "divide", "keep"}, default "auto"
+    surface : {"auto", "divide", "keep", "adapt"}, default "auto"
         Whether triangles are divided to `size` in their own planes; creases are kept. ``"auto"`` divides
         surfaces of which most triangles are far coarser than `size` or narrow, ``"divide"`` divides all
-        surfaces and ``"keep"`` none.
+        surfaces and ``"keep"`` none. ``"adapt"`` replaces the triangles of all surfaces by even ones, within
+        `distance`; creases, corners, rims and borders of patches are kept.
+    distance : float, optional
+        With ``surface="adapt"``: how far the new surface may stray from the given one, and that from the new
+        one, in units of the surfaces. Default: a thousandth of their largest extent.
+    feature_angle : float, default 40.0
+        With ``surface="adapt"``: edges at which triangles meet at more than this angle, in degrees, are creases.
     growth : float, optional
         Increase of edge length per unit of distance from the surface, up to `size`. Above 0, at most 0.7.
         Default: 0.3 if sizes are graded.
@@ -439,7 +450,7 @@ def mesh(
     given = [(as_mesh(one), name, False) for name, one in named(surfaces, "surface").items()]
     given += [(as_mesh(one), name, True) for name, one in named(membranes, "membrane").items()]
     request = _Filling(
-        size=size, surface=surface, growth=growth, size_array=size_array,
+        size=size, surface=surface, distance=distance, feature_angle=feature_angle, growth=growth, size_array=size_array,
         seeds=[(point(place), name) for name, place in (seeds or {}).items()], holes=[point(place) for place in holes], min_eas=min_eas,
         layers=list(layers.items()) if isinstance(layers, Mapping) else [] if layers is None else [(None, layers)],
         keep_prisms=keep_prisms, repair=repair, cut=cut, voids=voids, merge=merge, hole_edges=hole_edges,

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::adapt::{Adapted, Adapting, adapt};
 use super::bodies::{self, Body, Named, NumberedBodies, Seed};
 use super::compact::{compact, used_vertices};
 use super::divide::{Divided, divide};
@@ -31,8 +32,8 @@ const SWEEP: usize = 1 << 14;
 const OFF_PLANE: f64 = 4.0;
 
 names! {
-    /// Which surfaces have their triangles divided. The shape is kept to rounding: flat parts get new
-    /// triangles in their own planes, creases and borders of patches are divided into parts of about the
+    /// Which surfaces get new triangles. Where triangles are divided, the shape is kept to rounding: flat parts
+    /// get new triangles in their own planes, creases and borders of patches are divided into parts of about the
     /// size. [`Sizes::coarse`] says which are far coarser.
     pub enum Dividing: "rule for the surface" {
         /// Only surfaces most of whose triangles are far coarser than the size, or narrow.
@@ -41,6 +42,9 @@ names! {
         Always = "divide",
         /// No surface: every triangle is a facet of tets.
         Never = "keep",
+        /// All surfaces get even triangles of the size, within a distance of the given ones; creases, corners,
+        /// rims and borders of patches stay.
+        Adapt = "adapt",
     }
 }
 
@@ -53,6 +57,8 @@ pub struct Options {
     pub sizes: Option<Sizes>,
     /// Whether the triangles of the surfaces are divided to a uniform size. Default: [`Dividing::Coarse`].
     pub dividing: Dividing,
+    /// How surfaces are adapted, with [`Dividing::Adapt`].
+    pub adapting: Adapting,
     /// Places in bodies, with names for their regions. Default: none.
     pub seeds: Vec<Seed>,
     /// Places in bodies that are left out. Default: none.
@@ -83,7 +89,7 @@ impl Options {
     /// The size to which surfaces are divided, if any; `coarse` is given if they are far coarser.
     fn divided_to(&self, coarse: Option<Coarse>) -> Result<Option<f64>> {
         match (self.dividing, &self.sizes) {
-            (Dividing::Never, _) => Ok(None),
+            (Dividing::Never | Dividing::Adapt, _) => Ok(None),
             (Dividing::Coarse, _) => Ok(coarse.map(|coarse| coarse.size)),
             (Dividing::Always, Some(Sizes::Uniform(size))) => Ok(Some(*size)),
             (Dividing::Always, _) => {
@@ -118,8 +124,9 @@ impl Filled {
     pub fn not_reached(&self, options: &Options) -> Option<String> {
         let Report { points_on_edges, not_positive, triangles, triangles_kept, triangles_outside, .. } =
             self.report;
-        // A divided surface has no triangles to keep.
-        let keeps_triangles = options.edge_points != EdgePoints::Stay && self.report.divided.is_none();
+        // A surface with new triangles has none to keep.
+        let is_given = self.report.divided.is_none() && self.report.adapted.is_none();
+        let keeps_triangles = options.edge_points != EdgePoints::Stay && is_given;
         let in_pieces = (keeps_triangles && points_on_edges > 0).then(|| {
             format!(
                 "{} triangles of the surfaces are divided: there was no space inside for {points_on_edges} points on \
@@ -161,6 +168,8 @@ pub struct Report {
     pub coarse: Option<Coarse>,
     /// How many triangles such a surface was divided into.
     pub divided: Option<Divided>,
+    /// How surfaces were adapted, if requested.
+    pub adapted: Option<Adapted>,
     /// Bodies left out because closed surfaces turned inward enclose them.
     pub voids: usize,
     /// The worst EAS before improvement.
@@ -190,6 +199,14 @@ pub fn fill(
     let named = Named { seeds: &options.seeds, holes: &options.holes, leaves_voids_out: options.voids };
     options.sizes.as_ref().map_or(Ok(()), |sizes| sizes.check(surfaces))?;
     options.improve.as_ref().map_or(Ok(()), remesh::Options::check)?;
+    if options.dividing == Dividing::Adapt {
+        let (adapted, sizes, report) = adapt(surfaces, options.sizes.as_ref(), &options.adapting, threads)?;
+        let preflight = adapted.preflight(threads);
+        let options = Options { dividing: Dividing::Never, sizes, ..options.clone() };
+        let mut filled = fill(&adapted, &preflight, &options, threads)?;
+        filled.report.adapted = Some(report);
+        return Ok(filled);
+    }
     let coarse = options.sizes.as_ref().and_then(|sizes| sizes.coarse(surfaces));
     let divided = options.divided_to(coarse)?.map(|size| divide(surfaces, size, threads)).transpose()?;
     let off_plane = divided.is_some().then(|| OFF_PLANE * rounding::of(&surfaces.points));
@@ -367,6 +384,7 @@ fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize, threads: &
         triangles_outside: filled.triangle_to_bodies.iter().filter(|b| **b == [None; 2]).count(),
         coarse: None,
         divided: None,
+        adapted: None,
         voids: 0,
         worst_eas: eas.into_iter().fold(f64::INFINITY, f64::min),
         not_positive: 0,

@@ -6,6 +6,7 @@
 //! | caps | `caps` | open rims closed, frame by frame of a wall that moves |
 //! | check | [`crate::preflight`] | everything that would prevent meshing, with ids and places |
 //! | divide | `divide` | a surface far coarser than the size inside is divided within its own planes |
+//! | adapt | `adapt`, [`crate::surface`] | or surfaces get even triangles within a distance, if requested |
 //! | layers | [`layers`] | thin prisms on walls, if requested; the following steps fill the core that they leave |
 //! | sizes | `sizes`, `size_field` | the same everywhere, or growing from the surface |
 //! | points | `interior`; `graded`, `octree`, `shadow` | a lattice inside, slightly away from the surface; or one of nested cubes |
@@ -15,6 +16,7 @@
 //! | labels | `fill` | each enclosed body is a region, triangles keep their patches |
 //! | words | `words` | options as callers write them, with names of patches |
 
+mod adapt;
 mod bodies;
 mod caps;
 mod compact;
@@ -25,11 +27,13 @@ mod interior;
 pub mod layers;
 mod octree;
 mod shadow;
+mod sheet;
 mod size_field;
 mod sizes;
 mod surfaces;
 mod words;
 
+pub use adapt::{Adapted, Adapting};
 pub(crate) use bodies::bodies_of_mesh;
 pub use bodies::{Body, Seed};
 pub use caps::{Caps, RimPlane};

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::adapt::Adapting;
 use super::bodies::Seed;
 use super::fill::{Dividing, Options};
 use super::layers::{Layers, Stack};
@@ -21,8 +22,15 @@ words! {
         /// tets are repaired; `auto`: the length of the surface's edges, growing inwards. By default only
         /// points without which there are no tets.
         size: Option<EdgeLength> = None,
-        /// Whether triangles of the surface are divided to a `size` within their planes, creases kept.
+        /// Whether triangles of the surface are divided to a `size` within their planes, creases kept, or
+        /// replaced by even ones.
         surface: Dividing = Dividing::default(),
+        /// How far a surface that is adapted may stray from the given one, and that from it, in the unit of the
+        /// surface. By default a thousandth of the largest extent.
+        distance: Option<f64> = None,
+        /// Edges at which triangles meet at more than this angle, in degrees, are creases that stay where a
+        /// surface is adapted.
+        feature_angle: f64 = Adapting::default().feature_angle,
         /// Sizes grow from the surface inwards, by so much per unit of distance, up to `size`; at most 0.7.
         /// By default they grow, by 0.3, where `size` is `auto` or an array gives sizes.
         growth: Option<f64> = None,
@@ -79,6 +87,7 @@ impl MeshingWords {
         Ok(Options {
             edge_points: if self.delaunay { EdgePoints::Stay } else { EdgePoints::MoveInside },
             dividing: self.surface,
+            adapting: Adapting { distance: self.distance, feature_angle: self.feature_angle },
             seeds: self.seeds.clone(),
             holes: self.holes.clone(),
             voids: self.voids,
@@ -265,7 +274,7 @@ mod tests {
         let options = words.options(&ball(), None).unwrap();
         assert_eq!(format!("{options:?}"), format!("{:?}", Options::default()));
         assert!(words.repairs().is_none());
-        assert_eq!(MeshingWords::NAMES.len(), 16);
+        assert_eq!(MeshingWords::NAMES.len(), 18);
     }
 
     #[test]

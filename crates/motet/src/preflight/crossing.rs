@@ -57,7 +57,7 @@ pub(super) fn crossings_of(
         let mut found = Vec::new();
         for i in run {
             tree.touching(bounding_box(&corners(points, a[i])), near);
-            let met = near.iter().filter(|&&j| admit(i as u32, j) && cross(points, a[i], b[j as usize]));
+            let met = near.iter().filter(|&&j| admit(i as u32, j) && meet(points, a[i], b[j as usize]));
             found.extend(met.map(|&j| [i as u32, j]));
         }
         found
@@ -65,7 +65,7 @@ pub(super) fn crossings_of(
 }
 
 /// Whether two triangles have more in common than the vertices and edges that they share by id.
-fn cross(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool {
+pub(crate) fn meet(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool {
     let [of_a, of_b] = [a, b].map(|t| corners(points, t));
     if !a.iter().any(|v| b.contains(v)) {
         return triangle_triangle::meet(of_a, of_b);

@@ -44,6 +44,7 @@ mod sides;
 mod single;
 mod surfaces;
 
+pub(crate) use crossing::meet;
 pub use crossing::{crossings, own_crossings};
 pub use culprits::culprits;
 pub use fault::{Fault, FaultKind};

@@ -1,14 +1,16 @@
-//! Boxes that are added one by one, found by a point: a hierarchical hash table.
+//! Boxes that are added and removed one by one, found by a point or a box: a hierarchical hash table.
 //!
 //! A box is stored in the cells that it touches of a grid whose cells are hardly larger than the box: the
 //! smallest power of two. There is a grid for each such size, so boxes of all sizes take at most eight cells
 //! (Overmars 1992, *Point location in fat subdivisions*). A tree over all boxes costs more than it saves
 //! where few of them are ever asked for.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
+
+use hashbrown::HashMap;
 
 use crate::base::Point;
-use crate::spatial::Bounds;
+use crate::spatial::boxes::{Bounds, touch};
 
 /// Boxes with an id each; an id may be added more than once.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +22,8 @@ pub(crate) struct GrowingBoxes {
 #[derive(Clone, Debug, Default)]
 struct Grid {
     boxes: Vec<(u32, Bounds)>,
+    /// Places in the list that are not in use.
+    unused: Vec<u32>,
     /// The boxes that touch a cell, by their places in the list.
     cells: HashMap<[i64; 3], Vec<u32>>,
 }
@@ -30,14 +34,54 @@ type Best<T> = Option<(f64, u32, T)>;
 impl GrowingBoxes {
     /// Adds a box.
     pub(crate) fn add(&mut self, id: u32, [low, high]: Bounds) {
-        let extent = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
-        // Cells so small that coordinates in units of them are no longer exact are of no use.
-        let largest = low.iter().chain(&high).fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
-        let level = exponent(extent.max(largest * f64::EPSILON));
+        let level = level_of([low, high]);
         let grid = self.grids.entry(level).or_default();
-        let place = grid.boxes.len() as u32;
-        grid.boxes.push((id, [low, high]));
+        let place = grid.unused.pop().unwrap_or(grid.boxes.len() as u32);
+        if place as usize == grid.boxes.len() {
+            grid.boxes.push((id, [low, high]));
+        }
+        grid.boxes[place as usize] = (id, [low, high]);
         for_each_cell(level, [low, high], |cell| grid.cells.entry(cell).or_default().push(place));
+    }
+
+    /// Removes a box that was added with this id.
+    pub(crate) fn remove(&mut self, id: u32, bounds: Bounds) {
+        let level = level_of(bounds);
+        let Some(grid) = self.grids.get_mut(&level) else { return };
+        let mut removed = None;
+        for_each_cell(level, bounds, |cell| {
+            let Some(places) = grid.cells.get_mut(&cell) else { return };
+            let boxes = &grid.boxes;
+            let is_it = |&place: &u32| boxes[place as usize] == (id, bounds);
+            if let Some(k) =
+                places.iter().position(|place| removed.map_or_else(|| is_it(place), |r| r == *place))
+            {
+                removed = Some(places.swap_remove(k));
+            }
+        });
+        if let Some(place) = removed {
+            grid.boxes[place as usize].1 = NOWHERE;
+            grid.unused.push(place);
+        }
+    }
+
+    /// Appends the ids of all boxes that touch a box to `found`; an id may be appended more than once.
+    pub(crate) fn touching(&self, bounds: Bounds, found: &mut Vec<u32>) {
+        for (&level, grid) in &self.grids {
+            let mut look = |&(id, other): &(u32, Bounds)| {
+                if touch(other, bounds) {
+                    found.push(id);
+                }
+            };
+            if !grid.has_fewer_cells(level, bounds) {
+                grid.boxes.iter().for_each(look);
+                continue;
+            }
+            for_each_cell(level, bounds, |cell| {
+                let places = grid.cells.get(&cell).into_iter().flatten();
+                places.for_each(|&place| look(&grid.boxes[place as usize]));
+            });
+        }
     }
 
     /// The id with the lowest measure, the lowest among equals, and what `measure` returned with it. The
@@ -64,7 +108,24 @@ impl GrowingBoxes {
     }
 }
 
+/// The box of what is removed: it touches nothing.
+const NOWHERE: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+
+/// The grid that holds a box.
+fn level_of([low, high]: Bounds) -> i32 {
+    let extent = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+    // Cells so small that coordinates in units of them are no longer exact are of no use.
+    let largest = low.iter().chain(&high).fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+    exponent(extent.max(largest * f64::EPSILON))
+}
+
 impl Grid {
+    /// Whether a box touches fewer cells than there are boxes, about.
+    fn has_fewer_cells(&self, level: i32, [low, high]: Bounds) -> bool {
+        let n_cells: f64 = (0..3).map(|k| (high[k] - low[k]) * scale(level) + 2.0).product();
+        n_cells < 8.0 + self.boxes.len() as f64
+    }
+
     /// Measures the boxes in the cells that a box around a point touches.
     fn look_around<T>(
         &self,
@@ -74,9 +135,7 @@ impl Grid {
         measure: &impl Fn(u32) -> Option<(f64, T)>,
         best: &mut Best<T>,
     ) {
-        let n_cells: f64 = (0..3).map(|k| (around[1][k] - around[0][k]) * scale(level) + 2.0).product();
-        let are_few = n_cells < 8.0 + self.boxes.len() as f64;
-        if !are_few {
+        if !self.has_fewer_cells(level, around) {
             return self.boxes.iter().for_each(|&of| improve(of, point, measure, best));
         }
         for_each_cell(level, around, |cell| {
@@ -94,7 +153,7 @@ fn improve<T>(
     best: &mut Best<T>,
 ) {
     let least = distance_squared(point, bounds);
-    if best.as_ref().is_some_and(|best| least > best.0 || best.1 == id) {
+    if bounds == NOWHERE || best.as_ref().is_some_and(|best| least > best.0 || best.1 == id) {
         return;
     }
     if let Some((squared, with)) = measure(id)

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod adapt;
 mod divide;
 mod layers;
 mod sizes_and_regions;

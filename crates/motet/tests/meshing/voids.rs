@@ -45,6 +45,7 @@ const VOIDS: Options = Options {
     edge_points: motet::delaunay::EdgePoints::MoveInside,
     sizes: None,
     dividing: motet::meshing::Dividing::Coarse,
+    adapting: motet::meshing::Adapting { distance: None, feature_angle: 40.0 },
     seeds: Vec::new(),
     holes: Vec::new(),
     voids: true,

@@ -61,6 +61,11 @@ pub(crate) struct MeshArgs {
     #[arg(long, help = help::effect::<MeshingWords>("surface"), value_name = "RULE", value_parser = help::name_of::<Dividing>(),
         default_value_t = MeshingWords::default().surface)]
     pub(crate) surface: Dividing,
+    #[arg(long, help = help::effect::<MeshingWords>("distance"), value_name = "D", value_parser = positive)]
+    pub(crate) distance: Option<f64>,
+    #[arg(long, help = help::effect::<MeshingWords>("feature_angle"), value_name = "DEG",
+        default_value_t = MeshingWords::default().feature_angle)]
+    pub(crate) feature_angle: f64,
     #[arg(long, help = help::effect::<MeshingWords>("growth"), value_name = "G", value_parser = positive)]
     pub(crate) growth: Option<f64>,
     #[arg(long, help = help::effect::<MeshingWords>("size_array"), value_name = "NAME")]
@@ -110,6 +115,8 @@ impl MeshArgs {
         MeshingWords {
             size: self.size,
             surface: self.surface,
+            distance: self.distance,
+            feature_angle: self.feature_angle,
             growth: self.growth,
             size_array: self.size_array.clone(),
             seeds: self.seed.clone(),

@@ -144,6 +144,16 @@ impl<'a> Report<'a> {
                 count(divided.before)
             ));
         }
+        if let Some(adapted) = filled.adapted {
+            console.print(format_args!(
+                "the surface was adapted: {} triangles in place of {}, at most {} from it, and it from them at most {} ({} allowed)",
+                count(adapted.after),
+                count(adapted.before),
+                short(adapted.to_given),
+                short(adapted.from_given),
+                short(adapted.allowed)
+            ));
+        }
         console.print(format_args!(
             "{} of {} triangles are facets unchanged; {} points were inserted inside, {} on edges",
             count(filled.triangles_kept),

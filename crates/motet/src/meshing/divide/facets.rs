@@ -2,40 +2,11 @@
 //! patches of the same surfaces.
 
 use super::triangulation::Plane;
-use crate::base::{DisjointSets, Point, VertexId, same_orientation, sorted_ids};
+use crate::base::{DisjointSets, Point, VertexId, sorted_ids};
 use crate::delaunay::flat_facets;
 use crate::geometry::rounding;
 use crate::geometry::triangle::area;
-use crate::meshing::surfaces::Surfaces;
-
-/// How a surface uses a triangle: the surface, its patch, and whether the triangle has the orientation of the
-/// first one with these vertices.
-pub(super) type Label = (u32, i32, bool);
-
-/// The triangles of surfaces, coincident ones merged.
-pub(super) struct Sheet {
-    pub(super) triangles: Vec<[VertexId; 3]>,
-    /// For each triangle, how the surfaces that contain it use it.
-    labels: Vec<Vec<Label>>,
-}
-
-impl Sheet {
-    pub(super) fn of(surfaces: &Surfaces) -> Self {
-        let mut order: Vec<usize> = (0..surfaces.triangles.len()).collect();
-        let key = |t: usize| sorted_ids(surfaces.triangles[t]);
-        order.sort_by_key(|&t| (key(t), t));
-        let mut groups: Vec<&[usize]> = order.chunk_by(|&s, &t| key(s) == key(t)).collect();
-        groups.sort_by_key(|group| group[0]);
-        let label = |first: usize, t: usize| {
-            let is_alike = same_orientation(surfaces.triangles[first], surfaces.triangles[t]);
-            (surfaces.surface_of[t], surfaces.patches[t], is_alike)
-        };
-        Self {
-            triangles: groups.iter().map(|group| surfaces.triangles[group[0]]).collect(),
-            labels: groups.iter().map(|group| group.iter().map(|&t| label(group[0], t)).collect()).collect(),
-        }
-    }
-}
+use crate::meshing::sheet::{Label, Sheet};
 
 /// Flat facets.
 pub(super) struct Facets {

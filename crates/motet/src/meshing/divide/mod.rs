@@ -13,9 +13,10 @@ mod triangulation;
 
 use serde::Serialize;
 
-use self::facets::{Facets, Sheet};
+use self::facets::Facets;
 use self::triangulation::Triangulation;
 use super::interior;
+use super::sheet::Sheet;
 use super::surfaces::Surfaces;
 use crate::base::{Error, Result, Threads, VertexId};
 use crate::geometry::triangle::area;
@@ -65,26 +66,9 @@ pub(super) fn divide(surfaces: &Surfaces, size: f64, threads: &Threads) -> Resul
     refine::divide_creases(&mut triangulation, size, watch)?;
     refine::refine(&mut triangulation, size, MAX_POINTS_PER_TRIANGLE * expected as usize, watch)?;
     let after = triangulation.triangles.len();
-    Ok((joined(surfaces, triangulation, &labels), Divided { before, after }))
-}
-
-/// Returns the surfaces with the triangles of `triangulation`, each with the labels of its facet.
-fn joined(surfaces: &Surfaces, triangulation: Triangulation, labels: &[Vec<facets::Label>]) -> Surfaces {
-    let mut divided = Surfaces {
-        points: triangulation.points,
-        triangles: Vec::with_capacity(triangulation.triangles.len()),
-        surface_of: Vec::with_capacity(triangulation.triangles.len()),
-        patches: Vec::with_capacity(triangulation.triangles.len()),
-        ..surfaces.clone()
-    };
-    for (&[a, b, c], &facet) in triangulation.triangles.iter().zip(&triangulation.facet_of) {
-        for &(surface, patch, is_alike) in &labels[facet as usize] {
-            divided.triangles.push(if is_alike { [a, b, c] } else { [a, c, b] });
-            divided.surface_of.push(surface);
-            divided.patches.push(patch);
-        }
-    }
-    divided
+    let Triangulation { points, triangles, facet_of, .. } = triangulation;
+    let of = triangles.into_iter().zip(&facet_of).map(|(t, &facet)| (t, &labels[facet as usize][..]));
+    Ok((surfaces.with_sheet(points, of), Divided { before, after }))
 }
 
 /// Estimates the number of triangles: regular ones over the area, and those at divided creases.

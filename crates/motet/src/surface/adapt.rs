@@ -1,0 +1,301 @@
+//! Passes over a surface: long edges are split, short ones collapsed, edges flipped, vertices moved (Botsch,
+//! Kobbelt 2004, *A remeshing approach to multiresolution modeling*), then narrow triangles made wider.
+
+use super::features::{Kind, length};
+use super::sheet::{Change, Sheet, edges_of};
+use super::work::{Refusal, Work, cosines, largest_cosine};
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::triangle::{area, centroid};
+use crate::geometry::vector::{add, distance, scale};
+
+/// Edges longer than this times the size are split; halves are then as near to it as the whole was.
+const LONG: f64 = 4.0 / 3.0;
+/// Edges shorter than this times the size are collapsed.
+const SHORT: f64 = 0.8;
+/// How many rounds are made at most.
+const ROUNDS: usize = 8;
+/// The first round after which sizes do not rise again, so that rounds come to an end.
+const SETTLED: usize = 2;
+/// Rounds end when fewer than this fraction of the edges was split or collapsed.
+const FEW: f64 = 0.005;
+/// The cosine of the angle below which a triangle is narrow: 30 degrees.
+const NARROW: f64 = 0.866;
+/// The cosine of the angle that no change but one of worse triangles may fall below: 20 degrees.
+const POOR: f64 = 0.94;
+/// The least gain of a cosine.
+const GAIN: f64 = 1e-3;
+/// Vertices do not move by less than this times their size.
+const STILL: f64 = 0.02;
+/// How many passes are made over narrow triangles.
+const WIDENINGS: usize = 12;
+
+impl Work<'_> {
+    /// Brings edges to their sizes. `sizes` gives those requested of a place of a label, `growth` how much they may
+    /// grow per unit of distance.
+    pub(super) fn adapt(&mut self, sizes: impl Fn(&Self, u32, Point) -> f64, growth: f64) -> Result<()> {
+        for round in 0..ROUNDS {
+            self.threads.watch().report_and_check("making the surface even", round, ROUNDS)?;
+            let n_split = self.split_long()?;
+            let (n_collapsed, needed) = self.collapse_short();
+            self.flip_all();
+            self.smooth();
+            self.resize(&sizes, &needed, growth, round >= SETTLED);
+            let n_edges = 1.5 * self.sheet.existing().count() as f64;
+            if ((n_split + n_collapsed) as f64) < FEW * n_edges {
+                break;
+            }
+        }
+        self.widen_all();
+        Ok(())
+    }
+
+    /// Sets the sizes as requested, but no larger than `needed` at some vertices. Sizes that were needed before are
+    /// forgotten unless `is_settled`.
+    fn resize(
+        &mut self,
+        sizes: &impl Fn(&Self, u32, Point) -> f64,
+        needed: &[(VertexId, f64)],
+        growth: f64,
+        is_settled: bool,
+    ) {
+        for v in 0..self.sheet.points.len() {
+            if let Some(&t) = self.sheet.star(VertexId::new(v)).first() {
+                let requested = sizes(self, self.sheet.label(t), self.sheet.points[v]);
+                self.sizes[v] = if is_settled { self.sizes[v].min(requested) } else { requested };
+            }
+        }
+        for &(v, size) in needed {
+            self.sizes[v.index()] = self.sizes[v.index()].min(size);
+        }
+        self.grade(growth);
+    }
+
+    /// Lowers sizes that grow by more than `growth` times the distance.
+    pub(super) fn grade(&mut self, growth: f64) {
+        let mut edges: Vec<([VertexId; 2], f64)> =
+            self.sheet.edges().into_iter().map(|edge| (edge, growth * length(&self.sheet, edge))).collect();
+        loop {
+            let mut is_changed = false;
+            for &([u, v], more) in &edges {
+                let [of_u, of_v] = [u, v].map(|v| self.sizes[v.index()]);
+                // Not for the last bits.
+                if of_u > (of_v + more) * (1.0 + 1e-9) {
+                    self.sizes[u.index()] = of_v + more;
+                    is_changed = true;
+                } else if of_v > (of_u + more) * (1.0 + 1e-9) {
+                    self.sizes[v.index()] = of_u + more;
+                    is_changed = true;
+                }
+            }
+            if !is_changed {
+                return;
+            }
+            edges.reverse();
+        }
+    }
+
+    /// Splits long edges, the longest first. Returns how many.
+    ///
+    /// # Errors
+    /// When there would be more than `max_triangles`.
+    fn split_long(&mut self) -> Result<usize> {
+        let mut n = 0;
+        loop {
+            if self.sheet.n_slots() > self.max_triangles {
+                let what = format!("the adapted surface needs more than {} triangles", self.max_triangles);
+                return Err(Error::options(what).remedy("give a larger size or distance"));
+            }
+            let mut long: Vec<(f64, [VertexId; 2])> = self
+                .sheet
+                .edges()
+                .into_iter()
+                .map(|edge| (self.ratio(edge), edge))
+                .filter(|x| x.0 > LONG)
+                .collect();
+            long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+            let n_now = long.into_iter().filter(|(_, edge)| self.split(*edge)).count();
+            if n_now == 0 {
+                return Ok(n);
+            }
+            n += n_now;
+        }
+    }
+
+    /// Collapses short edges, the shortest first. Returns how many, and the sizes of vertices whose edges are as
+    /// short as the given surface needs.
+    fn collapse_short(&mut self) -> (usize, Vec<(VertexId, f64)>) {
+        let mut short: Vec<(f64, [VertexId; 2])> = self
+            .sheet
+            .edges()
+            .into_iter()
+            .map(|edge| (self.ratio(edge), edge))
+            .filter(|x| x.0 < SHORT)
+            .collect();
+        short.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+        let (mut n, mut needed) = (0, Vec::new());
+        let least = 2.0 * self.original.distance;
+        for (_, edge) in short {
+            let [u, v] = edge;
+            if self.sheet.at_edge(u, v).next().is_none() || self.ratio(edge) >= SHORT {
+                continue;
+            }
+            let longest = LONG * self.size(edge);
+            let admits = |sheet: &Sheet, change: &Change| {
+                let [before, after] = cosines(sheet, change);
+                let longest_of =
+                    |[a, b, c]: [Point; 3]| distance(a, b).max(distance(b, c)).max(distance(c, a));
+                let of_before =
+                    change.removed.iter().map(|&t| longest_of(sheet.corners(t))).fold(longest, f64::max);
+                after <= before.max(POOR) && sheet.corners_after(change).all(|t| longest_of(t) <= of_before)
+            };
+            match self.collapse(edge, admits) {
+                Ok(()) => n += 1,
+                Err(Refusal::Far) => {
+                    let size = (length(&self.sheet, edge) / SHORT).max(least);
+                    needed.extend([(u, size), (v, size)]);
+                }
+                Err(Refusal::Bad) => {}
+            }
+        }
+        (n, needed)
+    }
+
+    /// Flips edges where that widens the narrower of their triangles.
+    fn flip_all(&mut self) {
+        for _ in 0..3 {
+            let mut n = 0;
+            for edge in self.sheet.edges() {
+                let longest = 1.5 * LONG * self.size(edge);
+                let admits = |sheet: &Sheet, change: &Change| {
+                    let [before, after] = cosines(sheet, change);
+                    let [c, _, d] = change.added[0].0.map(|v| sheet.points[v.index()]);
+                    let is_short = distance(c, d) < longest.max(length(sheet, edge));
+                    after < before - GAIN && is_short
+                };
+                n += usize::from(self.flip(edge, admits));
+            }
+            if n == 0 {
+                return;
+            }
+        }
+    }
+
+    /// Moves each vertex towards the centroid of its triangles, weighted so that sizes are followed.
+    fn smooth(&mut self) {
+        for v in (0..self.sheet.points.len()).map(VertexId::new) {
+            if self.sheet.star(v).is_empty() || !std::mem::take(&mut self.is_active[v.index()]) {
+                continue;
+            }
+            let admits = |sheet: &Sheet, change: &Change| {
+                let [before, after] = cosines(sheet, change);
+                after <= before.max(NARROW)
+            };
+            match self.features.kind(v) {
+                Kind::Free => {
+                    let Some(place) = self.towards_centroid(v) else { continue };
+                    if distance(place, self.sheet.points[v.index()]) > STILL * self.sizes[v.index()] {
+                        self.shift(v, place, admits);
+                    }
+                }
+                Kind::OnLine => {
+                    let ends = self.features.line_ends(&self.sheet, v);
+                    let &[a, b] = ends.as_slice() else { continue };
+                    let [of_a, of_b] = [a, b].map(|end| self.ratio([v, end]));
+                    let (towards, from) = if of_a > of_b { (a, b) } else { (b, a) };
+                    let [of_towards, of_from] = [of_a.max(of_b), of_a.min(of_b)];
+                    let fraction = 0.5 * (of_towards - of_from) / of_towards;
+                    if fraction > 0.05 {
+                        self.slide(v, [towards, from], fraction, admits);
+                    }
+                }
+                Kind::Corner => {}
+            }
+        }
+    }
+
+    /// The centroid of a vertex's triangles, weighted by size, moved onto the given surface.
+    fn towards_centroid(&self, v: VertexId) -> Option<Point> {
+        let star = self.sheet.star(v);
+        let (mut sum, mut total) = ([0.0; 3], 0.0);
+        for &t in star {
+            let corners = self.sheet.corners(t);
+            let size = self.sheet.triangle(t).iter().map(|v| self.sizes[v.index()]).sum::<f64>();
+            let weight = area(corners) / size.powi(4);
+            sum = add(sum, scale(centroid(corners), weight));
+            total += weight;
+        }
+        if total <= 0.0 {
+            return None;
+        }
+        let label = self.sheet.label(*star.first()?);
+        let target = scale(sum, 1.0 / total);
+        let found = self.original.near(label, target, self.sizes[v.index()])?;
+        Some(found.point)
+    }
+
+    /// Makes narrow triangles wider: edges flipped or collapsed, vertices moved, whatever their sizes; where that
+    /// does not help, without the creases there.
+    fn widen_all(&mut self) {
+        for pass in 0..WIDENINGS {
+            let n = self.narrow(NARROW).into_iter().filter(|&t| self.widen(t)).count();
+            if n == 0 || pass + 1 == WIDENINGS {
+                let at_creases = self.narrow(POOR);
+                let vertices: Vec<VertexId> =
+                    at_creases.iter().flat_map(|&t| self.sheet.triangle(t)).collect();
+                let n = vertices.into_iter().filter(|v| self.features.release(&self.sheet, *v)).count();
+                if n == 0 {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Triangles with an angle whose cosine is above a limit, the narrowest first.
+    fn narrow(&self, limit: f64) -> Vec<u32> {
+        let of = |t| (largest_cosine(self.sheet.corners(t)), t);
+        let mut narrow: Vec<(f64, u32)> = self.sheet.existing().map(of).filter(|x| x.0 > limit).collect();
+        narrow.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+        narrow.into_iter().map(|(_, t)| t).collect()
+    }
+
+    /// Makes a triangle wider, if it is still narrow. Returns whether it changed.
+    fn widen(&mut self, t: u32) -> bool {
+        if !self.sheet.exists(t) || largest_cosine(self.sheet.corners(t)) <= NARROW {
+            return false;
+        }
+        let admits = |sheet: &Sheet, change: &Change| {
+            let [before, after] = cosines(sheet, change);
+            after < before - GAIN
+        };
+        let mut edges = edges_of(self.sheet.triangle(t));
+        edges.sort_by(|x, y| length(&self.sheet, *x).total_cmp(&length(&self.sheet, *y)).then(x.cmp(y)));
+        if self.flip(edges[2], admits) || self.flip(edges[1], admits) {
+            return true;
+        }
+        let longest = 2.0 * LONG * self.size(edges[0]);
+        let admits_short = |sheet: &Sheet, change: &Change| {
+            let longest_of = |[a, b, c]: [Point; 3]| distance(a, b).max(distance(b, c)).max(distance(c, a));
+            admits(sheet, change) && sheet.corners_after(change).all(|t| longest_of(t) <= longest)
+        };
+        if edges.into_iter().any(|edge| self.collapse(edge, admits_short).is_ok()) {
+            return true;
+        }
+        let corners = self.sheet.triangle(t);
+        for v in corners {
+            if self.features.kind(v) != Kind::Free {
+                continue;
+            }
+            let Some(target) = self.towards_centroid(v) else { continue };
+            let old = self.sheet.points[v.index()];
+            let label = self.sheet.label(t);
+            for step in [1.0, 0.5, 0.25] {
+                let place: Point = std::array::from_fn(|k| old[k] + step * (target[k] - old[k]));
+                let found = self.original.near(label, place, self.original.distance);
+                if found.is_some_and(|found| self.shift(v, found.point, admits)) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}

@@ -1,0 +1,109 @@
+//! Whether the new surface stays near all places of the given one: samples of that surface, each attached to a
+//! triangle of the new one.
+
+use super::sheet::{Change, Sheet};
+use crate::base::Point;
+use crate::geometry::triangle::{at, centroid, closest};
+use crate::geometry::vector::{add, distance, distance_squared, scale};
+
+/// Samples of a triangle are about as far apart as the allowed distance times this, with up to [`MAX_PARTS`] parts
+/// of an edge.
+const SPACING: f64 = 2.0;
+const MAX_PARTS: f64 = 8.0;
+
+/// Samples of the given surface.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cover {
+    places: Vec<Point>,
+    /// The samples of each triangle.
+    of_triangle: Vec<Vec<u32>>,
+}
+
+/// Where the samples of the removed triangles of a change go: pairs of a sample and the place of a triangle among
+/// the new ones.
+pub(super) type Moves = Vec<(u32, u32)>;
+
+impl Cover {
+    /// Samples of a sheet that is as it was given: vertices and, of triangles that are large beside the allowed
+    /// distance, centroids, middles of edges, and points in between.
+    pub(super) fn new(sheet: &Sheet, allowed: f64) -> Self {
+        let mut cover = Self { places: Vec::new(), of_triangle: vec![Vec::new(); sheet.n_slots()] };
+        let mut is_sampled = vec![false; sheet.points.len()];
+        for t in sheet.existing() {
+            let corners = sheet.corners(t);
+            for v in sheet.triangle(t) {
+                if !std::mem::replace(&mut is_sampled[v.index()], true) {
+                    cover.add(t, sheet.points[v.index()]);
+                }
+            }
+            let [a, b, c] = corners;
+            let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
+            let n = (longest / (SPACING * allowed)).floor().min(MAX_PARTS) as usize;
+            if n > 0 {
+                cover.add(t, centroid(corners));
+                for [p, q] in [[a, b], [b, c], [c, a]] {
+                    cover.add(t, scale(add(p, q), 0.5));
+                }
+            }
+            for (i, j) in (0..=n).flat_map(|i| (0..=n - i).map(move |j| (i, j))).filter(|_| n > 2) {
+                let weights = [i, j, n - i - j].map(|k| k as f64 / n as f64);
+                // Corners are samples already.
+                if weights.iter().all(|w| *w < 1.0) {
+                    cover.add(t, at(corners, weights));
+                }
+            }
+        }
+        cover
+    }
+
+    fn add(&mut self, t: u32, place: Point) {
+        self.of_triangle[t as usize].push(self.places.len() as u32);
+        self.places.push(place);
+    }
+
+    /// Where the samples of a change go: to the nearest new triangle of their label. `None` if one is farther than
+    /// `allowed` from all of them.
+    pub(super) fn moves(&self, sheet: &Sheet, change: &Change, allowed: f64) -> Option<Moves> {
+        let new: Vec<([Point; 3], u32)> = sheet
+            .corners_after(change)
+            .zip(&change.added)
+            .map(|(corners, (_, label))| (corners, *label))
+            .collect();
+        let mut moves = Vec::new();
+        for &t in &change.removed {
+            let label = sheet.label(t);
+            for &sample in &self.of_triangle[t as usize] {
+                let p = self.places[sample as usize];
+                let of = |(k, (corners, of)): (u32, &([Point; 3], u32))| {
+                    (*of == label).then(|| (distance_squared(at(*corners, closest(*corners, p)), p), k))
+                };
+                let nearest =
+                    (0..).zip(&new).filter_map(of).min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+                let (squared, k) = nearest?;
+                if squared > allowed * allowed {
+                    return None;
+                }
+                moves.push((sample, k));
+            }
+        }
+        Some(moves)
+    }
+
+    /// Takes over a change that was made; `ids` are those of the new triangles.
+    pub(super) fn commit(&mut self, change: &Change, moves: &Moves, ids: &[u32]) {
+        for &t in &change.removed {
+            self.of_triangle[t as usize].clear();
+        }
+        for &(sample, k) in moves {
+            let t = ids[k as usize] as usize;
+            if t >= self.of_triangle.len() {
+                self.of_triangle.resize_with(t + 1, Vec::new);
+            }
+            self.of_triangle[t].push(sample);
+        }
+        let most = ids.iter().max().map_or(0, |&t| t as usize + 1);
+        if most > self.of_triangle.len() {
+            self.of_triangle.resize_with(most, Vec::new);
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Triangles near a place, while they change: so that no change makes any cross.
+
+use super::sheet::{Change, Sheet, Vertex};
+use crate::base::{Point, VertexId};
+use crate::geometry::distance::triangle_triangle;
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, dot, norm, unit};
+use crate::preflight::meet;
+use crate::spatial::{GrowingBoxes, bounding_box, touch};
+
+/// The cosine of the largest angle between triangles that share vertices and one direction, so that they cannot
+/// cross: seen along it, all face the same way. 60 degrees.
+const MIN_COSINE: f64 = 0.5;
+
+/// The middle of an edge is off it by less than this times the largest coordinate.
+const ROUNDING: f64 = 1e-14;
+
+/// The boxes of all triangles.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Near {
+    boxes: GrowingBoxes,
+    found: Vec<u32>,
+}
+
+impl Near {
+    pub(super) fn new(sheet: &Sheet) -> Self {
+        let mut near = Self::default();
+        sheet.existing().for_each(|t| near.boxes.add(t, bounding_box(sheet.corners(t))));
+        near
+    }
+
+    /// Whether the new triangles of a change meet each other or any triangle that stays, other than in the vertices
+    /// and edges that they share.
+    /// A change that leaves the surface in place up to rounding can only meet what is that near.
+    pub(super) fn crosses(&mut self, sheet: &mut Sheet, change: &Change, in_place: bool) -> bool {
+        let old = in_place.then(|| change.removed.iter().map(|&t| sheet.corners(t)).collect());
+        let before = match change.vertex {
+            Vertex::Unchanged => None,
+            Vertex::Placed(v, place) if v.index() == sheet.points.len() => {
+                sheet.points.push(place);
+                None
+            }
+            Vertex::Placed(v, place) => Some((v, std::mem::replace(&mut sheet.points[v.index()], place))),
+        };
+        let met = self.is_met(sheet, change, old);
+        match (before, change.vertex) {
+            (Some((v, place)), _) => sheet.points[v.index()] = place,
+            (None, Vertex::Placed(..)) => drop(sheet.points.pop()),
+            _ => {}
+        }
+        met
+    }
+
+    fn is_met(&mut self, sheet: &Sheet, change: &Change, in_place: Option<Vec<[Point; 3]>>) -> bool {
+        let corners = |t: &[VertexId; 3]| t.map(|v| sheet.points[v.index()]);
+        let mut vertices: Vec<VertexId> = change.added.iter().flat_map(|(t, _)| *t).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let bounds = bounding_box(vertices.iter().map(|v| sheet.points[v.index()]));
+        self.found.clear();
+        self.boxes.touching(bounds, &mut self.found);
+        let added = || change.added.iter().map(|(t, _)| area_vector(corners(t)));
+        let direction = unit(added().fold([0.0; 3], add)).unwrap_or_default();
+        let faces = |normal: Point| dot(normal, direction) > MIN_COSINE * norm(normal);
+        let is_flat = added().all(faces);
+        let shares = |t: &[VertexId; 3]| t.iter().any(|v| vertices.binary_search(v).is_ok());
+        let is_far = |other: [Point; 3]| {
+            let Some(old) = &in_place else { return false };
+            let reach = ROUNDING * bounds.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            old.iter().all(|t| triangle_triangle::closest_below(*t, other, reach * reach).is_none())
+        };
+        let meets_any = |t: u32| {
+            let other = sheet.triangle(t);
+            if is_flat && shares(&other) && faces(area_vector(corners(&other))) {
+                return false;
+            }
+            let of_other = bounding_box(corners(&other));
+            let is_near = |t: &[VertexId; 3]| touch(bounding_box(corners(t)), of_other);
+            change.added.iter().any(|(t, _)| is_near(t))
+                && !is_far(corners(&other))
+                && change.added.iter().any(|(t, _)| is_near(t) && meet(&sheet.points, *t, other))
+        };
+        if self.found.iter().any(|t| !change.removed.contains(t) && meets_any(*t)) {
+            return true;
+        }
+        let is_met = |(k, (t, _)): (usize, &([VertexId; 3], u32))| {
+            change.added[..k].iter().any(|(other, _)| meet(&sheet.points, *t, *other))
+        };
+        !is_flat && change.added.iter().enumerate().any(is_met)
+    }
+
+    /// Takes out the triangles that a change removes, before it is made.
+    pub(super) fn remove(&mut self, sheet: &Sheet, change: &Change) {
+        for &t in &change.removed {
+            self.boxes.remove(t, bounding_box(sheet.corners(t)));
+        }
+    }
+
+    /// Takes in triangles after a change was made.
+    pub(super) fn add(&mut self, sheet: &Sheet, ids: &[u32]) {
+        ids.iter().for_each(|&t| self.boxes.add(t, bounding_box(sheet.corners(t))));
+    }
+}

@@ -1,0 +1,102 @@
+//! The surface as it was given: what is near, and which way it faces.
+
+use crate::base::{Point, Threads, VertexId};
+use crate::geometry::triangle::{area_vector, centroid};
+use crate::geometry::vector::{add, distance, dot, norm, scale, sub, unit};
+use crate::spatial::{Closest, NearestTriangle};
+
+/// The cosine of the largest angle between a new triangle and the given surface near it: 45 degrees.
+const MIN_COSINE: f64 = 0.707;
+
+/// The given surface, label by label.
+pub(super) struct Original {
+    of_label: Vec<OfLabel>,
+    /// How far a new surface may stray from it.
+    pub(super) distance: f64,
+}
+
+struct OfLabel {
+    tree: NearestTriangle,
+    /// The unit normal of each triangle; where a triangle is thinner than the distance, that of its
+    /// surroundings; zero where these have none.
+    normals: Vec<Point>,
+    /// The vertices of the triangles.
+    corners: Vec<[VertexId; 3]>,
+}
+
+impl Original {
+    /// `labels` are numbers below `n_labels`.
+    pub(super) fn new(
+        points: &[Point],
+        triangles: &[[VertexId; 3]],
+        labels: &[u32],
+        distance: f64,
+        threads: &Threads,
+    ) -> Self {
+        let n_labels = labels.iter().max().map_or(0, |&most| most as usize + 1);
+        let mut by_label = vec![Vec::new(); n_labels];
+        for (t, &label) in triangles.iter().zip(labels) {
+            by_label[label as usize].push(*t);
+        }
+        let of = |corners: Vec<[VertexId; 3]>| OfLabel {
+            tree: NearestTriangle::new(points, &corners, threads),
+            normals: normals(points, &corners, distance),
+            corners,
+        };
+        Self { of_label: by_label.into_iter().map(of).collect(), distance }
+    }
+
+    /// The nearest point of a label's triangles, if it is within `reach`.
+    pub(super) fn near(&self, label: u32, p: Point, reach: f64) -> Option<Closest> {
+        self.of_label[label as usize].tree.closest_within(p, reach)
+    }
+
+    /// The value at a point found by [`Self::near`], of values at vertices.
+    pub(super) fn value(&self, label: u32, found: &Closest, of_vertices: &[f64]) -> f64 {
+        let corners = self.of_label[label as usize].corners[found.triangle];
+        corners.iter().zip(found.weights).map(|(v, weight)| weight * of_vertices[v.index()]).sum()
+    }
+
+    /// Whether a place of a label is near.
+    pub(super) fn is_near(&self, label: u32, p: Point) -> bool {
+        self.near(label, p, self.distance).is_some()
+    }
+
+    /// Whether the centroid of a triangle is near a place of its label that faces the same way.
+    pub(super) fn faces(&self, label: u32, triangle: [Point; 3]) -> bool {
+        let of = &self.of_label[label as usize];
+        let normal = area_vector(triangle);
+        let length = norm(normal);
+        let faces = |t: u32, _: &Closest| {
+            let facing = of.normals[t as usize];
+            facing == [0.0; 3] || dot(normal, facing) > MIN_COSINE * length
+        };
+        length > 0.0 && of.tree.closest_where(centroid(triangle), self.distance, faces).is_some()
+    }
+}
+
+/// The height of a triangle over its longest edge.
+pub(super) fn height(corners: [Point; 3]) -> f64 {
+    let [a, b, c] = corners;
+    let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
+    if longest > 0.0 { norm(area_vector(corners)) / longest } else { 0.0 }
+}
+
+fn normals(points: &[Point], triangles: &[[VertexId; 3]], least_height: f64) -> Vec<Point> {
+    let corners = |t: &[VertexId; 3]| t.map(|v| points[v.index()]);
+    let mut at_vertices = vec![[0.0; 3]; points.len()];
+    for t in triangles {
+        let area = area_vector(corners(t));
+        t.iter().for_each(|v| at_vertices[v.index()] = add(at_vertices[v.index()], area));
+    }
+    let of = |t: &[VertexId; 3]| {
+        let own = area_vector(corners(t));
+        if height(corners(t)) >= least_height {
+            return unit(own).unwrap_or_default();
+        }
+        let around = t.iter().fold([0.0; 3], |sum, v| add(sum, at_vertices[v.index()]));
+        // Each corner's sum has the triangle's own area in it.
+        unit(sub(around, scale(own, 2.0))).unwrap_or_default()
+    };
+    triangles.iter().map(of).collect()
+}
