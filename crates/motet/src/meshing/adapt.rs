@@ -25,8 +25,8 @@ pub struct Adapted {
     pub after: usize,
     /// How far the surfaces were allowed to stray, in the unit of the surface.
     pub allowed: f64,
-    /// The largest distance of the adapted surfaces from the given ones, measured at vertices, middles of edges
-    /// and centroids.
+    /// The largest distance of the adapted surfaces from the given ones, measured at vertices, middles of
+    /// edges and centroids.
     pub to_given: f64,
     /// The largest distance of the given surfaces from the adapted ones, measured at such places.
     pub from_given: f64,
@@ -48,8 +48,8 @@ impl Default for Adapting {
     }
 }
 
-/// Gives surfaces even triangles, with edges as long as `sizes` requests, shorter where the distance requires it.
-/// Returns the surfaces, and the sizes of edges inside, which grow from those of the surfaces.
+/// Gives surfaces even triangles, with edges as long as `sizes` requests, shorter where the distance requires
+/// it. Returns the surfaces, and the sizes of edges inside, which grow from those of the surfaces.
 ///
 /// # Errors
 /// When the distance is not a length, or the angle not in [0, 180].

@@ -32,9 +32,9 @@ const SWEEP: usize = 1 << 14;
 const OFF_PLANE: f64 = 4.0;
 
 names! {
-    /// Which surfaces get new triangles. Where triangles are divided, the shape is kept to rounding: flat parts
-    /// get new triangles in their own planes, creases and borders of patches are divided into parts of about the
-    /// size. [`Sizes::coarse`] says which are far coarser.
+    /// Which surfaces get new triangles. Where triangles are divided, the shape is kept to rounding: flat
+    /// parts get new triangles in their own planes, creases and borders of patches are divided into parts of
+    /// about the size. [`Sizes::coarse`] says which are far coarser.
     pub enum Dividing: "rule for the surface" {
         /// Only surfaces most of whose triangles are far coarser than the size, or narrow.
         Coarse = "auto",
@@ -42,8 +42,8 @@ names! {
         Always = "divide",
         /// No surface: every triangle is a facet of tets.
         Never = "keep",
-        /// All surfaces get even triangles of the size, within a distance of the given ones; creases, corners,
-        /// rims and borders of patches stay.
+        /// All surfaces get even triangles of the size, within a distance of the given ones; creases,
+        /// corners, rims and borders of patches stay.
         Adapt = "adapt",
     }
 }

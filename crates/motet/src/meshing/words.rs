@@ -25,8 +25,8 @@ words! {
         /// Whether triangles of the surface are divided to a `size` within their planes, creases kept, or
         /// replaced by even ones.
         surface: Dividing = Dividing::default(),
-        /// How far a surface that is adapted may stray from the given one, and that from it, in the unit of the
-        /// surface. By default a thousandth of the largest extent.
+        /// How far a surface that is adapted may stray from the given one, and that from it, in the unit of
+        /// the surface. By default a thousandth of the largest extent.
         distance: Option<f64> = None,
         /// Edges at which triangles meet at more than this angle, in degrees, are creases that stay where a
         /// surface is adapted.

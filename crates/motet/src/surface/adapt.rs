@@ -30,8 +30,8 @@ const STILL: f64 = 0.02;
 const WIDENINGS: usize = 12;
 
 impl Work<'_> {
-    /// Brings edges to their sizes. `sizes` gives those requested of a place of a label, `growth` how much they may
-    /// grow per unit of distance.
+    /// Brings edges to their sizes. `sizes` gives those requested of a place of a label, `growth` how much
+    /// they may grow per unit of distance.
     pub(super) fn adapt(&mut self, sizes: impl Fn(&Self, u32, Point) -> f64, growth: f64) -> Result<()> {
         for round in 0..ROUNDS {
             self.threads.watch().report_and_check("making the surface even", round, ROUNDS)?;
@@ -49,8 +49,8 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Sets the sizes as requested, but no larger than `needed` at some vertices. Sizes that were needed before are
-    /// forgotten unless `is_settled`.
+    /// Sets the sizes as requested, but no larger than `needed` at some vertices. Sizes that were needed
+    /// before are forgotten unless `is_settled`.
     fn resize(
         &mut self,
         sizes: &impl Fn(&Self, u32, Point) -> f64,
@@ -121,8 +121,8 @@ impl Work<'_> {
         }
     }
 
-    /// Collapses short edges, the shortest first. Returns how many, and the sizes of vertices whose edges are as
-    /// short as the given surface needs.
+    /// Collapses short edges, the shortest first. Returns how many, and the sizes of vertices whose edges are
+    /// as short as the given surface needs.
     fn collapse_short(&mut self) -> (usize, Vec<(VertexId, f64)>) {
         let mut short: Vec<(f64, [VertexId; 2])> = self
             .sheet
@@ -233,8 +233,8 @@ impl Work<'_> {
         Some(found.point)
     }
 
-    /// Makes narrow triangles wider: edges flipped or collapsed, vertices moved, whatever their sizes; where that
-    /// does not help, without the creases there.
+    /// Makes narrow triangles wider: edges flipped or collapsed, vertices moved, whatever their sizes; where
+    /// that does not help, without the creases there.
     fn widen_all(&mut self) {
         for pass in 0..WIDENINGS {
             let n = self.narrow(NARROW).into_iter().filter(|&t| self.widen(t)).count();

@@ -1,13 +1,13 @@
-//! Whether the new surface stays near all places of the given one: samples of that surface, each attached to a
-//! triangle of the new one.
+//! Whether the new surface stays near all places of the given one: samples of that surface, each attached to
+//! a triangle of the new one.
 
 use super::sheet::{Change, Sheet};
 use crate::base::Point;
 use crate::geometry::triangle::{at, centroid, closest};
 use crate::geometry::vector::{add, distance, distance_squared, scale};
 
-/// Samples of a triangle are about as far apart as the allowed distance times this, with up to [`MAX_PARTS`] parts
-/// of an edge.
+/// Samples of a triangle are about as far apart as the allowed distance times this, with up to [`MAX_PARTS`]
+/// parts of an edge.
 const SPACING: f64 = 2.0;
 const MAX_PARTS: f64 = 8.0;
 
@@ -19,13 +19,13 @@ pub(super) struct Cover {
     of_triangle: Vec<Vec<u32>>,
 }
 
-/// Where the samples of the removed triangles of a change go: pairs of a sample and the place of a triangle among
-/// the new ones.
+/// Where the samples of the removed triangles of a change go: pairs of a sample and the place of a triangle
+/// among the new ones.
 pub(super) type Moves = Vec<(u32, u32)>;
 
 impl Cover {
-    /// Samples of a sheet that is as it was given: vertices and, of triangles that are large beside the allowed
-    /// distance, centroids, middles of edges, and points in between.
+    /// Samples of a sheet that is as it was given: vertices and, of triangles that are large beside the
+    /// allowed distance, centroids, middles of edges, and points in between.
     pub(super) fn new(sheet: &Sheet, allowed: f64) -> Self {
         let mut cover = Self { places: Vec::new(), of_triangle: vec![Vec::new(); sheet.n_slots()] };
         let mut is_sampled = vec![false; sheet.points.len()];
@@ -61,8 +61,8 @@ impl Cover {
         self.places.push(place);
     }
 
-    /// Where the samples of a change go: to the nearest new triangle of their label. `None` if one is farther than
-    /// `allowed` from all of them.
+    /// Where the samples of a change go: to the nearest new triangle of their label. `None` if one is farther
+    /// than `allowed` from all of them.
     pub(super) fn moves(&self, sheet: &Sheet, change: &Change, allowed: f64) -> Option<Moves> {
         let new: Vec<([Point; 3], u32)> = sheet
             .corners_after(change)

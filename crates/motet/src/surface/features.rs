@@ -1,4 +1,5 @@
-//! Lines and corners that a new surface keeps: borders of labels, rims, edges of more than two triangles, creases.
+//! Lines and corners that a new surface keeps: borders of labels, rims, edges of more than two triangles,
+//! creases.
 
 use super::lines::{Line, Lines};
 use super::original::height;
@@ -29,8 +30,8 @@ pub(super) struct Features {
 }
 
 impl Features {
-    /// The features of a sheet. Creases are edges whose triangles meet at more than `max_angle` degrees, if both
-    /// are at least `least_height` high: the normals of thinner ones say nothing.
+    /// The features of a sheet. Creases are edges whose triangles meet at more than `max_angle` degrees, if
+    /// both are at least `least_height` high: the normals of thinner ones say nothing.
     pub(super) fn of(sheet: &Sheet, max_angle: f64, least_height: f64) -> Self {
         let min_cosine = max_angle.to_radians().cos();
         let mut lines = Lines::default();

@@ -33,8 +33,8 @@ pub struct Options {
     pub sizes: Vec<f64>,
     /// How far the new surface may stray from the given one, and that from the new one.
     pub distance: f64,
-    /// Edges whose triangles meet at more than this angle, in degrees, are creases, which stay unless a triangle
-    /// would be narrow for them. 0 is flat.
+    /// Edges whose triangles meet at more than this angle, in degrees, are creases, which stay unless a
+    /// triangle would be narrow for them. 0 is flat.
     pub feature_angle: f64,
     /// How much sizes may grow per unit of distance.
     pub growth: f64,
@@ -74,13 +74,13 @@ pub struct Adapted {
     pub triangles: Vec<[VertexId; 3]>,
     /// The label of each triangle.
     pub labels: Vec<u32>,
-    /// The length of edges at each point: as requested, or shorter where the distance requires it, and growing
-    /// from there.
+    /// The length of edges at each point: as requested, or shorter where the distance requires it, and
+    /// growing from there.
     pub sizes: Vec<f64>,
 }
 
-/// Makes a surface even. Triangles keep their side and their label; labels are numbers from 0 on. Where triangles
-/// of the given surface cross, those of the new one do as well; it has no other crossings.
+/// Makes a surface even. Triangles keep their side and their label; labels are numbers from 0 on. Where
+/// triangles of the given surface cross, those of the new one do as well; it has no other crossings.
 ///
 /// # Errors
 /// When an option is out of its range, or a point is not finite.

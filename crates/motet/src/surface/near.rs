@@ -8,8 +8,8 @@ use crate::geometry::vector::{add, dot, norm, unit};
 use crate::preflight::meet;
 use crate::spatial::{GrowingBoxes, bounding_box, touch};
 
-/// The cosine of the largest angle between triangles that share vertices and one direction, so that they cannot
-/// cross: seen along it, all face the same way. 60 degrees.
+/// The cosine of the largest angle between triangles that share vertices and one direction, so that they
+/// cannot cross: seen along it, all face the same way. 60 degrees.
 const MIN_COSINE: f64 = 0.5;
 
 /// The middle of an edge is off it by less than this times the largest coordinate.
@@ -29,9 +29,9 @@ impl Near {
         near
     }
 
-    /// Whether the new triangles of a change meet each other or any triangle that stays, other than in the vertices
-    /// and edges that they share.
-    /// A change that leaves the surface in place up to rounding can only meet what is that near.
+    /// Whether the new triangles of a change meet each other or any triangle that stays, other than in the
+    /// vertices and edges that they share. A change that is `in_place` leaves the surface where it is up to
+    /// rounding, and can only meet what is that near.
     pub(super) fn crosses(&mut self, sheet: &mut Sheet, change: &Change, in_place: bool) -> bool {
         let old = in_place.then(|| change.removed.iter().map(|&t| sheet.corners(t)).collect());
         let before = match change.vertex {

@@ -1,5 +1,5 @@
-//! Triangles that can be changed: an edge split, flipped or collapsed, a vertex moved. Edges may have any number
-//! of triangles.
+//! Triangles that can be changed: an edge split, flipped or collapsed, a vertex moved. Edges may have any
+//! number of triangles.
 
 use crate::base::{Point, VertexId};
 use crate::geometry::vector::{add, scale};
@@ -139,9 +139,9 @@ impl Sheet {
         Some(Change { removed, added, vertex: Vertex::Unchanged })
     }
 
-    /// Collapses an edge: `removed` becomes `kept`, which gets a place. `None` if triangles would be folded onto
-    /// each other: the edge must have as many triangles as its ends have neighbours in common (Dey, Edelsbrunner,
-    /// Guha, Nekhayev 1999), and no two triangles may get the same vertices.
+    /// Collapses an edge: `removed` becomes `kept`, which gets a place. `None` if triangles would be folded
+    /// onto each other: the edge must have as many triangles as its ends have neighbours in common (Dey,
+    /// Edelsbrunner, Guha, Nekhayev 1999), and no two triangles may get the same vertices.
     pub(super) fn collapse(&self, removed: VertexId, kept: VertexId, place: Point) -> Option<Change> {
         let [of_removed, of_kept] = [removed, kept].map(|v| self.neighbours(v));
         let common = of_removed.iter().filter(|v| of_kept.binary_search(v).is_ok()).count();
@@ -172,8 +172,8 @@ impl Sheet {
         Change { removed, added, vertex: Vertex::Placed(v, place) }
     }
 
-    /// Makes a change. Returns the ids of the new triangles, in the order of [`Change::added`]; ids of removed
-    /// triangles are used again.
+    /// Makes a change. Returns the ids of the new triangles, in the order of [`Change::added`]; ids of
+    /// removed triangles are used again.
     pub(super) fn commit(&mut self, change: &Change) -> Vec<u32> {
         if let Vertex::Placed(v, place) = change.vertex {
             if v.index() == self.points.len() {

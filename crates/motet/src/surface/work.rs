@@ -16,7 +16,8 @@ const NEGLIGIBLE: f64 = 1e-6;
 /// Why a change is not made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refusal {
-    /// Its triangles would stray too far from the given surface, or face another way; or that surface from them.
+    /// Its triangles would stray too far from the given surface, or face another way; or that surface from
+    /// them.
     Far,
     /// Its triangles would be folded, cross others, or be worse than before.
     Bad,
@@ -62,8 +63,8 @@ impl<'a> Work<'a> {
         length(&self.sheet, edge) / self.size(edge)
     }
 
-    /// Splits an edge in the middle; away from lines, the middle is moved onto the given surface where that is
-    /// allowed.
+    /// Splits an edge in the middle; away from lines, the middle is moved onto the given surface where that
+    /// is allowed.
     pub(super) fn split(&mut self, edge: [VertexId; 2]) -> bool {
         let middle = self.sheet.middle(edge);
         let is_line = self.features.is_line(edge);
@@ -74,7 +75,6 @@ impl<'a> Work<'a> {
         let place = on_surface.filter(is_off).filter(|_| !is_line);
         for place in [place, Some(middle)].into_iter().flatten() {
             let change = self.sheet.split(edge, place);
-            // A split in place leaves the surface where it is.
             let moves = match place == middle {
                 true if self.near.crosses(&mut self.sheet, &change, true) => Err(Refusal::Bad),
                 // A split in place leaves the surface where it is.
@@ -101,8 +101,8 @@ impl<'a> Work<'a> {
         false
     }
 
-    /// Collapses an edge to the first place that `admits` the change, given the surface; places are the middle,
-    /// moved onto the given surface, and the ends.
+    /// Collapses an edge to the first place that `admits` the change, given the surface; places are the
+    /// middle, moved onto the given surface, and the ends.
     ///
     /// # Errors
     /// When there is no such place: why not.
@@ -256,8 +256,8 @@ impl<'a> Work<'a> {
         Ok(moves)
     }
 
-    /// Whether the new triangles are near the given surface, which is known of vertices and edges that stay as
-    /// they are, and that surface near them.
+    /// Whether the new triangles are near the given surface, which is known of vertices and edges that stay
+    /// as they are, and that surface near them.
     fn allowed_near(&self, change: &Change) -> Result<Moves, Refusal> {
         let sheet = &self.sheet;
         let placed = match change.vertex {
