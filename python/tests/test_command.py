@@ -29,13 +29,13 @@ def test_exit_statuses_tell_errors_apart(tmp_path):
     assert run("info", tmp_path / "box.vtu", "--json").returncode == 0
     assert run("info").returncode == 2 and "Usage" in run("info").stderr
     assert run("info", tmp_path / "none.vtu").returncode == 3
-    (tmp_path / "wing.med").write_bytes(b"")
-    assert "meshio convert wing.med" in run("info", tmp_path / "wing.med").stderr
+    (tmp_path / "wing.h5m").write_bytes(b"")
+    assert "meshio convert wing.h5m" in run("info", tmp_path / "wing.h5m").stderr
 
 
 def test_errors_for_foreign_formats_suggest_a_converter(tmp_path):
     for name, content, what in [
-        ("a.cas", b"", "Fluent"), ("a.med", b"", "MED"), ("a.xdmf2", b"<Xdmf>", "XDMF"), ("a.msh", b"(0 \"x\")\n(2 3)\n", "Fluent"),
+        ("a.ugrid", b"", "UGRID"), ("a.h5m", b"", "MOAB"), ("a.xdmf2", b"<Xdmf>", "XDMF"), ("a.mdpa", b"", "Kratos"),
     ]:  # fmt: skip
         (tmp_path / name).write_bytes(content)
         with pytest.raises(motet.InputError, match=what) as error:

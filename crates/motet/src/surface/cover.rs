@@ -2,7 +2,7 @@
 //! a triangle of the new one.
 
 use super::sheet::{Change, Sheet};
-use crate::base::Point;
+use crate::base::{Point, VertexId};
 use crate::geometry::triangle::{at, centroid, closest};
 use crate::geometry::vector::{add, distance, distance_squared, scale};
 
@@ -54,6 +54,18 @@ impl Cover {
             }
         }
         cover
+    }
+
+    /// Adds a sample, a place of the given surface, to the nearest triangle of a vertex.
+    pub(super) fn add_near(&mut self, sheet: &Sheet, v: VertexId, place: Point) {
+        let squared = |t: u32| {
+            let corners = sheet.corners(t);
+            distance_squared(at(corners, closest(corners, place)), place)
+        };
+        let star = sheet.star(v).iter().map(|&t| (squared(t), t));
+        if let Some((_, t)) = star.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1))) {
+            self.add(t, place);
+        }
     }
 
     fn add(&mut self, t: u32, place: Point) {

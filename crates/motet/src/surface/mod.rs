@@ -19,7 +19,7 @@ mod work;
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::{area, centroid};
-use crate::geometry::vector::{add, in_range, scale};
+use crate::geometry::vector::{LARGEST, add, in_range, scale};
 use crate::spatial::NearestTriangle;
 use features::Features;
 use original::Original;
@@ -44,9 +44,12 @@ impl Options {
     /// # Errors
     /// When a length is not above 0, or the angle or the growth is out of its range.
     fn check(&self, n_points: usize) -> Result<()> {
-        let is_length = |x: f64| x > 0.0 && x.is_finite();
+        let is_length = |x: f64| x > 0.0 && x <= LARGEST;
         if !is_length(self.distance) {
-            let what = format!("the distance of an adapted surface must be above 0; got {}", self.distance);
+            let what = format!(
+                "the distance of an adapted surface must be above 0 and at most {LARGEST:.0e}; got {}",
+                self.distance
+            );
             return Err(Error::options(what).remedy("a thousandth of the extent is a good start"));
         }
         if !(0.0..=180.0).contains(&self.feature_angle) {
@@ -151,7 +154,7 @@ fn expected(points: &[Point], triangles: &[[VertexId; 3]], sizes: &[f64]) -> f64
 }
 
 /// The fraction of the allowed distance that changes may use, since distances are measured at samples.
-const SHARE: f64 = 0.9;
+const SHARE: f64 = 0.8;
 
 /// Triangles lower than this times the allowed distance have normals that say nothing.
 const THIN: f64 = 0.5;

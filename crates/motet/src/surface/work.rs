@@ -8,10 +8,15 @@ use super::original::Original;
 use super::sheet::{Change, Sheet, Vertex, edges_of};
 use crate::base::{Point, Threads, VertexId, sorted_ids};
 use crate::geometry::segment;
+use crate::geometry::triangle::centroid;
 use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
 
 /// A vertex that would move by less than this times the allowed distance stays in place.
 const NEGLIGIBLE: f64 = 1e-6;
+
+/// Edges longer than this times the allowed distance are checked at three places instead of one, and their
+/// triangles at four.
+const DENSE: f64 = 8.0;
 
 /// Why a change is not made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,6 +90,9 @@ impl<'a> Work<'a> {
             let size = self.size(edge);
             let new = VertexId::new(self.sheet.points.len());
             self.commit(&change, &moves);
+            if let Some(place) = on_surface {
+                self.cover.add_near(&self.sheet, new, place);
+            }
             self.sizes.push(size);
             self.features.kinds.push(if is_line { Kind::OnLine } else { Kind::Free });
             if is_line {
@@ -269,8 +277,17 @@ impl<'a> Work<'a> {
                 && change.removed.iter().any(|&t| edge.iter().all(|v| sheet.triangle(t).contains(v)))
         };
         let mut seen: Vec<([VertexId; 2], u32)> = Vec::new();
+        let is_long = |a: Point, b: Point| distance(a, b) > DENSE * self.original.distance;
+        let mixed = |a: Point, b: Point, share: f64| add(scale(a, 1.0 - share), scale(b, share));
         for &(triangle, label) in &change.added {
-            if !self.original.faces(label, triangle.map(|v| sheet.place(change, v))) {
+            let corners = triangle.map(|v| sheet.place(change, v));
+            let [a, b, c] = corners;
+            let middle = centroid(corners);
+            let is_near = |p: Point| self.original.is_near(label, p);
+            let is_large = is_long(a, b) || is_long(b, c) || is_long(c, a);
+            if !self.original.faces(label, corners)
+                || is_large && !corners.into_iter().all(|p| is_near(mixed(middle, p, 0.5)))
+            {
                 return Err(Refusal::Far);
             }
             for edge in edges_of(triangle).map(sorted_ids) {
@@ -279,7 +296,8 @@ impl<'a> Work<'a> {
                 }
                 seen.push((edge, label));
                 let [a, b] = edge.map(|v| sheet.place(change, v));
-                if !self.original.is_near(label, scale(add(a, b), 0.5)) {
+                let shares: &[f64] = if is_long(a, b) { &[0.5, 0.25, 0.75] } else { &[0.5] };
+                if !shares.iter().all(|share| is_near(mixed(a, b, *share))) {
                     return Err(Refusal::Far);
                 }
             }
