@@ -35,3 +35,17 @@ pub(super) fn refuses(format: &Format, name: &str, text: &str, damages: &[(&str,
         assert!(error.starts_with(&format!("{name}: ")) && error.contains(expected), "{to}: {error}");
     }
 }
+
+/// Checks that a file in which any byte is replaced by any of `others` is read as a valid mesh or refused.
+pub(super) fn survives_changed_bytes(format: &Format, name: &str, file: &[u8], others: &[u8]) {
+    let mut bytes = file.to_vec();
+    for place in 0..bytes.len() {
+        for &other in others {
+            let own = std::mem::replace(&mut bytes[place], other);
+            if let Ok(mesh) = parsed(format, name, &bytes).0 {
+                mesh.validate().unwrap();
+            }
+            bytes[place] = own;
+        }
+    }
+}

@@ -3,17 +3,23 @@
 
 use super::features::{Kind, length};
 use super::sheet::{Change, Sheet, edges_of};
-use super::work::{Refusal, Work, cosines, largest_cosine};
+use super::work::{Refusal, Work, cosines};
 use crate::base::{Error, Point, Result, VertexId};
-use crate::geometry::triangle::{area, centroid};
+use crate::geometry::triangle::{area, centroid, largest_cosine, longest_side};
 use crate::geometry::vector::{add, distance, scale};
 
 /// Edges longer than this times the size are split; halves are then as near to it as the whole was.
 const LONG: f64 = 4.0 / 3.0;
 /// Edges shorter than this times the size are collapsed.
 const SHORT: f64 = 0.8;
+/// A flipped edge may be as long as this times the size, or as long as it was.
+const FLIPPED: f64 = 2.0;
+/// How many passes of flips are made at most.
+const FLIPS: usize = 3;
 /// How many rounds are made at most.
 const ROUNDS: usize = 8;
+/// How much finer a surface may become in a round between lines that are near each other.
+const MAX_FINER: f64 = 2.0;
 /// The first round after which sizes do not rise again, so that rounds come to an end.
 const SETTLED: usize = 2;
 /// Rounds end when fewer than this fraction of the edges was split or collapsed.
@@ -26,6 +32,12 @@ const POOR: f64 = 0.94;
 const GAIN: f64 = 1e-3;
 /// Vertices do not move by less than this times their size.
 const STILL: f64 = 0.02;
+/// The cosine of the angle below which triangles are made finer where they cannot be made wider: 26 degrees.
+const HELD_BY_DISTANCE: f64 = 0.9;
+/// By how much they are made finer in a round.
+const FINER: f64 = 0.7;
+/// How many rounds make triangles finer at most.
+const FINER_ROUNDS: usize = 3;
 /// How many passes are made over narrow triangles.
 const WIDENINGS: usize = 12;
 
@@ -35,18 +47,43 @@ impl Work<'_> {
     pub(super) fn adapt(&mut self, sizes: impl Fn(&Self, u32, Point) -> f64, growth: f64) -> Result<()> {
         for round in 0..ROUNDS {
             self.threads.watch().report_and_check("making the surface even", round, ROUNDS)?;
-            let n_split = self.split_long()?;
-            let (n_collapsed, needed) = self.collapse_short();
-            self.flip_all();
-            self.smooth();
+            let (n_changed, needed) = self.round(round >= SETTLED)?;
             self.resize(&sizes, &needed, growth, round >= SETTLED);
             let n_edges = 1.5 * self.sheet.existing().count() as f64;
-            if ((n_split + n_collapsed) as f64) < FEW * n_edges {
+            if (n_changed as f64) < FEW * n_edges {
                 break;
             }
         }
         self.widen_all();
+        for _ in 0..FINER_ROUNDS {
+            let finer = self.finer_at_narrow();
+            if finer.is_empty() {
+                break;
+            }
+            self.resize(&sizes, &finer, growth, true);
+            self.round(true)?;
+            self.widen_all();
+        }
         Ok(())
+    }
+
+    /// Splits, collapses, flips and moves once. Returns how many edges were split or collapsed, and the sizes
+    /// of vertices whose edges are as short as the given surface needs.
+    fn round(&mut self, is_settled: bool) -> Result<(usize, Vec<(VertexId, f64)>)> {
+        let n_split = self.split_long()?;
+        let (n_collapsed, needed) = self.collapse_short(is_settled);
+        self.flip_all();
+        self.smooth();
+        Ok((n_split + n_collapsed, needed))
+    }
+
+    /// Lower sizes of the vertices of triangles that stay narrow although not all of their corners are held:
+    /// the distance leaves smaller triangles more room.
+    fn finer_at_narrow(&self) -> Vec<(VertexId, f64)> {
+        let narrow = self.narrow(HELD_BY_DISTANCE).into_iter().map(|t| self.sheet.triangle(t));
+        let is_free = |v: &VertexId| self.features.kind(*v) == Kind::Free;
+        let vertices = narrow.filter(|t| t.iter().any(is_free)).flatten();
+        vertices.map(|v| (v, FINER * self.sizes[v.index()])).collect()
     }
 
     /// Sets the sizes as requested, but no larger than `needed` at some vertices. Sizes that were needed
@@ -105,33 +142,30 @@ impl Work<'_> {
                 let what = format!("the adapted surface needs more than {} triangles", self.max_triangles);
                 return Err(Error::options(what).remedy("give a larger size or distance"));
             }
-            let mut long: Vec<(f64, [VertexId; 2])> = self
-                .sheet
-                .edges()
-                .into_iter()
-                .map(|edge| (self.ratio(edge), edge))
-                .filter(|x| x.0 > LONG)
-                .collect();
-            long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+            let mut long = self.edges_where(|ratio| ratio > LONG);
+            long.reverse();
             let n_now = long.into_iter().filter(|(_, edge)| self.split(*edge)).count();
             if n_now == 0 {
                 return Ok(n);
             }
             n += n_now;
+            // Parts of needles get shorter edges before they are split themselves.
+            self.flip_once();
         }
+    }
+
+    /// Edges whose lengths over their sizes are wanted, from the least of these ratios to the greatest.
+    fn edges_where(&self, is_wanted: impl Fn(f64) -> bool) -> Vec<(f64, [VertexId; 2])> {
+        let edges = self.sheet.edges().into_iter().map(|edge| (self.ratio(edge), edge));
+        let mut edges: Vec<_> = edges.filter(|x| is_wanted(x.0)).collect();
+        edges.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+        edges
     }
 
     /// Collapses short edges, the shortest first. Returns how many, and the sizes of vertices whose edges are
     /// as short as the given surface needs.
-    fn collapse_short(&mut self) -> (usize, Vec<(VertexId, f64)>) {
-        let mut short: Vec<(f64, [VertexId; 2])> = self
-            .sheet
-            .edges()
-            .into_iter()
-            .map(|edge| (self.ratio(edge), edge))
-            .filter(|x| x.0 < SHORT)
-            .collect();
-        short.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+    fn collapse_short(&mut self, is_settled: bool) -> (usize, Vec<(VertexId, f64)>) {
+        let short = self.edges_where(|ratio| ratio < SHORT);
         let (mut n, mut needed) = (0, Vec::new());
         let least = 2.0 * self.original.distance;
         for (_, edge) in short {
@@ -142,19 +176,21 @@ impl Work<'_> {
             let longest = LONG * self.size(edge);
             let admits = |sheet: &Sheet, change: &Change| {
                 let [before, after] = cosines(sheet, change);
-                let longest_of =
-                    |[a, b, c]: [Point; 3]| distance(a, b).max(distance(b, c)).max(distance(c, a));
                 let of_before =
-                    change.removed.iter().map(|&t| longest_of(sheet.corners(t))).fold(longest, f64::max);
-                after <= before.max(POOR) && sheet.corners_after(change).all(|t| longest_of(t) <= of_before)
+                    change.removed.iter().map(|&t| longest_side(sheet.corners(t))).fold(longest, f64::max);
+                after <= before.max(POOR) && sheet.corners_after(change).all(|t| longest_side(t) <= of_before)
             };
             match self.collapse(edge, admits) {
                 Ok(()) => n += 1,
-                Err(Refusal::Far) => {
+                Err(Refusal::Bad) => {}
+                // Between lines that meet, each shorter edge would require still shorter ones.
+                Err(Refusal::Held) if is_settled => {}
+                Err(why) => {
+                    let least =
+                        if why == Refusal::Held { least.max(self.size(edge) / MAX_FINER) } else { least };
                     let size = (length(&self.sheet, edge) / SHORT).max(least);
                     needed.extend([(u, size), (v, size)]);
                 }
-                Err(Refusal::Bad) => {}
             }
         }
         (n, needed)
@@ -162,22 +198,27 @@ impl Work<'_> {
 
     /// Flips edges where that widens the narrower of their triangles.
     fn flip_all(&mut self) {
-        for _ in 0..3 {
-            let mut n = 0;
-            for edge in self.sheet.edges() {
-                let longest = 1.5 * LONG * self.size(edge);
-                let admits = |sheet: &Sheet, change: &Change| {
-                    let [before, after] = cosines(sheet, change);
-                    let [c, _, d] = change.added[0].0.map(|v| sheet.points[v.index()]);
-                    let is_short = distance(c, d) < longest.max(length(sheet, edge));
-                    after < before - GAIN && is_short
-                };
-                n += usize::from(self.flip(edge, admits));
-            }
-            if n == 0 {
+        for _ in 0..FLIPS {
+            if self.flip_once() == 0 {
                 return;
             }
         }
+    }
+
+    /// Makes one pass of flips. Returns how many there were.
+    fn flip_once(&mut self) -> usize {
+        let mut n = 0;
+        for edge in self.sheet.edges() {
+            let longest = FLIPPED * self.size(edge);
+            let admits = |sheet: &Sheet, change: &Change| {
+                let [before, after] = cosines(sheet, change);
+                let [c, _, d] = change.added[0].0.map(|v| sheet.points[v.index()]);
+                let is_short = distance(c, d) < longest.max(length(sheet, edge));
+                after < before - GAIN && is_short
+            };
+            n += usize::from(self.flip(edge, admits));
+        }
+        n
     }
 
     /// Moves each vertex towards the centroid of its triangles, weighted so that sizes are followed.
@@ -274,8 +315,7 @@ impl Work<'_> {
         }
         let longest = 2.0 * LONG * self.size(edges[0]);
         let admits_short = |sheet: &Sheet, change: &Change| {
-            let longest_of = |[a, b, c]: [Point; 3]| distance(a, b).max(distance(b, c)).max(distance(c, a));
-            admits(sheet, change) && sheet.corners_after(change).all(|t| longest_of(t) <= longest)
+            admits(sheet, change) && sheet.corners_after(change).all(|t| longest_side(t) <= longest)
         };
         if edges.into_iter().any(|edge| self.collapse(edge, admits_short).is_ok()) {
             return true;

@@ -3,8 +3,8 @@
 
 use super::sheet::{Change, Sheet};
 use crate::base::{Point, VertexId};
-use crate::geometry::triangle::{at, centroid, closest};
-use crate::geometry::vector::{add, distance, distance_squared, scale};
+use crate::geometry::triangle::{at, closest, longest_side, middles};
+use crate::geometry::vector::distance_squared;
 
 /// Samples of a triangle are about as far apart as the allowed distance times this, with up to [`MAX_PARTS`]
 /// parts of an edge.
@@ -36,14 +36,9 @@ impl Cover {
                     cover.add(t, sheet.points[v.index()]);
                 }
             }
-            let [a, b, c] = corners;
-            let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
-            let n = (longest / (SPACING * allowed)).floor().min(MAX_PARTS) as usize;
+            let n = (longest_side(corners) / (SPACING * allowed)).floor().min(MAX_PARTS) as usize;
             if n > 0 {
-                cover.add(t, centroid(corners));
-                for [p, q] in [[a, b], [b, c], [c, a]] {
-                    cover.add(t, scale(add(p, q), 0.5));
-                }
+                middles(corners).into_iter().for_each(|place| cover.add(t, place));
             }
             for (i, j) in (0..=n).flat_map(|i| (0..=n - i).map(move |j| (i, j))).filter(|_| n > 2) {
                 let weights = [i, j, n - i - j].map(|k| k as f64 / n as f64);
@@ -58,11 +53,7 @@ impl Cover {
 
     /// Adds a sample, a place of the given surface, to the nearest triangle of a vertex.
     pub(super) fn add_near(&mut self, sheet: &Sheet, v: VertexId, place: Point) {
-        let squared = |t: u32| {
-            let corners = sheet.corners(t);
-            distance_squared(at(corners, closest(corners, place)), place)
-        };
-        let star = sheet.star(v).iter().map(|&t| (squared(t), t));
+        let star = sheet.star(v).iter().map(|&t| (squared_distance(place, sheet.corners(t)), t));
         if let Some((_, t)) = star.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1))) {
             self.add(t, place);
         }
@@ -87,7 +78,7 @@ impl Cover {
             for &sample in &self.of_triangle[t as usize] {
                 let p = self.places[sample as usize];
                 let of = |(k, (corners, of)): (u32, &([Point; 3], u32))| {
-                    (*of == label).then(|| (distance_squared(at(*corners, closest(*corners, p)), p), k))
+                    (*of == label).then(|| (squared_distance(p, *corners), k))
                 };
                 let nearest =
                     (0..).zip(&new).filter_map(of).min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
@@ -106,16 +97,14 @@ impl Cover {
         for &t in &change.removed {
             self.of_triangle[t as usize].clear();
         }
-        for &(sample, k) in moves {
-            let t = ids[k as usize] as usize;
-            if t >= self.of_triangle.len() {
-                self.of_triangle.resize_with(t + 1, Vec::new);
-            }
-            self.of_triangle[t].push(sample);
-        }
         let most = ids.iter().max().map_or(0, |&t| t as usize + 1);
-        if most > self.of_triangle.len() {
-            self.of_triangle.resize_with(most, Vec::new);
+        self.of_triangle.resize_with(most.max(self.of_triangle.len()), Vec::new);
+        for &(sample, k) in moves {
+            self.of_triangle[ids[k as usize] as usize].push(sample);
         }
     }
+}
+
+fn squared_distance(p: Point, corners: [Point; 3]) -> f64 {
+    distance_squared(at(corners, closest(corners, p)), p)
 }

@@ -2,7 +2,7 @@
 //! creases.
 
 use super::lines::{Line, Lines};
-use super::original::height;
+use super::original::is_thin;
 use super::sheet::{Sheet, edges_of};
 use crate::base::{Point, VertexId};
 use crate::geometry::triangle::area_vector;
@@ -31,7 +31,7 @@ pub(super) struct Features {
 
 impl Features {
     /// The features of a sheet. Creases are edges whose triangles meet at more than `max_angle` degrees, if
-    /// both are at least `least_height` high: the normals of thinner ones say nothing.
+    /// both are at least `least_height` high: the normals of lower ones say nothing.
     pub(super) fn of(sheet: &Sheet, max_angle: f64, least_height: f64) -> Self {
         let min_cosine = max_angle.to_radians().cos();
         let mut lines = Lines::default();
@@ -94,7 +94,7 @@ fn is_border(sheet: &Sheet, [u, v]: [VertexId; 2]) -> bool {
 fn is_crease(sheet: &Sheet, [u, v]: [VertexId; 2], min_cosine: f64, least_height: f64) -> bool {
     let corners = sheet.at_edge(u, v).map(|t| sheet.corners(t));
     let normals: Vec<Point> = corners
-        .filter(|corners| height(*corners) >= least_height)
+        .filter(|corners| !is_thin(*corners, least_height))
         .filter_map(|corners| unit(area_vector(corners)))
         .collect();
     matches!(normals[..], [m, n] if dot(m, n) < min_cosine)

@@ -18,12 +18,12 @@ mod sheet;
 mod work;
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
-use crate::geometry::triangle::{area, centroid};
-use crate::geometry::vector::{LARGEST, add, in_range, scale};
-use crate::spatial::NearestTriangle;
+use crate::geometry::triangle::{area, middles};
+use crate::geometry::vector::{LARGEST, in_range};
+use crate::spatial::{Closest, NearestTriangle};
 use features::Features;
 use original::Original;
-use sheet::Sheet;
+pub(crate) use sheet::{Change, Sheet};
 use work::Work;
 
 /// How a surface is made even.
@@ -117,7 +117,7 @@ pub fn adapt(
     let max_triangles = MAX_OVER_EXPECTED * (triangles.len() + expected as usize);
     let original = Original::new(points, triangles, labels, SHARE * options.distance, threads);
     let sheet = Sheet::new(points.to_vec(), triangles.to_vec(), labels.to_vec());
-    let features = Features::of(&sheet, options.feature_angle, THIN * options.distance);
+    let features = Features::of(&sheet, options.feature_angle, original.distance);
     let mut work = Work::new(sheet, features, original, at_points.clone(), max_triangles, threads);
     let is_uniform = options.sizes.len() == 1;
     let sizes = |work: &Work<'_>, label: u32, p: Point| match is_uniform {
@@ -156,22 +156,25 @@ fn expected(points: &[Point], triangles: &[[VertexId; 3]], sizes: &[f64]) -> f64
 /// The fraction of the allowed distance that changes may use, since distances are measured at samples.
 const SHARE: f64 = 0.8;
 
-/// Triangles lower than this times the allowed distance have normals that say nothing.
-const THIN: f64 = 0.5;
-
-/// The largest distance of each of two surfaces from the other: at vertices, middles of edges and centroids.
+/// The largest distance of each of two surfaces from the other, as measured by [`farthest`].
 pub fn distances(surfaces: [(&[Point], &[[VertexId; 3]]); 2], threads: &Threads) -> [f64; 2] {
-    let of = |[(points, triangles), (others, other_triangles)]: [(&[Point], &[[VertexId; 3]]); 2]| {
-        let of_triangle = |t: &[VertexId; 3]| {
-            let [a, b, c] = t.map(|v| points[v.index()]);
-            let half = |p: Point, q: Point| scale(add(p, q), 0.5);
-            [a, b, c, half(a, b), half(b, c), half(c, a), centroid([a, b, c])]
-        };
-        let places: Vec<Point> = triangles.iter().flat_map(of_triangle).collect();
-        let found =
-            NearestTriangle::new(others, other_triangles, threads).closest_all(&places, None, threads);
-        found.into_iter().flatten().map(|found| found.distance_squared.sqrt()).fold(0.0, f64::max)
-    };
     let [first, second] = surfaces;
-    [of([second, first]), of([first, second])]
+    let of = |(points, triangles): (&[Point], _), (others, other): (&[Point], &[[VertexId; 3]])| {
+        farthest(points, triangles, &NearestTriangle::new(others, other, threads), threads)
+    };
+    [of(second, first), of(first, second)]
+}
+
+/// The largest distance of triangles from a surface: at corners, middles of edges and centroids.
+pub fn farthest(
+    points: &[Point],
+    triangles: &[[VertexId; 3]],
+    surface: &NearestTriangle,
+    threads: &Threads,
+) -> f64 {
+    let corners = || triangles.iter().map(|t| t.map(|v| points[v.index()]));
+    let places: Vec<Point> = corners().flatten().chain(corners().flat_map(middles)).collect();
+    let found = surface.closest_all(&places, None, threads);
+    let far = |found: Option<Closest>| found.map_or(f64::INFINITY, |found| found.distance_squared.sqrt());
+    found.into_iter().map(far).fold(0.0, f64::max)
 }

@@ -1,6 +1,6 @@
 //! Triangles near a place, while they change: so that no change makes any cross.
 
-use super::sheet::{Change, Sheet, Vertex};
+use super::sheet::{Change, Sheet};
 use crate::base::{Point, VertexId};
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::triangle::area_vector;
@@ -34,19 +34,16 @@ impl Near {
     /// rounding, and can only meet what is that near.
     pub(super) fn crosses(&mut self, sheet: &mut Sheet, change: &Change, in_place: bool) -> bool {
         let old = in_place.then(|| change.removed.iter().map(|&t| sheet.corners(t)).collect());
-        let before = match change.vertex {
-            Vertex::Unchanged => None,
-            Vertex::Placed(v, place) if v.index() == sheet.points.len() => {
-                sheet.points.push(place);
-                None
-            }
-            Vertex::Placed(v, place) => Some((v, std::mem::replace(&mut sheet.points[v.index()], place))),
-        };
+        let Some((v, place)) = change.placed else { return self.is_met(sheet, change, old) };
+        let is_new = v.index() == sheet.points.len();
+        if is_new {
+            sheet.points.push(place);
+        }
+        let before = std::mem::replace(&mut sheet.points[v.index()], place);
         let met = self.is_met(sheet, change, old);
-        match (before, change.vertex) {
-            (Some((v, place)), _) => sheet.points[v.index()] = place,
-            (None, Vertex::Placed(..)) => drop(sheet.points.pop()),
-            _ => {}
+        match is_new {
+            true => drop(sheet.points.pop()),
+            false => sheet.points[v.index()] = before,
         }
         met
     }

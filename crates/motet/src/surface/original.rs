@@ -1,8 +1,8 @@
 //! The surface as it was given: what is near, and which way it faces.
 
 use crate::base::{Point, Threads, VertexId};
-use crate::geometry::triangle::{area_vector, centroid};
-use crate::geometry::vector::{add, distance, dot, norm, scale, sub, unit};
+use crate::geometry::triangle::{area, area_vector, centroid, longest_side};
+use crate::geometry::vector::{add, dot, norm, scale, sub, unit};
 use crate::spatial::{Closest, NearestTriangle};
 
 /// The cosine of the largest angle between a new triangle and the given surface near it: 45 degrees.
@@ -25,7 +25,7 @@ struct OfLabel {
 }
 
 impl Original {
-    /// `labels` are numbers below `n_labels`.
+    /// The triangles by label, with trees to search them; the new surface may stray by up to `distance`.
     pub(super) fn new(
         points: &[Point],
         triangles: &[[VertexId; 3]],
@@ -75,11 +75,9 @@ impl Original {
     }
 }
 
-/// The height of a triangle over its longest edge.
-pub(super) fn height(corners: [Point; 3]) -> f64 {
-    let [a, b, c] = corners;
-    let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
-    if longest > 0.0 { norm(area_vector(corners)) / longest } else { 0.0 }
+/// Whether a triangle is so low that its normal says nothing.
+pub(super) fn is_thin(corners: [Point; 3], least_height: f64) -> bool {
+    2.0 * area(corners) < least_height * longest_side(corners)
 }
 
 fn normals(points: &[Point], triangles: &[[VertexId; 3]], least_height: f64) -> Vec<Point> {
@@ -91,7 +89,7 @@ fn normals(points: &[Point], triangles: &[[VertexId; 3]], least_height: f64) -> 
     }
     let of = |t: &[VertexId; 3]| {
         let own = area_vector(corners(t));
-        if height(corners(t)) >= least_height {
+        if !is_thin(corners(t), least_height) {
             return unit(own).unwrap_or_default();
         }
         let around = t.iter().fold([0.0; 3], |sum, v| add(sum, at_vertices[v.index()]));

@@ -1,79 +1,80 @@
 //! Triangles that can be changed: an edge split, flipped or collapsed, a vertex moved. Edges may have any
 //! number of triangles.
 
-use crate::base::{Point, VertexId};
+use crate::base::{Point, VertexId, sorted_ids};
 use crate::geometry::vector::{add, scale};
 
 /// Triangles over points, each with a label, and the triangles at each vertex.
 #[derive(Clone, Debug)]
-pub(super) struct Sheet {
-    pub(super) points: Vec<Point>,
+pub(crate) struct Sheet {
+    pub(crate) points: Vec<Point>,
     /// All triangles, removed ones among them.
     triangles: Vec<[VertexId; 3]>,
     labels: Vec<u32>,
     is_removed: Vec<bool>,
+    /// Ids of removed triangles that are not in use again.
+    unused: Vec<u32>,
     at_vertex: Vec<Vec<u32>>,
-}
-
-/// What happens to a vertex in a change.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Vertex {
-    /// None is inserted, moved or removed.
-    Unchanged,
-    /// A vertex gets this place; one with the next id is new.
-    Placed(VertexId, Point),
 }
 
 /// A change: triangles that are removed and those that replace them.
 #[derive(Clone, Debug)]
-pub(super) struct Change {
-    pub(super) removed: Vec<u32>,
-    pub(super) added: Vec<([VertexId; 3], u32)>,
-    pub(super) vertex: Vertex,
+pub(crate) struct Change {
+    pub(crate) removed: Vec<u32>,
+    pub(crate) added: Vec<([VertexId; 3], u32)>,
+    /// A vertex, and where it is placed; one with the next id is new.
+    pub(crate) placed: Option<(VertexId, Point)>,
 }
 
 impl Sheet {
-    pub(super) fn new(points: Vec<Point>, triangles: Vec<[VertexId; 3]>, labels: Vec<u32>) -> Self {
+    pub(crate) fn new(points: Vec<Point>, triangles: Vec<[VertexId; 3]>, labels: Vec<u32>) -> Self {
         let mut at_vertex = vec![Vec::new(); points.len()];
         for (t, triangle) in (0..).zip(&triangles) {
             triangle.iter().for_each(|v| at_vertex[v.index()].push(t));
         }
-        Self { points, is_removed: vec![false; triangles.len()], triangles, labels, at_vertex }
+        Self {
+            points,
+            is_removed: vec![false; triangles.len()],
+            unused: Vec::new(),
+            triangles,
+            labels,
+            at_vertex,
+        }
     }
 
-    pub(super) fn exists(&self, t: u32) -> bool {
+    pub(crate) fn exists(&self, t: u32) -> bool {
         !self.is_removed[t as usize]
     }
 
-    pub(super) fn triangle(&self, t: u32) -> [VertexId; 3] {
+    pub(crate) fn triangle(&self, t: u32) -> [VertexId; 3] {
         self.triangles[t as usize]
     }
 
-    pub(super) fn label(&self, t: u32) -> u32 {
+    pub(crate) fn label(&self, t: u32) -> u32 {
         self.labels[t as usize]
     }
 
-    pub(super) fn corners(&self, t: u32) -> [Point; 3] {
+    pub(crate) fn corners(&self, t: u32) -> [Point; 3] {
         self.triangle(t).map(|v| self.points[v.index()])
     }
 
     /// The triangles that exist, by their ids.
-    pub(super) fn existing(&self) -> impl Iterator<Item = u32> + '_ {
+    pub(crate) fn existing(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.triangles.len() as u32).filter(|&t| self.exists(t))
     }
 
     /// The number of triangle ids in use or used before.
-    pub(super) fn n_slots(&self) -> usize {
+    pub(crate) fn n_slots(&self) -> usize {
         self.triangles.len()
     }
 
     /// The triangles at a vertex.
-    pub(super) fn star(&self, v: VertexId) -> &[u32] {
+    pub(crate) fn star(&self, v: VertexId) -> &[u32] {
         &self.at_vertex[v.index()]
     }
 
     /// The other ends of a vertex's edges, in rising order.
-    pub(super) fn neighbours(&self, v: VertexId) -> Vec<VertexId> {
+    pub(crate) fn neighbours(&self, v: VertexId) -> Vec<VertexId> {
         let of = self.star(v).iter().flat_map(|&t| self.triangle(t));
         let mut neighbours: Vec<VertexId> = of.filter(|&u| u != v).collect();
         neighbours.sort_unstable();
@@ -82,13 +83,13 @@ impl Sheet {
     }
 
     /// The triangles at an edge.
-    pub(super) fn at_edge(&self, u: VertexId, v: VertexId) -> impl Iterator<Item = u32> + '_ {
+    pub(crate) fn at_edge(&self, u: VertexId, v: VertexId) -> impl Iterator<Item = u32> + '_ {
         self.star(u).iter().copied().filter(move |&t| self.triangle(t).contains(&v))
     }
 
     /// The edges of the triangles that exist, each once, in rising order.
-    pub(super) fn edges(&self) -> Vec<[VertexId; 2]> {
-        let of = |t: u32| edges_of(self.triangle(t)).map(|[u, v]| [u.min(v), u.max(v)]);
+    pub(crate) fn edges(&self) -> Vec<[VertexId; 2]> {
+        let of = |t: u32| edges_of(self.triangle(t)).map(sorted_ids);
         let mut edges: Vec<_> = self.existing().flat_map(of).collect();
         edges.sort_unstable();
         edges.dedup();
@@ -96,20 +97,20 @@ impl Sheet {
     }
 
     /// The place of a vertex after a change.
-    pub(super) fn place(&self, change: &Change, v: VertexId) -> Point {
-        match change.vertex {
-            Vertex::Placed(placed, place) if placed == v => place,
+    pub(crate) fn place(&self, change: &Change, v: VertexId) -> Point {
+        match change.placed {
+            Some((placed, place)) if placed == v => place,
             _ => self.points[v.index()],
         }
     }
 
     /// The corners of the new triangles of a change.
-    pub(super) fn corners_after<'a>(&'a self, change: &'a Change) -> impl Iterator<Item = [Point; 3]> + 'a {
+    pub(crate) fn corners_after<'a>(&'a self, change: &'a Change) -> impl Iterator<Item = [Point; 3]> + 'a {
         change.added.iter().map(move |(t, _)| t.map(|v| self.place(change, v)))
     }
 
     /// Splits an edge at a place; the new vertex has the next id.
-    pub(super) fn split(&self, [u, v]: [VertexId; 2], place: Point) -> Change {
+    pub(crate) fn split(&self, [u, v]: [VertexId; 2], place: Point) -> Change {
         let new = VertexId::new(self.points.len());
         let removed: Vec<u32> = self.at_edge(u, v).collect();
         let halves = |&t: &u32| {
@@ -117,12 +118,12 @@ impl Sheet {
             [(with(u), self.label(t)), (with(v), self.label(t))]
         };
         let added = removed.iter().flat_map(halves).collect();
-        Change { removed, added, vertex: Vertex::Placed(new, place) }
+        Change { removed, added, placed: Some((new, place)) }
     }
 
     /// Flips an edge: its two triangles over the other diagonal. `None` if it has not two triangles of one
     /// label, oriented alike, or if that diagonal is an edge already.
-    pub(super) fn flip(&self, [u, v]: [VertexId; 2]) -> Option<Change> {
+    pub(crate) fn flip(&self, [u, v]: [VertexId; 2]) -> Option<Change> {
         let removed: Vec<u32> = self.at_edge(u, v).collect();
         let &[s, t] = removed.as_slice() else { return None };
         let runs = |t: u32| edges_of(self.triangle(t)).contains(&[u, v]);
@@ -136,46 +137,44 @@ impl Sheet {
         }
         let label = self.label(s);
         let added = vec![([c, u, d], label), ([d, v, c], label)];
-        Some(Change { removed, added, vertex: Vertex::Unchanged })
+        Some(Change { removed, added, placed: None })
     }
 
     /// Collapses an edge: `removed` becomes `kept`, which gets a place. `None` if triangles would be folded
     /// onto each other: the edge must have as many triangles as its ends have neighbours in common (Dey,
     /// Edelsbrunner, Guha, Nekhayev 1999), and no two triangles may get the same vertices.
-    pub(super) fn collapse(&self, removed: VertexId, kept: VertexId, place: Point) -> Option<Change> {
+    pub(crate) fn collapse(&self, removed: VertexId, kept: VertexId, place: Point) -> Option<Change> {
         let [of_removed, of_kept] = [removed, kept].map(|v| self.neighbours(v));
         let common = of_removed.iter().filter(|v| of_kept.binary_search(v).is_ok()).count();
         if common != self.at_edge(removed, kept).count() {
             return None;
         }
-        let mut change = self.moved(kept, place);
-        let of_kept_only = change.removed.len();
-        change.removed.extend(self.star(removed).iter().filter(|&&t| !self.triangle(t).contains(&kept)));
-        let renamed =
-            |&t: &u32| (self.triangle(t).map(|v| if v == removed { kept } else { v }), self.label(t));
-        change.added.retain(|(t, _)| !t.contains(&removed));
-        let others: Vec<_> = change.removed[of_kept_only..].iter().map(renamed).collect();
-        // Only triangles around both ends can coincide.
-        let key = |t: &[VertexId; 3]| crate::base::sorted_ids(*t);
-        let keys: Vec<_> = change.added.iter().map(|(t, _)| key(t)).collect();
-        if others.iter().any(|(t, _)| keys.contains(&key(t))) || keys.is_empty() && others.is_empty() {
-            return None;
-        }
-        change.added.extend(others);
-        Some(change)
+        let mut change = self.placed(self.star(removed).iter().chain(self.star(kept)), (kept, place));
+        change.added.retain(|(t, _)| !(t.contains(&removed) && t.contains(&kept)));
+        change.added.iter_mut().flat_map(|(t, _)| t).filter(|v| **v == removed).for_each(|v| *v = kept);
+        let mut all: Vec<_> = change.added.iter().map(|(t, _)| sorted_ids(*t)).collect();
+        all.sort_unstable();
+        let is_double = all.windows(2).any(|pair| pair[0] == pair[1]);
+        (!all.is_empty() && !is_double).then_some(change)
     }
 
     /// Moves a vertex.
-    pub(super) fn moved(&self, v: VertexId, place: Point) -> Change {
-        let removed = self.star(v).to_vec();
+    pub(crate) fn moved(&self, v: VertexId, place: Point) -> Change {
+        self.placed(self.star(v).iter(), (v, place))
+    }
+
+    fn placed<'a>(&self, triangles: impl Iterator<Item = &'a u32>, placed: (VertexId, Point)) -> Change {
+        let mut removed: Vec<u32> = triangles.copied().collect();
+        removed.sort_unstable();
+        removed.dedup();
         let added = removed.iter().map(|&t| (self.triangle(t), self.label(t))).collect();
-        Change { removed, added, vertex: Vertex::Placed(v, place) }
+        Change { removed, added, placed: Some(placed) }
     }
 
     /// Makes a change. Returns the ids of the new triangles, in the order of [`Change::added`]; ids of
     /// removed triangles are used again.
-    pub(super) fn commit(&mut self, change: &Change) -> Vec<u32> {
-        if let Vertex::Placed(v, place) = change.vertex {
+    pub(crate) fn commit(&mut self, change: &Change) -> Vec<u32> {
+        if let Some((v, place)) = change.placed {
             if v.index() == self.points.len() {
                 self.points.push(place);
                 self.at_vertex.push(Vec::new());
@@ -188,10 +187,10 @@ impl Sheet {
                 self.at_vertex[v.index()].retain(|other| *other != t);
             }
         }
-        let mut reused = change.removed.iter();
+        let mut reused = change.removed.iter().copied();
         let mut ids = Vec::with_capacity(change.added.len());
         for &(triangle, label) in &change.added {
-            let t = reused.next().copied().unwrap_or(self.triangles.len() as u32);
+            let t = reused.next().or_else(|| self.unused.pop()).unwrap_or(self.triangles.len() as u32);
             if t as usize == self.triangles.len() {
                 self.triangles.push(triangle);
                 self.labels.push(label);
@@ -203,16 +202,17 @@ impl Sheet {
             triangle.iter().for_each(|v| self.at_vertex[v.index()].push(t));
             ids.push(t);
         }
+        self.unused.extend(reused);
         ids
     }
 
     /// The middle of an edge.
-    pub(super) fn middle(&self, [u, v]: [VertexId; 2]) -> Point {
+    pub(crate) fn middle(&self, [u, v]: [VertexId; 2]) -> Point {
         scale(add(self.points[u.index()], self.points[v.index()]), 0.5)
     }
 }
 
 /// The edges of a triangle, in its direction.
-pub(super) fn edges_of([a, b, c]: [VertexId; 3]) -> [[VertexId; 2]; 3] {
+pub(crate) fn edges_of([a, b, c]: [VertexId; 3]) -> [[VertexId; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }

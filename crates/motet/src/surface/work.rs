@@ -5,11 +5,11 @@ use super::features::{Features, Kind, length};
 use super::lines::Line;
 use super::near::Near;
 use super::original::Original;
-use super::sheet::{Change, Sheet, Vertex, edges_of};
+use super::sheet::{Change, Sheet, edges_of};
 use crate::base::{Point, Threads, VertexId, sorted_ids};
 use crate::geometry::segment;
-use crate::geometry::triangle::centroid;
-use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
+use crate::geometry::triangle::{centroid, largest_cosine, longest_side};
+use crate::geometry::vector::{add, distance, scale};
 
 /// A vertex that would move by less than this times the allowed distance stays in place.
 const NEGLIGIBLE: f64 = 1e-6;
@@ -21,11 +21,13 @@ const DENSE: f64 = 8.0;
 /// Why a change is not made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refusal {
-    /// Its triangles would stray too far from the given surface, or face another way; or that surface from
-    /// them.
+    /// New triangles would stray too far from the given surface or face another way than it does, or parts of
+    /// the given surface would be too far from them.
     Far,
-    /// Its triangles would be folded, cross others, or be worse than before.
+    /// New triangles would be folded, cross others, or be narrower than those that they replace.
     Bad,
+    /// Both ends of the edge must stay, or are on different lines.
+    Held,
 }
 
 /// The surface as it is, and all that its changes are held against.
@@ -137,7 +139,7 @@ impl<'a> Work<'a> {
             (Kind::OnLine, _) if is_line => candidates.push((u, v, of_v)),
             _ => {}
         }
-        let mut refusal = Refusal::Bad;
+        let mut refusal = if candidates.is_empty() { Refusal::Held } else { Refusal::Bad };
         for (removed, kept, place) in candidates {
             let Some(change) = self.sheet.collapse(removed, kept, place) else { continue };
             let line = match is_line {
@@ -165,7 +167,7 @@ impl<'a> Work<'a> {
                     return Ok(());
                 }
                 Err(Refusal::Far) => refusal = Refusal::Far,
-                Err(Refusal::Bad) => {}
+                Err(_) => {}
             }
         }
         Err(refusal)
@@ -268,23 +270,19 @@ impl<'a> Work<'a> {
     /// as they are, and that surface near them.
     fn allowed_near(&self, change: &Change) -> Result<Moves, Refusal> {
         let sheet = &self.sheet;
-        let placed = match change.vertex {
-            Vertex::Placed(v, _) => Some(v),
-            Vertex::Unchanged => None,
-        };
+        let placed = change.placed.map(|(v, _)| v);
         let is_old = |edge: &[VertexId; 2]| {
             !edge.iter().any(|v| Some(*v) == placed)
                 && change.removed.iter().any(|&t| edge.iter().all(|v| sheet.triangle(t).contains(v)))
         };
         let mut seen: Vec<([VertexId; 2], u32)> = Vec::new();
-        let is_long = |a: Point, b: Point| distance(a, b) > DENSE * self.original.distance;
+        let is_long = |length: f64| length > DENSE * self.original.distance;
         let mixed = |a: Point, b: Point, share: f64| add(scale(a, 1.0 - share), scale(b, share));
         for &(triangle, label) in &change.added {
             let corners = triangle.map(|v| sheet.place(change, v));
-            let [a, b, c] = corners;
             let middle = centroid(corners);
             let is_near = |p: Point| self.original.is_near(label, p);
-            let is_large = is_long(a, b) || is_long(b, c) || is_long(c, a);
+            let is_large = is_long(longest_side(corners));
             if !self.original.faces(label, corners)
                 || is_large && !corners.into_iter().all(|p| is_near(mixed(middle, p, 0.5)))
             {
@@ -296,7 +294,7 @@ impl<'a> Work<'a> {
                 }
                 seen.push((edge, label));
                 let [a, b] = edge.map(|v| sheet.place(change, v));
-                let shares: &[f64] = if is_long(a, b) { &[0.5, 0.25, 0.75] } else { &[0.5] };
+                let shares: &[f64] = if is_long(distance(a, b)) { &[0.5, 0.25, 0.75] } else { &[0.5] };
                 if !shares.iter().all(|share| is_near(mixed(a, b, *share))) {
                     return Err(Refusal::Far);
                 }
@@ -320,16 +318,6 @@ impl<'a> Work<'a> {
 fn on_segment([a, b]: [Point; 2], p: Point) -> Point {
     let share = segment::closest([a, b], p);
     std::array::from_fn(|k| a[k] + share * (b[k] - a[k]))
-}
-
-/// The cosine of the smallest angle of a triangle; 1 if an edge has no length.
-pub(super) fn largest_cosine(corners: [Point; 3]) -> f64 {
-    let cosine = |k: usize| {
-        let [a, b] = [1, 2].map(|i| sub(corners[(k + i) % 3], corners[k]));
-        let lengths = norm(a) * norm(b);
-        if lengths > 0.0 { dot(a, b) / lengths } else { 1.0 }
-    };
-    cosine(0).max(cosine(1)).max(cosine(2))
 }
 
 /// The largest cosines of the triangles before and after a change.

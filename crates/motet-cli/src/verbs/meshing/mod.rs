@@ -60,11 +60,11 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     }
     let filling = Instant::now();
     let options = words.options(&surfaces, sizes)?;
-    if let Some(coarse) = options.sizes.as_ref().and_then(|sizes| sizes.coarse(&surfaces)) {
-        console.warn(match options.dividing {
-            Dividing::Never => format!("{coarse}. They are kept, so tets on them are bad, and one round of repair is made; give a larger --size, or leave out --surface keep"),
-            _ => format!("{coarse}. They are divided in their own planes; --surface keep keeps them"),
-        });
+    let coarse = options.sizes.as_ref().and_then(|sizes| sizes.coarse(&surfaces));
+    match (coarse, options.dividing) {
+        (None, _) | (_, Dividing::Adapt) => {}
+        (Some(coarse), Dividing::Never) => console.warn(format!("{coarse}. They are kept, so tets on them are bad, and one round of repair is made; give a larger --size, or leave out --surface keep")),
+        (Some(coarse), _) => console.warn(format!("{coarse}. They are divided in their own planes; --surface keep keeps them")),
     }
     let filled = fill(&surfaces, &preflight, &options, &threads)?;
     let fill = filling.elapsed().as_secs_f64();

@@ -6,7 +6,7 @@ mod needle;
 use std::ops::Range;
 
 use crate::base::Point;
-use crate::geometry::vector::{add, cross, dot, norm, scale, sub, unit};
+use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub, unit};
 
 /// Half the cross product of two sides: its length is the area, its direction the normal (from its tip the
 /// triangle is seen counter-clockwise).
@@ -37,6 +37,27 @@ pub fn at([a, b, c]: [Point; 3], weights: [f64; 3]) -> Point {
 pub fn angle_at(triangle: [Point; 3], corner: usize) -> f64 {
     let [u, v] = [1, 2].map(|k| sub(triangle[(corner + k) % 3], triangle[corner]));
     norm(cross(u, v)).atan2(dot(u, v))
+}
+
+/// The cosine of the smallest angle; 1 if a side has no length.
+pub fn largest_cosine(triangle: [Point; 3]) -> f64 {
+    let cosine = |corner: usize| {
+        let [u, v] = [1, 2].map(|k| sub(triangle[(corner + k) % 3], triangle[corner]));
+        let lengths = norm(u) * norm(v);
+        if lengths > 0.0 { dot(u, v) / lengths } else { 1.0 }
+    };
+    cosine(0).max(cosine(1)).max(cosine(2))
+}
+
+/// The length of the longest side.
+pub fn longest_side([a, b, c]: [Point; 3]) -> f64 {
+    distance(a, b).max(distance(b, c)).max(distance(c, a))
+}
+
+/// The middles of the sides, and the centroid.
+pub fn middles([a, b, c]: [Point; 3]) -> [Point; 4] {
+    let half = |p: Point, q: Point| scale(add(p, q), 0.5);
+    [half(a, b), half(b, c), half(c, a), centroid([a, b, c])]
 }
 
 /// The normal, not of unit length, of a surface at a place shared by all these triangles: the sum of their

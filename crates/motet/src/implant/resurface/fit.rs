@@ -2,11 +2,12 @@
 
 use super::old::OriginalSurface;
 use super::skin::Skin;
-use crate::base::{Point, Threads, VertexId, sorted_ids};
-use crate::geometry::triangle::{area_vector, centroid};
+use crate::base::{Point, Threads};
+use crate::geometry::triangle::{area_vector, middles};
 use crate::geometry::vector::{add, norm, scale};
 use crate::implant::report::Fit;
 use crate::spatial::{Closest, NearestTriangle};
+use crate::surface::farthest;
 
 /// How far in front of a triangle its surroundings are probed, as a fraction of the tolerance.
 const PROBE_DISTANCE: f64 = 0.25;
@@ -14,32 +15,17 @@ const PROBE_DISTANCE: f64 = 0.25;
 impl OriginalSurface {
     pub(super) fn fit(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> Fit {
         Fit {
-            to_old: self.distance_to_old(skin, threads),
+            to_old: farthest(&skin.points, &skin.triangles, &self.nearest, threads),
             from_old: self.distance_from_old(skin, tolerance, threads),
             tolerance,
         }
-    }
-
-    /// The largest distance of the new surface from the old one, at corners and at the middles of edges and
-    /// triangles.
-    fn distance_to_old(&self, skin: &Skin, threads: &Threads) -> f64 {
-        let at = |v: VertexId| skin.points[v.index()];
-        let mut places = skin.points.clone();
-        places.extend(edges(&skin.triangles).into_iter().map(|[u, v]| scale(add(at(u), at(v)), 0.5)));
-        places.extend(skin.triangles.iter().map(|t| centroid(t.map(at))));
-        let found = self.nearest.closest_all(&places, None, threads);
-        found.into_iter().map(far).fold(0.0, f64::max)
     }
 
     /// The largest distance of the old surface from the new one, at the middles of triangles and of their
     /// edges. Where the old surface lies in the device, such as where turns of a wire overlap, it does not
     /// bound it, and does not count.
     fn distance_from_old(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> f64 {
-        let of_triangle = |t: usize| {
-            let [a, b, c] = self.surface.corners(t);
-            let middles = [[a, b], [b, c], [c, a]].map(|[p, q]| scale(add(p, q), 0.5));
-            [middles[0], middles[1], middles[2], centroid([a, b, c])].map(|p| (p, t))
-        };
+        let of_triangle = |t: usize| middles(self.surface.corners(t)).map(|p| (p, t));
         let places: Vec<(Point, usize)> = (0..self.surface.triangles.len()).flat_map(of_triangle).collect();
         let tree = NearestTriangle::new(&skin.points, &skin.triangles, threads);
         let only: Vec<Point> = places.iter().map(|place| place.0).collect();
@@ -60,13 +46,4 @@ impl OriginalSurface {
 
 fn far(found: Option<Closest>) -> f64 {
     found.map_or(f64::INFINITY, |found| found.distance_squared.sqrt())
-}
-
-/// The ends of every edge, each edge once, in ascending order.
-fn edges(triangles: &[[VertexId; 3]]) -> Vec<[VertexId; 2]> {
-    let mut edges: Vec<_> =
-        triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]].map(sorted_ids)).collect();
-    edges.sort_unstable();
-    edges.dedup();
-    edges
 }

@@ -7,14 +7,13 @@
 //! | cubes | `cubes` | those near the surface; the tets of a body-centred lattice between their centres and corners |
 //! | inside | `old` | winding numbers, also of surfaces that cross themselves, have open ends or duplicate triangles; those of a closed one change only across triangles |
 //! | skin | `skin` | lattice vertices near the surface move onto it, the other edges that it crosses are cut: Labelle and Shewchuk 2007, *Isosurface stuffing* |
-//! | widen | `widen`, `sheet` | narrow triangles made wider: edges flipped or collapsed, vertices moved along the old surface |
+//! | widen | `widen` | narrow triangles made wider: edges flipped or collapsed, vertices moved along the old surface |
 //! | distance | `fit` | both ways; if it is too large, the lattice is made finer |
 
 mod cubes;
 mod facing;
 mod fit;
 mod old;
-mod sheet;
 mod skin;
 mod widen;
 

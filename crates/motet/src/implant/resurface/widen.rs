@@ -5,15 +5,21 @@
 //! mean of its neighbours and back onto the old surface), the best change is made, as long as any helps.
 
 use super::old::OriginalSurface;
-use super::sheet::{Change, Sheet, largest_cosine};
 use super::skin::Skin;
 use crate::base::{Point, Threads, VertexId};
-use crate::geometry::triangle::centroid;
-use crate::geometry::vector::{add, scale, sub};
+use crate::geometry::triangle::{area_vector, largest_cosine, middles};
+use crate::geometry::vector::{add, dot, norm, scale, sub, unit};
 use crate::preflight::crossings;
+use crate::surface::{Change, Sheet};
 
 /// The cosine of the smallest angle that is left alone, 30 degrees.
 const MAX_COSINE: f64 = 0.866_025_403_784_438_6;
+
+/// The cosine of the largest angle between two triangles whose edge is flipped: 30 degrees.
+const MIN_FLIP_COSINE: f64 = 0.866;
+
+/// The cosine of how far a triangle may turn in a change: 25 degrees.
+const MIN_TURN_COSINE: f64 = 0.906;
 
 /// How much the largest cosine has to fall, so that no work is done for negligible gains.
 const GAIN: f64 = 1e-3;
@@ -36,7 +42,12 @@ impl OriginalSurface {
     pub(super) fn widened(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> Option<Skin> {
         let mut is_held = vec![false; skin.points.len()];
         for _ in 0..RETRIES {
-            let mut work = Widening { old: self, sheet: Sheet::new(skin), is_held: &is_held, tolerance };
+            let mut work = Widening {
+                old: self,
+                sheet: Sheet::new(skin.points.clone(), skin.triangles.clone(), vec![0; skin.triangles.len()]),
+                is_held: &is_held,
+                tolerance,
+            };
             work.run();
             let sheet = work.sheet;
             let left: Vec<[VertexId; 3]> = sheet.existing().map(|t| sheet.triangle(t)).collect();
@@ -97,39 +108,76 @@ impl Widening<'_> {
         if !self.sheet.exists(t) || largest_cosine(self.sheet.corners(t)) <= MAX_COSINE {
             return false;
         }
-        let mut changes: Vec<(f64, Change)> = Vec::new();
-        for change in self.changes(t) {
+        let mut proposals: Vec<(f64, Proposal)> = Vec::new();
+        for proposal in self.proposals(t) {
+            let Proposal { change, .. } = &proposal;
             let before =
                 change.removed.iter().map(|&t| largest_cosine(self.sheet.corners(t))).fold(-1.0, f64::max);
-            let after = self.sheet.corners_after(&change).map(largest_cosine).fold(-1.0, f64::max);
+            let after = self.sheet.corners_after(change).map(largest_cosine).fold(-1.0, f64::max);
             if after < before - GAIN {
-                changes.push((after, change));
+                proposals.push((after, proposal));
             }
         }
-        changes.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let best = changes.into_iter().map(|(_, change)| change).find(|change| self.is_allowed(change));
-        best.map(|change| self.sheet.commit(change)).is_some()
+        proposals.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let best = proposals.into_iter().map(|(_, proposal)| proposal).find(|best| self.is_allowed(best));
+        best.map(|best| self.sheet.commit(&best.change)).is_some()
     }
 
-    fn changes(&self, t: u32) -> Vec<Change> {
+    fn proposals(&self, t: u32) -> Vec<Proposal> {
         let corners = self.sheet.triangle(t);
-        let mut changes = Vec::new();
+        let mut proposals = Vec::new();
         for k in 0..3 {
             let [u, v] = [corners[k], corners[(k + 1) % 3]];
-            changes.extend(self.sheet.flipped(u, v));
+            proposals.extend(self.flipped(u, v));
             let ends = [u, v].map(|v| self.sheet.points[v.index()]);
-            let middle = self.on_old(scale(add(ends[0], ends[1]), 0.5));
+            let middle = self.on_old(self.sheet.middle([u, v]));
             let places = [(v, u, Some(ends[0])), (u, v, Some(ends[1])), (u, v, middle)];
-            changes.extend(
-                places
-                    .into_iter()
-                    .filter_map(|(removed, kept, place)| self.sheet.collapsed(removed, kept, place?)),
+            proposals.extend(
+                places.into_iter().filter_map(|(removed, kept, place)| self.collapsed(removed, kept, place?)),
             );
-            let to = sub(self.sheet.middle(u), ends[0]);
+            let to = sub(self.mean_of_neighbours(u), ends[0]);
             let places = STEPS.map(|step| self.on_old(add(ends[0], scale(to, step))));
-            changes.extend(places.into_iter().flatten().map(|place| self.sheet.moved(u, place)));
+            proposals.extend(places.into_iter().flatten().map(|place| self.moved(u, place)));
         }
-        changes
+        proposals
+    }
+
+    fn normal(&self, t: u32) -> Point {
+        unit(area_vector(self.sheet.corners(t))).unwrap_or_default()
+    }
+
+    /// Flips an edge whose two triangles do not bend too far.
+    fn flipped(&self, u: VertexId, v: VertexId) -> Option<Proposal> {
+        let change = self.sheet.flip([u, v])?;
+        let &[s, t] = change.removed.as_slice() else { return None };
+        let [m, n] = [s, t].map(|t| self.normal(t));
+        let mean = unit(add(m, n))?;
+        (dot(m, n) >= MIN_FLIP_COSINE).then(|| Proposal { change, normals: vec![mean; 2] })
+    }
+
+    /// Collapses an edge of two triangles, where both ends keep enough neighbours.
+    fn collapsed(&self, removed: VertexId, kept: VertexId, place: Point) -> Option<Proposal> {
+        let has_enough = |v: VertexId| self.sheet.neighbours(v).len() >= 4;
+        if self.sheet.at_edge(removed, kept).count() != 2 || !has_enough(removed) || !has_enough(kept) {
+            return None;
+        }
+        let change = self.sheet.collapse(removed, kept, place)?;
+        let is_at_edge = |t: u32| [removed, kept].iter().all(|v| self.sheet.triangle(t).contains(v));
+        let replaced = change.removed.iter().filter(|t| !is_at_edge(**t));
+        let normals = replaced.map(|&t| self.normal(t)).collect();
+        Some(Proposal { change, normals })
+    }
+
+    fn moved(&self, v: VertexId, place: Point) -> Proposal {
+        let change = self.sheet.moved(v, place);
+        let normals = change.removed.iter().map(|&t| self.normal(t)).collect();
+        Proposal { change, normals }
+    }
+
+    fn mean_of_neighbours(&self, v: VertexId) -> Point {
+        let neighbours = self.sheet.neighbours(v);
+        let sum = neighbours.iter().fold([0.0; 3], |sum, u| add(sum, self.sheet.points[u.index()]));
+        scale(sum, 1.0 / neighbours.len().max(1) as f64)
     }
 
     fn on_old(&self, p: Point) -> Option<Point> {
@@ -138,24 +186,22 @@ impl Widening<'_> {
 
     /// Whether nothing held changes, no triangle turns away, and all new triangles are near the old surface.
     /// Triangles that close a hole are not, and stay as they are.
-    fn is_allowed(&self, change: &Change) -> bool {
+    fn is_allowed(&self, Proposal { change, normals }: &Proposal) -> bool {
         let of = |t: &u32| self.sheet.triangle(*t);
+        let turned = self.sheet.corners_after(change).map(area_vector).zip(normals);
         if change.removed.iter().flat_map(of).any(|v| self.is_held[v.index()])
-            || !self.sheet.keeps_facing(change)
+            || !turned.into_iter().all(|(now, before)| dot(now, *before) > MIN_TURN_COSINE * norm(now))
         {
             return false;
         }
-        let is_near = |reach: f64| {
-            let places = self.sheet.corners_after(change).flat_map(places);
-            places.into_iter().all(|p| self.old.nearest.closest_within(p, reach).is_some())
-        };
-        is_near(SHARE * self.tolerance)
+        let reach = SHARE * self.tolerance;
+        let places = self.sheet.corners_after(change).flat_map(|t| t.into_iter().chain(middles(t)));
+        places.into_iter().all(|p| self.old.nearest.closest_within(p, reach).is_some())
     }
 }
 
-/// Where a triangle's distance from the old surface is measured: at corners, middles of edges, and the
-/// centroid.
-fn places([a, b, c]: [Point; 3]) -> [Point; 7] {
-    let half = |p: Point, q: Point| scale(add(p, q), 0.5);
-    [a, b, c, half(a, b), half(b, c), half(c, a), centroid([a, b, c])]
+/// A change, and the unit normals that its new triangles have to keep, as far as [`MIN_TURN_COSINE`] allows.
+struct Proposal {
+    change: Change,
+    normals: Vec<Point>,
 }

@@ -18,7 +18,7 @@ pub(super) enum Storage {
     Text,
     /// Bytes, little end first; numbers that are not whole in single precision.
     Single,
-    /// The same in double precision.
+    /// Bytes, little end first; numbers that are not whole in double precision.
     Double,
 }
 
