@@ -135,6 +135,11 @@ class Page:
         assert urls, "not even the page was requested"
         return [url for url in urls if not url.startswith(("file:", "data:"))]
 
+    def violations(self):
+        """Return the rules of accessibility that the page violates, as axe finds them."""
+        axe = pytest.importorskip("axe_core_python.selenium")
+        return [violation["help"] for violation in axe.Axe().run(self.driver)["violations"]]
+
     def errors(self):
         return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] != "INFO"]
 

@@ -219,6 +219,7 @@ def test_every_control_has_a_name_and_is_reached_by_the_tab_key(page, moved):
         page.driver.switch_to.active_element.send_keys(Keys.TAB)
         reached.add(page.driver.switch_to.active_element)
     assert all(control in reached for control in wanted)
+    assert page.violations() == []
 
 
 def _difference(a, b):

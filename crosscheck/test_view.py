@@ -163,7 +163,7 @@ def test_everything_can_be_done_by_keyboard(window, tmp_path):
     window.click("shift")
     moved = places(window.mesh(tmp_path)) - before
     assert np.allclose(moved, (0.1, 0, -0.05), atol=1e-9)
-    assert window.errors() == []
+    assert window.violations() == [] and window.errors() == []
 
 
 def test_the_view_turns_where_nothing_is_grabbed(window):
