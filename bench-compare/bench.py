@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import bench_contact
+import bench_corpus
 import bench_delaunay
 import bench_drift
 import bench_files
@@ -18,7 +19,7 @@ import bench_threads
 from common import DISTURBED, ROOT, TARGET, Record, machine
 
 BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files, "remesh": bench_remesh,
-           "contact": bench_contact, "refine": bench_refine, "mesh": bench_mesh, "implant": bench_implant, "quality": bench_quality,
+           "contact": bench_contact, "refine": bench_refine, "mesh": bench_mesh, "corpus": bench_corpus, "implant": bench_implant, "quality": bench_quality,
            "drift": bench_drift, "threads": bench_threads}
 
 
@@ -28,7 +29,8 @@ def parsed_options():
     parser.add_argument("--rounds", type=int, default=5, help="number of rounds in which all programs run (default 5)")
     parser.add_argument("--largest", type=int, default=1_000_000, help="largest point set of the Delaunay benchmark")
     parser.add_argument("--sizes", default="ABCD", help="which of the paper's four models (default ABCD)")
-    parser.add_argument("--surfaces", help="surfaces of the mesh benchmark, separated by commas (default: all)")
+    parser.add_argument("--surfaces", help="surfaces of the mesh or corpus benchmark, separated by commas (default: all)")
+    parser.add_argument("--programs", help="programs of the corpus benchmark by parts of their names, separated by commas (default: all)")
     parser.add_argument("--cases", help="cases of the drift benchmark, separated by commas (default: all)")
     parser.add_argument("--turns", type=int, help="turns of rotating bodies in the drift benchmark (default 3; 6 for the bar)")
     parser.add_argument("--cycles", type=int, help="cycles of periodic motions in the drift benchmark (default by case, 3 to 20)")

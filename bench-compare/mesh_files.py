@@ -78,6 +78,15 @@ def read_vtp(path):
     reader.SetFileName(str(path))
     reader.Update()
     whole = reader.GetOutput()
+    if whole.GetPolys().GetMaxCellSize() > 3:  # the same triangles for all programs
+        divider = vtk.vtkTriangleFilter()
+        divider.SetInputData(whole)
+        divider.Update()
+        whole = divider.GetOutput()
+        writer = vtk.vtkXMLPolyDataWriter()
+        writer.SetFileName(str(path))
+        writer.SetInputData(whole)
+        writer.Write()
     corners = vtk_to_numpy(whole.GetPolys().GetConnectivityArray())
     return vtk_to_numpy(whole.GetPoints().GetData()).astype(np.float64), corners.reshape(-1, 3).astype(np.int64)
 

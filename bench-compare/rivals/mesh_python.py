@@ -1,6 +1,6 @@
-"""Meshes a closed surface by TetGen, Gmsh or fTetWild; prints times as JSON.
+"""Meshes a closed surface by TetGen, Gmsh, fTetWild, or MeshLab and TetGen; prints times as JSON.
 
-usage: mesh_python.py PROGRAM SIZE RUNS IN.npz OUT.npz [THREADS]      IN: points, triangles; OUT: points, tets
+usage: mesh_python.py PROGRAM SIZE RUNS IN.npz OUT.npz [THREADS]      IN: points, triangles, perhaps distance; OUT: points, tets
 
 SIZE is the requested edge length; for TetGen the volume of the regular tet with such edges is the limit.
 Times are measured between the program's own data structures in memory, with fewer repeats than RUNS if they
@@ -18,7 +18,7 @@ from in_memory import clocked, gmsh_tets
 BUDGET = 3.0  # no repeat is started after this number of seconds
 
 
-def tetgen(points, triangles, size, threads, switches):
+def tetgen(points, triangles, size, threads, distance, switches):
     import tetgen as program
 
     surface = program.TetGen(points, triangles.astype(np.int32))
@@ -27,7 +27,48 @@ def tetgen(points, triangles, size, threads, switches):
     return seconds, surface.node, surface.elem, version("tetgen")
 
 
-def gmsh(points, triangles, size, threads, algorithm):
+def meshlab_tetgen(points, triangles, size, threads, distance):
+    """Remesh the surface in MeshLab within the distance, then fill it with TetGen."""
+    import pymeshlab as program
+
+    meshes = program.MeshSet(verbose=False)
+    meshes.add_mesh(program.Mesh(points, triangles.astype(np.int32)))
+    length, most = program.PureValue(size), program.PureValue(distance)
+    remesh = lambda: meshes.meshing_isotropic_explicit_remeshing(targetlen=length, maxsurfdist=most, checksurfdist=True, featuredeg=40)
+    seconds, _ = clocked(remesh)
+    even = meshes.current_mesh()
+    more, *made = tetgen(even.vertex_matrix(), even.face_matrix(), size, threads, distance, "pq1.2/14a{}YQ")
+    return seconds + more, *made
+
+
+def gmsh_adapt(points, triangles, size, threads, distance):
+    """Find features of the surface in Gmsh, remesh it, fill it and optimise with Netgen."""
+    import gmsh as program
+
+    program.initialize()
+    options = {"General.Terminal": 0, "General.NumThreads": threads, "Mesh.MeshSizeMin": size, "Mesh.MeshSizeMax": size, "Mesh.OptimizeNetgen": 1}
+    for name, value in options.items():
+        program.option.setNumber(name, value)
+    program.model.addDiscreteEntity(2, 1)
+    mesh = program.model.mesh
+    mesh.addNodes(2, 1, np.arange(len(points)) + 1, points.ravel())
+    mesh.addElementsByType(1, 2, [], triangles.ravel() + 1)
+
+    def work():
+        mesh.classifySurfaces(np.radians(40), True, True)
+        mesh.createGeometry()
+        faces = [tag for _, tag in program.model.getEntities(2)]
+        program.model.geo.addVolume([program.model.geo.addSurfaceLoop(faces)])
+        program.model.geo.synchronize()
+        mesh.generate(3)
+
+    seconds, _ = clocked(work)
+    points, tets = gmsh_tets(mesh)
+    program.finalize()
+    return seconds, points, tets, program.__version__
+
+
+def gmsh(points, triangles, size, threads, distance, algorithm):
     import gmsh as program
 
     program.initialize()
@@ -48,10 +89,11 @@ def gmsh(points, triangles, size, threads, algorithm):
     return seconds, points, tets, program.__version__
 
 
-def ftetwild(points, triangles, size, threads):
+def ftetwild(points, triangles, size, threads, distance):
     import pytetwild as program
 
-    work = lambda: program.tetrahedralize(points, triangles.astype(np.int32), edge_length_abs=size, num_threads=threads)
+    limits = {} if distance is None else {"epsilon": distance / np.linalg.norm(np.ptp(points, axis=0))}  # of the diagonal
+    work = lambda: program.tetrahedralize(points, triangles.astype(np.int32), edge_length_abs=size, num_threads=threads, **limits)
     seconds, (points, tets) = clocked(work)
     return seconds, points, tets, version("pytetwild")
 
@@ -60,7 +102,10 @@ PROGRAMS = {
     "tetgen": (tetgen, "pQ"),
     "tetgen-keep": (tetgen, "pYQ"),
     "tetgen-quality": (tetgen, "pq1.2/14a{}YQ"),
+    "tetgen-divide": (tetgen, "pq1.2/14a{}Q"),
+    "meshlab-tetgen": (meshlab_tetgen,),
     "gmsh": (gmsh, 1),
+    "gmsh-adapt": (gmsh_adapt,),
     "gmsh-hxt": (gmsh, 10),
     "ftetwild": (ftetwild,),
 }
@@ -70,9 +115,10 @@ def main(name, size, runs, source, target, threads="1"):
     given = np.load(source)
     os.chdir(os.path.dirname(target))  # fTetWild writes a file to its working directory
     program, *options = PROGRAMS[name]
+    distance = float(given["distance"]) if "distance" in given else None
     seconds = []
     while len(seconds) < int(runs) and sum(seconds) < BUDGET:
-        duration, points, tets, release = program(given["points"], given["triangles"], float(size), int(threads), *options)
+        duration, points, tets, release = program(given["points"], given["triangles"], float(size), int(threads), distance, *options)
         if len(tets) == 0:
             raise ValueError("no tets")
         seconds.append(duration)

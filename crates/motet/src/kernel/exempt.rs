@@ -7,7 +7,7 @@
 //! exempts nothing: another tet elsewhere can have the same value and need repair.
 
 use crate::base::{Point, TetId, VertexId, sorted_ids};
-use crate::geometry::quality::dihedral;
+use crate::geometry::quality::{dihedral, highest_eas};
 use crate::geometry::tet::{EDGES, FACETS};
 use crate::geometry::triangle;
 use crate::kernel::complex::Complex;
@@ -24,11 +24,6 @@ const NEARLY: f64 = 1e-6;
 /// Whether `quality` reaches the highest quality `best` that walls allow.
 pub fn is_reached(quality: f64, best: f64) -> bool {
     quality > 0.0 && best - quality < NEARLY
-}
-
-/// The highest EAS of a tet with a facet that has an angle of this many degrees.
-pub fn best_at(degrees: f64) -> f64 {
-    if degrees < 60.0 { degrees / 60.0 } else { (180.0 - degrees) / 120.0 }
 }
 
 /// The role of a facet in judging the quality of its tet.
@@ -118,7 +113,7 @@ fn is_forced(corners: [Point; 4], quality: f64, sides: impl Fn(usize) -> Side) -
     let is_between = |edge: usize| EDGES[5 - edge].into_iter().all(|i| sides[i] != Side::Inside);
     let is_narrow = |i: usize| {
         let wall = FACETS[i].map(|corner| corners[corner]);
-        (0..3).any(|corner| is_reached(quality, best_at(triangle::angle_at(wall, corner).to_degrees())))
+        (0..3).any(|corner| is_reached(quality, highest_eas(triangle::angle_at(wall, corner).to_degrees())))
     };
     (0..6).any(|edge| is_reached(quality, angles[edge] / dihedral::REGULAR) && is_between(edge))
         || (0..4).any(|i| sides[i] == Side::Firm && is_narrow(i))

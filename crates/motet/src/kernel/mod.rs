@@ -58,7 +58,7 @@ mod walls;
 pub use change::{Change, Fill, NewLine, NewWall, VertexChange};
 pub use check::{Checked, Reject};
 pub use complex::Complex;
-pub use exempt::{FLATTEST, Side, best_at, is_reached};
+pub use exempt::{FLATTEST, Side, is_reached};
 pub use extract::Extract;
 pub use hold::Hold;
 pub use journal::Mark;

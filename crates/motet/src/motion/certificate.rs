@@ -5,13 +5,10 @@ use serde::Serialize;
 use crate::base::{CellId, Point, Threads, VertexId, percent};
 use crate::geometry::quality::{eas, mean_ratio};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
-use crate::mesh::Qualities;
 use crate::mesh::curved::LeastJacobian;
+use crate::mesh::{BAD_EAS, Qualities};
 use crate::motion::check::Check;
 use crate::motion::slide::LeavesPlane;
-
-/// A tet is bad below this EAS.
-pub const BAD_EAS: f64 = 0.2;
 
 /// What a motion reached, and how good the mesh is there.
 #[derive(Clone, Debug, Default, Serialize)]

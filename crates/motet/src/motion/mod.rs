@@ -103,7 +103,7 @@ mod words;
 
 pub use boundary_motion::{BoundaryMotion, Taken};
 pub use carrier::SurfaceCarrier;
-pub use certificate::{BAD_EAS, Certificate, Quality, Seconds, Worst};
+pub use certificate::{Certificate, Quality, Seconds, Worst};
 pub use choose::{Choice, Tried, choose};
 pub use interface::Interface;
 pub use matching::{Matching, SurfaceMotion, match_ids, match_patch, node_ids};

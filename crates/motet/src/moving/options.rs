@@ -6,8 +6,8 @@ use crate::base::{Error, Result, VertexId};
 use crate::contact::{self, Room};
 use crate::geometry::vector::LARGEST;
 use crate::mesh::history::Rules;
-use crate::mesh::{Mesh, Surface, cone_volume, seamless};
-use crate::motion::{self, Motion};
+use crate::mesh::{BAD_EAS, Mesh, Surface, cone_volume, seamless};
+use crate::motion::Motion;
 use crate::remesh;
 
 /// How a mesh moves with its walls, and how its quality is kept.
@@ -95,7 +95,7 @@ impl Options {
 
     /// The EAS below which a tet is bad.
     pub fn limit(&self) -> f64 {
-        self.repair.as_ref().map_or(motion::BAD_EAS, remesh::Options::limit)
+        self.repair.as_ref().map_or(BAD_EAS, remesh::Options::limit)
     }
 }
 

@@ -5,6 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::fault::{Fault, FaultKind};
+use super::narrow::Narrow;
 use super::rims::{OpenEdges, Rim};
 use super::surfaces::Surfaces;
 use crate::base::Error;
@@ -42,6 +43,8 @@ pub struct Preflight {
     pub n_torn_edges: usize,
     /// The kinds that occur, with their counts.
     pub counts: Vec<FaultCount>,
+    /// The triangles that force bad tets, if there are any.
+    pub narrow: Option<Narrow>,
     /// Every fault.
     pub faults: Vec<Fault>,
 }
@@ -51,6 +54,7 @@ impl Preflight {
         surfaces: &Surfaces,
         mut faults: Vec<Fault>,
         OpenEdges { rims, n_torn_edges }: OpenEdges,
+        narrow: Option<Narrow>,
     ) -> Self {
         faults.sort_by(|x, y| key(x).cmp(&key(y)));
         let mut is_used = vec![false; surfaces.points.len()];
@@ -62,6 +66,7 @@ impl Preflight {
             rims,
             n_torn_edges,
             counts: faults.chunk_by(|x, y| x.kind == y.kind).map(count).collect(),
+            narrow,
             faults,
         }
     }

@@ -1,6 +1,7 @@
 //! The search for everything that prevents surfaces from being meshed.
 
 use super::fault::{Fault, FaultKind};
+use super::narrow::Narrow;
 use super::parts::Parts;
 use super::report::Preflight;
 use super::sides::sorted_sides;
@@ -33,7 +34,8 @@ pub fn preflight(
     faults.extend(meeting::faults(&surfaces, &shapes, &duplicates, threads));
     faults.extend(edges::faults(&surfaces, &sides));
     faults.extend(parts::faults(&surfaces, &Parts::new(triangles.len(), &sides)));
-    Preflight::new(&surfaces, faults, rims::of_boundaries(&surfaces, &sides))
+    let narrow = Narrow::of(&surfaces, &shapes, threads);
+    Preflight::new(&surfaces, faults, rims::of_boundaries(&surfaces, &sides), narrow)
 }
 
 /// A fault for each surface without triangles.

@@ -5,11 +5,11 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::base::{CellId, Point, TetId};
-use crate::geometry::quality::{dihedral, eas};
+use crate::geometry::quality::{dihedral, eas, highest_eas};
 use crate::geometry::tent::Tent;
 use crate::geometry::tet::{EDGES, FACETS, centroid};
 use crate::geometry::triangle;
-use crate::kernel::{Complex, Hold, Shell, Star, best_at, is_reached};
+use crate::kernel::{Complex, Hold, Shell, Star, is_reached};
 use crate::remesh::classify::{DEFECT_NAMES, classify};
 use crate::remesh::surface::Surface;
 
@@ -188,7 +188,7 @@ fn wall_bounds(complex: &Complex, tet: TetId) -> impl Iterator<Item = WallBound>
         let bounds = [[a, b, c], [b, c, a], [c, a, b]].map(|corner| {
             let [p, q, r] = corner.map(|place| corners[place]);
             let degrees = triangle::angle_at([p, q, r], 0).to_degrees();
-            WallBound { bound: (degrees, best_at(degrees)), corner }
+            WallBound { bound: (degrees, highest_eas(degrees)), corner }
         });
         bounds.into_iter().min_by(|x, y| x.bound.1.total_cmp(&y.bound.1))
     };

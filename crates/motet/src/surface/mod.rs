@@ -114,7 +114,7 @@ pub fn adapt(
         );
         return Err(Error::options(what).remedy("give a larger size"));
     }
-    let max_triangles = MAX_OVER_EXPECTED * (triangles.len() + expected as usize);
+    let max_triangles = MANY.max(MAX_OVER_EXPECTED * (triangles.len() + expected as usize));
     let original = Original::new(points, triangles, labels, SHARE * options.distance, threads);
     let sheet = Sheet::new(points.to_vec(), triangles.to_vec(), labels.to_vec());
     let features = Features::of(&sheet, options.feature_angle, original.distance);
@@ -143,6 +143,9 @@ const MAX_TRIANGLES: f64 = 2e7;
 
 /// The largest number of triangles, over those given and those expected.
 const MAX_OVER_EXPECTED: usize = 16;
+
+/// So many triangles are always allowed: of a part that is thin beside the size, few are expected.
+const MANY: usize = 1_000_000;
 
 /// The number of even triangles of these sizes on a surface.
 fn expected(points: &[Point], triangles: &[[VertexId; 3]], sizes: &[f64]) -> f64 {

@@ -4,8 +4,10 @@
 use std::collections::BTreeMap;
 
 use crate::common::data_folder;
+use crate::common::random::Random;
 use crate::oracle::{FaultKey, crosses, faults};
 use motet::base::{Point, Threads, VertexId};
+use motet::geometry::quality::eas;
 use motet::geometry::vector::distance;
 use motet::io::{self, WriteOptions};
 use motet::mesh::firsts_at_place;
@@ -333,4 +335,27 @@ fn real_surfaces_are_refused_or_fit() {
             holds_against_everything(points, &triangles, &[0], &[Role::Boundary]);
         }
     }
+}
+
+/// A tet on a triangle of a surface is never better than the report says, and can be nearly as good.
+#[test]
+fn narrow_triangles_are_counted_with_the_quality_that_they_allow() {
+    let needle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.1, 0.0]];
+    let points = [needle[0], needle[1], needle[2], [0.6, 0.05, 1.0]];
+    let triangles: Triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|t| t.map(VertexId)).to_vec();
+    let narrow = alone(&points, &triangles, Role::Boundary).narrow.unwrap();
+    // The second one has an angle of 5.2 degrees at vertex 3.
+    assert_eq!((narrow.n_triangles, narrow.triangle), (2, 2));
+    let narrow = alone(&points, &triangles[..2].to_vec(), Role::Membrane).narrow.unwrap();
+    assert_eq!((narrow.n_triangles, narrow.triangle), (1, 0));
+    assert!((narrow.highest_eas - 0.1f64.atan().to_degrees() / 60.0).abs() < 1e-12, "{narrow:?}");
+    let mut random = Random(3);
+    let mut best = 0.0;
+    for _ in 0..20_000 {
+        let apex = [random.next(), 2.0 * random.next() - 1.0, random.next()];
+        best = f64::max(best, eas([needle[0], needle[1], needle[2], apex]));
+    }
+    assert!(best <= narrow.highest_eas + 1e-12 && best > 0.95 * narrow.highest_eas, "{best} {narrow:?}");
+    let even = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    assert_eq!(alone(&even, &triangles, Role::Boundary).narrow, None);
 }

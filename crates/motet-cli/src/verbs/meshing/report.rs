@@ -89,6 +89,15 @@ impl<'a> Report<'a> {
         }
         self.print_divided(console);
         console.print(self.preflight);
+        if let Some(narrow) = self.preflight.narrow.filter(|_| !self.is_adapted()) {
+            console.print(format_args!(
+                "  {} triangles are so narrow that each tet on them is bad, of EAS at most {} at ({}): \
+                 --surface adapt replaces them",
+                count(narrow.n_triangles),
+                short(narrow.highest_eas),
+                narrow.at.map(short).join(", "),
+            ));
+        }
         for rim in self.preflight.rims.iter().take(N_LISTED) {
             console.print(format_args!("  rim: {rim}"));
         }
@@ -106,6 +115,10 @@ impl<'a> Report<'a> {
         if let Some(filled) = &self.filled {
             self.print_filled(filled, console);
         }
+    }
+
+    fn is_adapted(&self) -> bool {
+        self.filled.as_ref().is_some_and(|filled| filled.adapted.is_some())
     }
 
     /// Prints where triangles were divided, by kind: how many places, and the first of them.

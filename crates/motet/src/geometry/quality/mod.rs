@@ -30,7 +30,7 @@ mod scaled_jacobian;
 mod volume;
 
 pub use cubit_mean_ratio::cubit_mean_ratio;
-pub use eas::{POSITIVE_EAS, eas};
+pub use eas::{POSITIVE_EAS, eas, highest_eas};
 pub use edge_ratio::edge_ratio;
 pub use equiangle_skew::equiangle_skew;
 pub use many::{EasStar, eas_and_mean_ratio_of_each, eas_of_each};

@@ -17,7 +17,7 @@ use crate::base::four::{FourLanes, Plain};
 use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::quality::eas_of_each;
 use crate::geometry::vector::{add, norm, scale};
-use crate::motion::certificate::BAD_EAS;
+use crate::mesh::BAD_EAS;
 use crate::motion::corners::CornerTets;
 use crate::motion::smooth::star::Star;
 
