@@ -12,6 +12,8 @@ use crate::geometry::vector::{add, distance, scale};
 const LONG: f64 = 4.0 / 3.0;
 /// Edges shorter than this times the size are collapsed.
 const SHORT: f64 = 0.8;
+/// Between splits of long edges short ones are collapsed while the longest becomes shorter by this.
+const SHORTER: f64 = 0.9;
 /// A flipped edge may be as long as this times the size, or as long as it was.
 const FLIPPED: f64 = 2.0;
 /// How many passes of flips are made at most.
@@ -36,6 +38,8 @@ const STILL: f64 = 0.02;
 const HELD_BY_DISTANCE: f64 = 0.9;
 /// By how much they are made finer in a round.
 const FINER: f64 = 0.7;
+/// A further round makes triangles finer if the last one left at most this fraction of the narrow ones.
+const FEWER: f64 = 0.5;
 /// How many rounds make triangles finer at most.
 const FINER_ROUNDS: usize = 3;
 /// How many passes are made over narrow triangles.
@@ -55,11 +59,15 @@ impl Work<'_> {
             }
         }
         self.widen_all();
+        let mut n_narrow = usize::MAX;
         for _ in 0..FINER_ROUNDS {
-            let finer = self.finer_at_narrow();
-            if finer.is_empty() {
+            let narrow = self.narrow_by_distance();
+            if narrow.is_empty() || narrow.len() as f64 > FEWER * n_narrow as f64 {
                 break;
             }
+            n_narrow = narrow.len();
+            let vertices = narrow.into_iter().flat_map(|t| self.sheet.triangle(t));
+            let finer: Vec<_> = vertices.map(|v| (v, FINER * self.sizes[v.index()])).collect();
             self.resize(&sizes, &finer, growth, true);
             self.round(true)?;
             self.widen_all();
@@ -77,13 +85,13 @@ impl Work<'_> {
         Ok((n_split + n_collapsed, needed))
     }
 
-    /// Lower sizes of the vertices of triangles that stay narrow although not all of their corners are held:
-    /// the distance leaves smaller triangles more room.
-    fn finer_at_narrow(&self) -> Vec<(VertexId, f64)> {
-        let narrow = self.narrow(HELD_BY_DISTANCE).into_iter().map(|t| self.sheet.triangle(t));
+    /// Triangles that stay narrow although not all of their corners are held: the distance leaves smaller ones
+    /// more room.
+    fn narrow_by_distance(&self) -> Vec<u32> {
+        let mut narrow = self.narrow(HELD_BY_DISTANCE);
         let is_free = |v: &VertexId| self.features.kind(*v) == Kind::Free;
-        let vertices = narrow.filter(|t| t.iter().any(is_free)).flatten();
-        vertices.map(|v| (v, FINER * self.sizes[v.index()])).collect()
+        narrow.retain(|&t| self.sheet.triangle(t).iter().any(is_free));
+        narrow
     }
 
     /// Sets the sizes as requested, but no larger than `needed` at some vertices. Sizes that were needed
@@ -136,7 +144,7 @@ impl Work<'_> {
     /// # Errors
     /// When there would be more than `max_triangles`.
     fn split_long(&mut self) -> Result<usize> {
-        let mut n = 0;
+        let (mut n, mut longest) = (0, f64::INFINITY);
         loop {
             if self.sheet.n_slots() > self.max_triangles {
                 let what = format!("the adapted surface needs more than {} triangles", self.max_triangles);
@@ -144,13 +152,18 @@ impl Work<'_> {
             }
             let mut long = self.edges_where(|ratio| ratio > LONG);
             long.reverse();
+            let longest_now = long.first().map_or(0.0, |x| x.0);
             let n_now = long.into_iter().filter(|(_, edge)| self.split(*edge)).count();
             if n_now == 0 {
                 return Ok(n);
             }
             n += n_now;
-            // Parts of needles get shorter edges before they are split themselves.
+            // Parts of needles get shorter edges, and fewer vertices, before they are split themselves.
             self.flip_once();
+            if longest_now > 2.0 * LONG && longest_now < SHORTER * longest {
+                longest = longest_now;
+                self.collapse_short(true);
+            }
         }
     }
 
