@@ -100,8 +100,8 @@ fn refuse_interfaces(faces: &hdf::Group) -> Result<()> {
     }
 }
 
-/// The number of the first of `n` rows of a section, of which attributes give the first and last number; `None`
-/// without rows. The error continues a sentence.
+/// The number of the first of `n` rows of a section, of which attributes give the first and last number;
+/// `None` without rows. The error continues a sentence.
 fn first_of(min: Option<Vec<i64>>, max: Option<Vec<i64>>, n: usize) -> Result<Option<usize>, String> {
     if n == 0 {
         return Ok(None);
@@ -152,8 +152,8 @@ struct Zone {
     kind: i64,
 }
 
-/// Reads the table of zones of cells or faces, and their names. Zones come in the order of their numbers and do
-/// not overlap.
+/// Reads the table of zones of cells or faces, and their names. Zones come in the order of their first rows
+/// and do not overlap.
 fn zones(group: &hdf::Group, of: Numbered, content: &mut Content) -> Result<Vec<Zone>> {
     let table = required(group, "zoneTopology")?;
     let wrong = |what: String| damaged(table.path(), what);

@@ -228,7 +228,7 @@ fn faults_are_reported_with_their_place() {
         "/meshes/1/faces/zoneTopology: zones 4 and 5 both have number 4",
     );
     refused(zones(vec![1, 2, 5], vec![1, 4, 8]), "/meshes/1/faces: zone 5: face 8 has no points");
-    refused(zones(vec![1, 2, 5], vec![1, 4, 6]), "7 faces declared, but the file has 6");
+    refused(zones(vec![1, 2, 5], vec![1, 4, 6]), "/meshes/1/faces: 1 faces are in no zone");
     let empty = File { counts: [5, 2, 6], ..zones(vec![0, 2, 5], vec![0, 4, 7]) };
     refused(empty, "/meshes/1/faces: 1 faces are in no zone");
     refused(zones(vec![1, 2, -5], vec![1, 4, 7]), "zone 5 has negative numbers: -5 to 7");

@@ -212,8 +212,8 @@ fn label_zone(zone: &Zone, regions: &mut [i32]) -> Result<()> {
     })
 }
 
-/// The first number from `first` to `last` and how many there are; `None` for an empty range, which ends before
-/// it begins. The error continues a sentence.
+/// The first number from `first` to `last` and how many there are; `None` for an empty range, which ends
+/// before it begins. The error continues a sentence.
 pub(super) fn span(first: i64, last: i64) -> Result<Option<(usize, usize)>, String> {
     let (Ok(from), Ok(to)) = (usize::try_from(first), usize::try_from(last)) else {
         return Err(format!("has negative numbers: {first} to {last}"));

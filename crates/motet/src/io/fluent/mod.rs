@@ -1,19 +1,19 @@
 //! Meshes and cases of Ansys Fluent and of the meshers that write for it (`.msh`, `.cas`, `.cas.gz`, and in
 //! HDF5 `.msh.h5`, `.cas.h5`): points and faces, each with the cells on its sides.
 //!
-//! Text, binary sections and HDF5 are read. Zones of cells are regions, zones of faces patches, with their numbers
-//! and names; faces between cells become cells only where their zone is a wall or another border. Files of
-//! two dimensions and meshes with hanging nodes are refused; so are, in HDF5, several meshes in one file and
-//! interfaces of zones that do not match. `.msh` is also the extension of Gmsh: contents
-//! tell which one a file is. meshio's files of this format, which list the nodes of cells, are read, too.
+//! Text, binary sections and HDF5 are read. Zones of cells are regions, zones of faces patches, with their
+//! numbers and names; faces between cells become cells only where their zone is a wall or another border.
+//! Files of two dimensions and meshes with hanging nodes are refused; so are, in HDF5, several meshes in
+//! one file and interfaces of zones that do not match. `.msh` is also the extension of Gmsh: contents tell
+//! which one a file is. meshio's files of this format, which list the nodes of cells, are read, too.
 //!
 //! The mesh is written as text; Fluent reads it as a mesh or as a case without settings. A zone of faces gets
 //! its type from the start of its name: `inlet` a velocity inlet, `outlet` a pressure outlet, `symmetry`;
 //! others are walls.
 //!
-//! Layout: the appendix "Mesh File Format" of Fluent's User's Guide; of HDF5 ("Common Fluids Format") what VTK's
-//! reader takes. Faces run as VTK's reader takes them:
-//! along the fingers of a right hand whose thumb points into the first of the two cells.
+//! Layout: the appendix "Mesh File Format" of Fluent's User's Guide; of HDF5 ("Common Fluids Format") what
+//! VTK's reader takes. Faces run as VTK's readers take them: along the fingers of a right hand whose thumb
+//! points into the first of the two cells.
 //!
 //! | file | idea |
 //! |---|---|
