@@ -25,10 +25,10 @@ def outward_faces(grid):
     return of_cells
 
 
-def write_cff(path, grid, regions, patch_of, names, *, sections=1, **storage):
+def write_cff(path, grid, regions, patch_of, names, *, sections=1, sections_of_faces=1, **storage):
     """Write a grid, whose cells are in the zones `regions`, sorted; `patch_of` gives the zone of a face on the border by its middle.
 
-    Zone 99 has the faces between cells. Points, the points of faces and the cells beside them are in so many `sections`.
+    Zone 99 has the faces between cells. Points and the cells beside faces are in so many `sections`, the points of faces in `sections_of_faces`.
     """
     points = np.asarray(grid.points, float)
     assert (np.diff(regions) >= 0).all()
@@ -46,10 +46,10 @@ def write_cff(path, grid, regions, patch_of, names, *, sections=1, **storage):
     zones = [(99, INTERIOR, inner), *((zone, WALL, border[zone]) for zone in sorted(border))]
     faces = [face for *_, of_zone in zones for face in of_zone]
 
-    def spans(first, n):
-        """Divide `n` numbers from `first` on into sections."""
+    def spans(n, sections=sections):
+        """Divide numbers from 1 to `n` into sections."""
         cuts = np.linspace(0, n, sections + 1).astype(int)
-        return [(first + a, first + b - 1, slice(a, b)) for a, b in zip(cuts[:-1], cuts[1:]) if a < b]
+        return [(a + 1, b, slice(a, b)) for a, b in zip(cuts[:-1], cuts[1:]) if a < b]
 
     def numbers(group, name, values, kind):
         return group.create_dataset(name, data=np.array(values, kind), **storage)
@@ -79,7 +79,7 @@ def write_cff(path, grid, regions, patch_of, names, *, sections=1, **storage):
         number(mesh, dimension=3, nodeOffset=0, nodeCount=len(points), cellOffset=0, cellCount=grid.n_cells, faceOffset=0, faceCount=len(faces))
 
         nodes = mesh.create_group("nodes")
-        of_points = spans(1, len(points))
+        of_points = spans(len(points))
         table(nodes, np.arange(1, len(of_points) + 1), [b - a + 1 for a, b, _ in of_points])
         coords = nodes.create_group("coords")
         for k, (first, last, rows) in enumerate(of_points):
@@ -103,7 +103,7 @@ def write_cff(path, grid, regions, patch_of, names, *, sections=1, **storage):
         zeros = [0] * len(zones)
         table(of_mesh, [zone[0] for zone in zones], np.array([len(zone[2]) for zone in zones]), zoneType=[zone[1] for zone in zones],
               faceType=zeros, childZoneId=zeros, shadowZoneId=zeros, flags=zeros)
-        of_faces = spans(1, len(faces))
+        of_faces = spans(len(faces), sections_of_faces)
         group = of_mesh.create_group("nodes")
         number(group, nSections=len(of_faces))
         for k, (first, last, rows) in enumerate(of_faces):
@@ -115,7 +115,7 @@ def write_cff(path, grid, regions, patch_of, names, *, sections=1, **storage):
             flat = numbers(section, "nodes", [p + 1 for ring in rings for p in ring], np.uint32)
             number(flat, chunkDim=len(flat))
         # Faces on the border have no second cell.
-        for name, side, spans_ in [("c0", 1, of_faces), ("c1", 2, spans(1, len(inner)))]:
+        for name, side, spans_ in [("c0", 1, spans(len(faces))), ("c1", 2, spans(len(inner)))]:
             group = of_mesh.create_group(name)
             number(group, nSections=len(spans_))
             for k, (first, last, rows) in enumerate(spans_):

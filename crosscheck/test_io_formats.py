@@ -1068,13 +1068,15 @@ def test_vtk_and_motet_read_the_same_mesh_from_fluent_files_in_hdf5(motet, gmsh_
     assert facets.n_cells == expected.extract_surface(algorithm=None).n_cells and set(facets["patch"]) == {4, 5, 6}
     labels = {name: int(whole.field_data[name][0]) for name in whole.field_data.keys() if name.startswith(("region:", "patch:"))}
     assert labels == {"region:blood": 3, "region:tissue": 8, "patch:inlet": 4, "patch:floor": 5, "patch:wall": 6}
-    # The form in text, and the other extension.
+    # VTK 9.7 takes the points of faces from wrong places where they are in several sections.
+    divided = tmp_path / "divided.msh.h5"
+    write_cff(divided, expected, zones, patch_of, names, sections=sections, sections_of_faces=4, **storage)
+    motet("convert", divided, tmp_path / "divided.vtu")
+    assert (tmp_path / "divided.vtu").read_bytes() == again.read_bytes()
+    # The same mesh in the form in text.
     motet("convert", source, tmp_path / "text.cas")
     motet("convert", tmp_path / "text.cas", tmp_path / "text.vtu")
     assert cells_at(volume_cells(tmp_path / "text.vtu")) == cells_at(expected)
-    renamed = source.rename(tmp_path / "renamed.msh.h5")
-    motet("convert", renamed, tmp_path / "renamed.vtu")
-    assert (tmp_path / "renamed.vtu").read_bytes() == again.read_bytes()
 
 
 def labelled_mesh(kinds):
