@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import pyvista
 import vtk
+from cff import mixed_box, write_cff
 from conftest import data_folder
 from meshes import assert_same_array, assert_same_mesh, cell_array_of, cells_of, tet_set, volumes
 from vtk.util.numpy_support import vtk_to_numpy
@@ -923,10 +924,11 @@ def vtk_fluent(path):
     return [output[i] for i in range(output.n_blocks) if output.get_block_name(i).endswith(":fluid")]
 
 
-def cells_at(grid, points=None):
-    """Return the cells of a grid: their type and the coordinates of their points, in any order."""
+def cells_at(grid, points=None, chosen=None):
+    """Return the cells of a grid, or those chosen: their type and the coordinates of their points, in any order."""
     points = np.asarray(grid.points if points is None else points, float)
-    return sorted((int(kind), sorted(map(tuple, points[list(grid.get_cell(i).point_ids)]))) for i, kind in enumerate(grid.celltypes))
+    cells = range(grid.n_cells) if chosen is None else np.flatnonzero(chosen)
+    return sorted((int(grid.celltypes[i]), sorted(map(tuple, points[list(grid.get_cell(i).point_ids)]))) for i in cells)
 
 
 def volume_cells(path):
@@ -1018,6 +1020,63 @@ def test_meshio_reads_points_and_faces_of_fluent_files_of_motet(motet, gmsh_sess
     theirs = {tuple(sorted(map(tuple, expected.points[list(face)]))) for tet in expected.cells_dict[10]
               for face in itertools.combinations(tet, 3)}
     assert faces == theirs
+
+
+def vtk_cff(path):
+    """Return the zones of cells that VTK reads from a Fluent file in HDF5."""
+    reader = vtk.vtkFLUENTCFFReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    output = pyvista.wrap(reader.GetOutput())
+    return [output[i] for i in range(output.n_blocks)]
+
+
+def two_zones(kind, tmp_path, motet):
+    """Return a box of one kind of cells or of several, and the zone of each cell, in their order."""
+    if kind == "mixed":
+        return mixed_box()
+    source, _ = fluent_mesh(kind, tmp_path, motet)
+    grid = volume_cells(source)
+    zones = np.where(grid.cell_centers().points[:, 0] < 0.5, 3, 8)
+    order = np.argsort(zones, kind="stable")
+    return grid.extract_cells(order), zones[order]
+
+
+@pytest.mark.parametrize("sections, storage", [(1, {}), (3, {"compression": "gzip", "shuffle": True})])
+@pytest.mark.parametrize("kind", ["tets", "hexahedra", "prisms", "mixed"])
+def test_vtk_and_motet_read_the_same_mesh_from_fluent_files_in_hdf5(motet, gmsh_session, tmp_path, kind, sections, storage):
+    expected, zones = two_zones(kind, tmp_path, motet)
+    source, again = tmp_path / "source.cas.h5", tmp_path / "again.vtu"
+
+    def patch_of(middle):
+        return 4 if middle[0] < 0.1 else 5 if middle[2] < 0.1 else 6
+
+    names = {3: "blood", 8: "tissue", 4: "inlet", 5: "floor", 6: "wall", 99: "inside"}
+    write_cff(source, expected, zones, patch_of, names, sections=sections, **storage)
+    # VTK reads points in single precision.
+    rounded = np.asarray(expected.points, np.float32).astype(float)
+    of_zones = [cells_at(expected, rounded, zones == zone) for zone in (3, 8)]
+    assert all(of_zones) and [cells_at(zone) for zone in vtk_cff(source)] == of_zones
+    motet("convert", source, again)
+    whole, found = pyvista.read(again), volume_cells(again)
+    for zone in (3, 8):
+        assert cells_at(found, chosen=found["region"] == zone) == cells_at(expected, chosen=zones == zone)
+    assert np.array_equal(found["region"], zones) and (found.compute_cell_sizes()["Volume"] > 0).all()
+    assert sorted(map(tuple, whole.points)) == sorted(map(tuple, expected.points))
+    facets = whole.extract_cells(np.isin(whole.celltypes, [5, 9]))
+    assert list(facets["patch"]) == [patch_of(facets.get_cell(i).points.mean(axis=0)) for i in range(facets.n_cells)]
+    assert facets.n_cells == expected.extract_surface(algorithm=None).n_cells and set(facets["patch"]) == {4, 5, 6}
+    labels = {name: int(whole.field_data[name][0]) for name in whole.field_data.keys() if name.startswith(("region:", "patch:"))}
+    assert labels == {"region:blood": 3, "region:tissue": 8, "patch:inlet": 4, "patch:floor": 5, "patch:wall": 6}
+    # VTK 9.7 takes the points of faces from wrong places where they are in several sections.
+    divided = tmp_path / "divided.msh.h5"
+    write_cff(divided, expected, zones, patch_of, names, sections=sections, sections_of_faces=4, **storage)
+    motet("convert", divided, tmp_path / "divided.vtu")
+    assert (tmp_path / "divided.vtu").read_bytes() == again.read_bytes()
+    # The same mesh in the form in text.
+    motet("convert", source, tmp_path / "text.cas")
+    motet("convert", tmp_path / "text.cas", tmp_path / "text.vtu")
+    assert cells_at(volume_cells(tmp_path / "text.vtu")) == cells_at(expected)
 
 
 def labelled_mesh(kinds):

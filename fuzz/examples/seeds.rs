@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use hdf5_pure::{AttrValue, DatasetBuilder, FileBuilder, GroupBuilder, LibVer};
 use motet::Mesh;
 use motet::base::{Csr, Threads, VertexId};
 use motet::io::{self, Compression, Encoding, WriteOptions};
@@ -36,6 +37,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         fs::write(folder.join("two"), text)?;
         n_files.insert(target.into(), 1);
     }
+    let folder = corpus.join("cas_h5");
+    fs::create_dir_all(&folder)?;
+    for (name, is_compressed) in [("plain", false), ("zlib", true)] {
+        fs::write(folder.join(name), cas_h5(is_compressed)?)?;
+    }
+    n_files.insert("cas_h5".into(), 2);
     for target in ["fill", "repair", "embed", "steps"] {
         let folder = corpus.join(target);
         fs::create_dir_all(&folder)?;
@@ -95,6 +102,72 @@ const TETGEN: &str = "5 3 1 1\n0 0 0 0 2 -1\n1 1 0 0 2 -1\n2 0 1 0 2 -1\n3 0 0 1
 
 /// The .pts, .elem and .lon files, separated by zero bytes.
 const OPENCARP: &str = "5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n\02\nTt 0 1 2 3 7\nPy 0 1 2 3 4\n\02\n1 0 0 0 1 0\n0 0 1 0.5 0 0\n";
+
+/// A Fluent file in HDF5, which motet does not write: two tets in a zone each.
+fn cas_h5(is_compressed: bool) -> Result<Vec<u8>, hdf5_pure::Error> {
+    let storage = |array: &mut DatasetBuilder, shape: &[u64]| {
+        array.with_shape(shape);
+        if is_compressed {
+            array.with_chunks(shape).with_shuffle().with_deflate(4);
+        }
+    };
+    let table = |parent: &mut GroupBuilder, columns: &[(&str, &[i32])], names: &str| {
+        let mut zones = parent.create_group("zoneTopology");
+        for (name, column) in columns {
+            storage(zones.create_dataset(name).with_i32_data(column), &[column.len() as u64]);
+        }
+        zones.create_dataset("name").with_vlen_strings(&[names]).with_shape(&[1]);
+        parent.add_group(zones.finish());
+    };
+    let cells = |parent: &mut GroupBuilder, name: &str, cells: &[u32]| {
+        let mut side = parent.create_group(name);
+        let array = side.create_dataset("1").with_u32_data(cells);
+        array.set_attr("minId", AttrValue::I64(1));
+        array.set_attr("maxId", AttrValue::I64(cells.len() as i64));
+        storage(array, &[cells.len() as u64]);
+        parent.add_group(side.finish());
+    };
+    let mut file = FileBuilder::new();
+    if !is_compressed {
+        file.with_libver_bounds(LibVer::Earliest, LibVer::V18);
+    }
+    let mut meshes = file.create_group("meshes");
+    let mut mesh = meshes.create_group("1");
+    for (name, n) in [("dimension", 3), ("nodeCount", 5), ("cellCount", 2), ("faceCount", 7)] {
+        mesh.set_attr(name, AttrValue::I64(n));
+    }
+    let mut nodes = mesh.create_group("nodes");
+    let mut coords = nodes.create_group("coords");
+    let points = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.5];
+    let array = coords.create_dataset("1").with_f64_data(&points);
+    array.set_attr("minId", AttrValue::I64(1));
+    array.set_attr("maxId", AttrValue::I64(5));
+    storage(array, &[5, 3]);
+    nodes.add_group(coords.finish());
+    mesh.add_group(nodes.finish());
+    let mut of_cells = mesh.create_group("cells");
+    table(&mut of_cells, &[("id", &[10, 11]), ("minId", &[1, 2]), ("maxId", &[1, 2])], "blood;tissue");
+    mesh.add_group(of_cells.finish());
+    let mut faces = mesh.create_group("faces");
+    let zones: [(&str, &[i32]); 4] =
+        [("id", &[3, 4, 5]), ("minId", &[1, 2, 5]), ("maxId", &[1, 4, 7]), ("zoneType", &[2, 10, 36])];
+    table(&mut faces, &zones, "inside;inlet;wall");
+    let mut of_faces = faces.create_group("nodes");
+    let mut section = of_faces.create_group("1");
+    section.set_attr("minId", AttrValue::I64(1));
+    section.set_attr("maxId", AttrValue::I64(7));
+    storage(section.create_dataset("nnodes").with_i16_data(&[3; 7]), &[7]);
+    let corners = [1, 3, 4, 1, 2, 3, 1, 4, 2, 2, 4, 3, 1, 5, 3, 1, 5, 4, 4, 5, 3];
+    storage(section.create_dataset("nodes").with_u32_data(&corners), &[21]);
+    of_faces.add_group(section.finish());
+    faces.add_group(of_faces.finish());
+    cells(&mut faces, "c0", &[1, 1, 1, 1, 0, 2, 2]);
+    cells(&mut faces, "c1", &[2, 0, 0, 0, 2, 0, 0]);
+    mesh.add_group(faces.finish());
+    meshes.add_group(mesh.finish());
+    file.add_group(meshes.finish());
+    file.finish()
+}
 
 /// Small meshes with everything that a file may contain.
 fn meshes() -> Vec<(&'static str, Mesh)> {

@@ -14,7 +14,8 @@ fn format(extension: &str) -> &'static Format {
 /// Reads `bytes` as a file with this extension. A mesh that results is valid.
 pub fn read(extension: &str, bytes: &[u8]) -> Option<Mesh> {
     let path = format!("in{extension}");
-    let input = Input { path: Path::new(&path), bytes, threads: &Threads::single(), notes: &Notes::default() };
+    let input =
+        Input { path: Path::new(&path), bytes, threads: &Threads::single(), notes: &Notes::default() };
     let mesh = read_as(format(extension), &input).ok()?;
     mesh.validate().expect("a reader returns a mesh that holds together");
     Some(mesh)

@@ -33,7 +33,7 @@
 //! | `io` | [`io`], without HDF5 and lzma | `quick-xml`, `flate2`, `serde`, ... |
 //! | `suite` | all other modules, and `io` | `serde_json`, `strsim` |
 //! | `elasticity` | motion as an elastic body and by Laplace's equation | `faer` |
-//! | `hdf5` | files in VTKHDF and CGNS, numbers of XDMF | `hdf5-pure` |
+//! | `hdf5` | files in VTKHDF, CGNS, MED and Fluent's HDF5, numbers of XDMF | `hdf5-pure` |
 //! | `lzma` | VTK's XML files compressed with lzma | `lzma-rust2` |
 //! | `parallel` | more than one thread | `rayon` |
 //! | `serde` | reports, histories and ids can be stored | `serde` |

@@ -20,11 +20,16 @@ const TRIMESH: &str = "convert it with trimesh (pip install trimesh) or Blender,
 
 const FOREIGN: &[ForeignFormat] = &[
     ForeignFormat {
-        name: "an Ansys Fluent case (HDF5)",
-        extensions: &[".cas.h5", ".msh.h5", ".dat.h5"],
-        remedy: PARAVIEW,
+        name: "a solution of Ansys Fluent without its mesh",
+        extensions: &[".dat.h5"],
+        remedy: "read the mesh from the case (.cas.h5); for the solution, open the case in ParaView and save the data as .vtu",
     },
     ForeignFormat { name: "an XDMF file of version 2", extensions: &[".xdmf2"], remedy: MESHIO_HDF },
+    ForeignFormat {
+        name: "an HDF5 file of an unknown kind",
+        extensions: &[".h5", ".hdf5"],
+        remedy: "give it the extension of its format: .vtkhdf, .cgns, .exo, .med or .cas.h5; of XDMF, give the .xdmf file beside it",
+    },
     ForeignFormat { name: "a MOAB file", extensions: &[".h5m"], remedy: MESHIO_HDF },
     ForeignFormat {
         name: "an openCARP mesh in binary form",
@@ -121,8 +126,10 @@ pub(super) fn refuse(path: &Path, bytes: &[u8], extensions: &[&str]) -> Result<(
     if bytes.starts_with(b"\x1f\x8b") && !extensions.iter().any(|e| e.ends_with(".gz")) {
         return named("a gzip file", "decompress it first: gunzip -c FILE");
     }
-    if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && ![".cgns", ".vtkhdf", ".exo", ".med"].into_iter().any(is) {
-        return misnamed("an HDF5 file", ".vtkhdf, .cgns, .exo or .med");
+    if bytes.starts_with(b"\x89HDF\r\n\x1a\n")
+        && ![".cgns", ".vtkhdf", ".exo", ".med", ".cas.h5"].into_iter().any(is)
+    {
+        return misnamed("an HDF5 file", ".vtkhdf, .cgns, .exo, .med, or of Fluent .cas.h5 or .msh.h5");
     }
     if start.starts_with(b"ISO-10303-21") {
         return named("a CAD model (STEP)", CAD);
@@ -154,7 +161,8 @@ mod tests {
         assert!(
             of("x.xdmf2").contains("XDMF")
                 && of("x.step").contains("gmsh")
-                && of("x.cas.h5").contains("ParaView")
+                && of("x.dat.h5").contains("read the mesh from the case (.cas.h5")
+                && of("x.h5").contains("give it the extension")
         );
         assert!(by_extension(Path::new("x.docx")).is_none());
     }

@@ -43,6 +43,7 @@ const FORMATS: &[Format] = &[
     nastran::FORMAT,
     cdb::FORMAT,
     fluent::FORMAT,
+    fluent::HDF5,
     med::FORMAT,
     exodus::FORMAT,
     xdmf::FORMAT,
@@ -110,6 +111,9 @@ pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
         Err(error) if path.is_dir() => return Err(error),
         format => format.is_ok_and(|f| f.write.is_some()),
     };
+    if let Some(error) = for_writing(path).ok().and_then(|format| written_otherwise(format, path)) {
+        return Err(error);
+    }
     if !writable {
         let known: Vec<_> =
             FORMATS.iter().filter(|f| f.write.is_some()).flat_map(|f| f.extensions).copied().collect();
@@ -119,6 +123,15 @@ pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
     }
     refuse_full_folder(path)?;
     can_have_folder(path)
+}
+
+/// The error for a form of files that is only read, of programs whose files are written in another form.
+fn written_otherwise(format: &Format, path: &Path) -> Option<Error> {
+    format.extensions.contains(&".cas.h5").then(|| {
+        Error::options(format!("{} files can only be read", format.name))
+            .in_file(path)
+            .remedy("write .cas, the form in text, which Fluent reads as .msh, too")
+    })
 }
 
 /// Rejects a non-empty folder as a target, so that nothing is lost and no old files remain among new ones.
@@ -192,7 +205,8 @@ pub fn write_on(
 ) -> Result<Vec<String>> {
     let path = path.as_ref();
     let format = for_writing(path)?;
-    let write = format.write.ok_or_else(|| format.only_read().in_file(path))?;
+    let only_read = || written_otherwise(format, path).unwrap_or_else(|| format.only_read().in_file(path));
+    let write = format.write.ok_or_else(only_read)?;
     mesh.validate()?;
     let written = match write {
         Write::File(write) => {

@@ -7,7 +7,7 @@ fn parse_noted(bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
     parsed(&FORMAT, "in.cas", bytes)
 }
 
-fn parse(text: &str) -> Mesh {
+pub(super) fn parse(text: &str) -> Mesh {
     parse_noted(text.as_bytes()).0.unwrap()
 }
 
@@ -17,7 +17,7 @@ fn print(mesh: &Mesh) -> (String, Vec<String>) {
 
 /// Two tets, each a zone of its own; the face between them is a wall, the others are three zones. Points
 /// begin with number 5 and come in two sections.
-const TWO: &str = "\
+pub(super) const TWO: &str = "\
 (0 \"by hand, with a bracket ( in it\")
 (1 \"motet \\\"3D\\\"\")
 (2 3)

@@ -85,5 +85,7 @@ never! { Array {
     fn error(impl Into<String>) -> Error;
     fn is_supported() -> bool;
     fn records() -> Result<Vec<Vec<u8>>>;
+    fn bytes() -> Result<Vec<u8>>;
     fn text(&str) -> Result<Option<String>>;
+    fn attribute(&str) -> Result<Option<Vec<i64>>>;
 } }

@@ -1,4 +1,4 @@
-//! HDF5, the container of VTKHDF, CGNS and MED: reads and writes groups, arrays and attributes.
+//! HDF5, the container of VTKHDF, CGNS, MED and Fluent: reads and writes groups, arrays and attributes.
 //!
 //! All calls to the crate `hdf5-pure` are made here, so that it can be replaced. It reads what the C library
 //! writes (both kinds of groups, every chunk index, zlib, shuffle) and needs no C. Added here: an array

@@ -201,6 +201,24 @@ impl Array {
         Ok(bytes.chunks_exact(width).map(<[u8]>::to_vec).collect())
     }
 
+    /// The bytes of all rows, end to end: of texts of any length those of the texts, with any padding.
+    pub(in crate::io) fn bytes(&self) -> Result<Vec<u8>> {
+        match self.kind {
+            DType::VariableLengthString => match self.all()? {
+                Values::Text(texts) => Ok(texts.concat().into_bytes()),
+                _ => Err(self.unknown()),
+            },
+            _ if self.rows() == 0 || self.components() == 0 => Ok(Vec::new()),
+            _ => guarded(&self.path, || self.inner.read_raw()),
+        }
+    }
+
+    /// An attribute with one or several integers.
+    pub(in crate::io) fn attribute(&self, name: &str) -> Result<Option<Vec<i64>>> {
+        let attributes = guarded(&self.path, || self.inner.attrs())?;
+        Ok(attributes.get(name).and_then(AttrValue::to_i64s))
+    }
+
     /// An attribute that is a text, without padding.
     pub(in crate::io) fn text(&self, name: &str) -> Result<Option<String>> {
         let attributes = guarded(&self.path, || self.inner.attrs())?;
