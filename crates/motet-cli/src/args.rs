@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand};
 use crate::common::Common;
 use crate::verbs::{
     cap, contact, convert, demo, implant, info, meshing, moving, quality, refine, remesh, report, run, shell,
-    view,
+    surface, view,
 };
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
@@ -34,6 +34,7 @@ pub(crate) enum Verb {
     Quality(quality::QualityArgs),
     Convert(convert::ConvertArgs),
     Cap(cap::CapArgs),
+    Surface(Box<surface::SurfaceArgs>),
     Mesh(Box<meshing::MeshArgs>),
     Move(Box<moving::MoveArgs>),
     Remesh(Box<remesh::RemeshArgs>),

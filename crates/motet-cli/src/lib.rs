@@ -1,9 +1,10 @@
 //! The command line of motet: arguments in, calls of the library, text or JSON out.
 //!
 //! It holds no algorithm. Each verb has its file in `verbs/`; what they share is here: parsing of the call
-//! (`args`, `words`, `help`), output for the user (`console`, `progress`, `table`), exit statuses (`exit`),
-//! checks of output paths (`outputs`), and how arrays are carried (`arrays`).
+//! (`args`, `words`, `help`, `adapting`), output for the user (`console`, `progress`, `table`), exit statuses
+//! (`exit`), checks of output paths (`outputs`), and how arrays are carried (`arrays`).
 
+mod adapting;
 mod args;
 mod arrays;
 mod common;
@@ -41,6 +42,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Quality(args) => verbs::quality::run(&args, &call.common, &console),
         Verb::Convert(args) => verbs::convert::run(&args, &call.common, &console),
         Verb::Cap(args) => verbs::cap::run(&args, &call.common, &console),
+        Verb::Surface(args) => verbs::surface::run(&args, &call.common, &console),
         Verb::Mesh(args) => verbs::meshing::run(&args, &call.common, &console),
         Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
         Verb::Remesh(args) => verbs::remesh::run(&args, &call.common, &console),

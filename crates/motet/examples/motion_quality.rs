@@ -17,8 +17,8 @@ use motet::base::{Point, Threads, VertexId};
 use motet::geometry::quality::{dihedral, eas};
 use motet::geometry::tet::volume;
 use motet::geometry::vector::{norm, sub};
-use motet::mesh::{Mesh, shapes};
-use motet::motion::{BAD_EAS, Elastic, Laplace, Method, Mover, Options, Prescribed};
+use motet::mesh::{BAD_EAS, Mesh, shapes};
+use motet::motion::{Elastic, Laplace, Method, Mover, Options, Prescribed};
 
 /// A whole motion.
 struct Row {

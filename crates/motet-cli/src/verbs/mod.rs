@@ -14,4 +14,5 @@ pub(crate) mod remesh;
 pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod shell;
+pub(crate) mod surface;
 pub(crate) mod view;

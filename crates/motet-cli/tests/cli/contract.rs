@@ -125,7 +125,7 @@ fn every_verb_takes_more_threads_than_the_machine_has_and_gives_the_same_files()
     folder.write("ball.off", format!("OFF\n6 8 0\n{}\n{triangles}\n", corners.join("\n")).as_bytes());
     folder
         .write("open.off", format!("OFF\n6 7 0\n{}\n{}\n", corners.join("\n"), &triangles[..55]).as_bytes());
-    let calls: [&[&str]; 9] = [
+    let calls: [&[&str]; 10] = [
         &["convert", "box.vtu", "-o"],
         &["info", "box.vtu", "-o"],
         &["mesh", "ball.off", "--size", "0.1", "-o"],
@@ -135,6 +135,7 @@ fn every_verb_takes_more_threads_than_the_machine_has_and_gives_the_same_files()
         &["move", "box.vtu", "--translate", "sphere=0.1,0,0", "-o"],
         &["contact", "box.vtu", "--patches", "sphere,box", "-o"],
         &["cap", "open.off", "-o"],
+        &["surface", "open.off", "--size", "0.1", "-o"],
     ];
     for words in calls {
         let made = |name: &str, threads: &str| {
@@ -148,7 +149,7 @@ fn every_verb_takes_more_threads_than_the_machine_has_and_gives_the_same_files()
     }
     for verb in [
         "info", "quality", "convert", "mesh", "move", "remesh", "refine", "implant", "contact", "run", "cap",
-        "report",
+        "report", "surface",
     ] {
         let call = folder.motet([verb, "--threads", "-1"]).assert().code(2);
         assert!(stderr(&call).contains("invalid value '-1' for '--threads <N>'"), "{}", stderr(&call));

@@ -14,4 +14,5 @@ mod refine;
 mod remesh;
 mod report;
 mod run;
+mod surface;
 mod view;

@@ -9,6 +9,7 @@ use super::sizes::{Grading, Sizes};
 use super::surfaces::Surfaces;
 use crate::base::{Result, Threads};
 use crate::geometry::triangle::area;
+use crate::mesh::largest_extent;
 use crate::spatial::bounding_box;
 use crate::surface;
 
@@ -42,6 +43,15 @@ pub struct Adapting {
     pub feature_angle: f64,
 }
 
+impl Adapting {
+    /// How far these surfaces may stray.
+    pub(super) fn allowed(&self, surfaces: &Surfaces) -> f64 {
+        let used = surfaces.triangles.as_flattened().iter().map(|v| surfaces.points[v.index()]);
+        let extent = largest_extent(bounding_box(used));
+        self.distance.unwrap_or(DISTANCE_OVER_EXTENT * extent)
+    }
+}
+
 impl Default for Adapting {
     fn default() -> Self {
         Self { distance: None, feature_angle: 40.0 }
@@ -59,9 +69,7 @@ pub(super) fn adapt(
     adapting: &Adapting,
     threads: &Threads,
 ) -> Result<(Surfaces, Option<Sizes>, Adapted)> {
-    let [low, high] = bounding_box(surfaces.points.iter().copied());
-    let extent = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
-    let distance = adapting.distance.unwrap_or(DISTANCE_OVER_EXTENT * extent);
+    let distance = adapting.allowed(surfaces);
     let sheet = Sheet::of(surfaces);
     let mut numbers = BTreeMap::<&[Label], u32>::new();
     let labels: Vec<u32> = sheet

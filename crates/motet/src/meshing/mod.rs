@@ -7,6 +7,7 @@
 //! | check | [`crate::preflight`] | everything that would prevent meshing, with ids and places |
 //! | divide | `divide` | a surface far coarser than the size inside is divided within its own planes |
 //! | adapt | `adapt`, [`crate::surface`] | or surfaces get even triangles within a distance, if requested |
+//! | surfaces alone | [`even`] | open or closed: even triangles, arrays carried; no tets |
 //! | layers | [`layers`] | thin prisms on walls, if requested; the following steps fill the core that they leave |
 //! | sizes | `sizes`, `size_field` | the same everywhere, or growing from the surface |
 //! | points | `interior`; `graded`, `octree`, `shadow` | a lattice inside, slightly away from the surface; or one of nested cubes |
@@ -21,6 +22,7 @@ mod bodies;
 mod caps;
 mod compact;
 mod divide;
+pub mod even;
 mod fill;
 mod graded;
 mod interior;

@@ -85,6 +85,16 @@ impl Sizes {
         Some(Self::Graded(Grading { at_points, growth, largest }))
     }
 
+    /// These sizes with those at points replaced by a function of them.
+    pub(super) fn map_points(self, of: impl FnOnce(&[f64]) -> Vec<f64>) -> Self {
+        match self {
+            Self::Graded(Grading { at_points: Some(values), growth, largest }) => {
+                Self::Graded(Grading { at_points: Some(of(&values)), growth, largest })
+            }
+            other => other,
+        }
+    }
+
     /// Checks the sizes.
     ///
     /// # Errors

@@ -36,18 +36,28 @@ impl Surfaces {
     /// # Errors
     /// When there are more points than ids.
     pub fn new(meshes: &[(&Mesh, Role, &str)]) -> Result<Self> {
+        let surfaces: Vec<_> = meshes
+            .iter()
+            .map(|&(mesh, role, name)| (Surface::own_or_boundary_of(mesh), role, name))
+            .collect();
+        let surfaces: Vec<_> = surfaces.iter().map(|(surface, role, name)| (surface, *role, *name)).collect();
+        Self::of(&surfaces)
+    }
+
+    /// Joins surfaces, each with a role and a name, as [`Self::new`] does.
+    pub(super) fn of(surfaces: &[(&Surface, Role, &str)]) -> Result<Self> {
         let mut all = Self {
             points: Vec::new(),
             triangles: Vec::new(),
             surface_of: Vec::new(),
-            roles: meshes.iter().map(|m| m.1).collect(),
-            names: meshes.iter().map(|m| m.2.to_owned()).collect(),
-            meshes: (0..meshes.len() as u32).map(|mesh| vec![mesh]).collect(),
+            roles: surfaces.iter().map(|m| m.1).collect(),
+            names: surfaces.iter().map(|m| m.2.to_owned()).collect(),
+            meshes: (0..surfaces.len() as u32).map(|mesh| vec![mesh]).collect(),
             patches: Vec::new(),
             patch_names: BTreeMap::new(),
         };
-        for (number, &(mesh, _, name)) in meshes.iter().enumerate() {
-            all.add(mesh, number as u32, name)?;
+        for (number, &(surface, _, name)) in surfaces.iter().enumerate() {
+            all.add(surface, number as u32, name)?;
         }
         let kept = firsts_at_place(&all.points);
         all.triangles = renamed(&all.triangles, &kept);
@@ -99,8 +109,7 @@ impl Surfaces {
         keep(&mut self.patches, &is_kept);
     }
 
-    fn add(&mut self, mesh: &Mesh, number: u32, name: &str) -> Result<()> {
-        let surface = Surface::own_or_boundary_of(mesh);
+    fn add(&mut self, surface: &Surface, number: u32, name: &str) -> Result<()> {
         let first = self.points.len();
         if first + surface.points.len() > VertexId::MAX_COUNT {
             return Err(Error::input("the surfaces have more points than there are ids")
@@ -110,7 +119,7 @@ impl Surfaces {
         self.triangles.extend(surface.triangles.iter().map(moved));
         self.points.extend(&surface.points);
         self.surface_of.resize(self.triangles.len(), number);
-        self.label(&surface, name);
+        self.label(surface, name);
         Ok(())
     }
 

@@ -12,6 +12,9 @@ use crate::geometry::vector::{add, distance, scale};
 const LONG: f64 = 4.0 / 3.0;
 /// Edges shorter than this times the size are collapsed.
 const SHORT: f64 = 0.8;
+/// How many passes of splits a round makes at most. They end long before, except where triangles cross, so
+/// that splits are refused.
+const SPLITS: usize = 64;
 /// Between splits of long edges short ones are collapsed while the longest becomes shorter by this.
 const SHORTER: f64 = 0.9;
 /// A flipped edge may be as long as this times the size, or as long as it was.
@@ -145,7 +148,7 @@ impl Work<'_> {
     /// When there would be more than `max_triangles`.
     fn split_long(&mut self) -> Result<usize> {
         let (mut n, mut longest) = (0, f64::INFINITY);
-        loop {
+        for _ in 0..SPLITS {
             if self.sheet.n_slots() > self.max_triangles {
                 let what = format!("the adapted surface needs more than {} triangles", self.max_triangles);
                 return Err(Error::options(what).remedy("give a larger size or distance"));
@@ -155,7 +158,7 @@ impl Work<'_> {
             let longest_now = long.first().map_or(0.0, |x| x.0);
             let n_now = long.into_iter().filter(|(_, edge)| self.split(*edge)).count();
             if n_now == 0 {
-                return Ok(n);
+                break;
             }
             n += n_now;
             // Parts of needles get shorter edges, and fewer vertices, before they are split themselves.
@@ -165,6 +168,7 @@ impl Work<'_> {
                 self.collapse_short(true);
             }
         }
+        Ok(n)
     }
 
     /// Edges whose lengths over their sizes are wanted, from the least of these ratios to the greatest.

@@ -7,6 +7,8 @@
 //! | changes | `work`, `sheet` | proposed, checked, made |
 //! | distance | `original`, `cover` | both ways, for each change |
 //! | crossings | `near` | none is made |
+//! | smoothing | `smooth` | noise removed before, if requested |
+//! | origins | `places` | where the new surface lies on the given one |
 
 mod adapt;
 mod cover;
@@ -14,7 +16,9 @@ mod features;
 mod lines;
 mod near;
 mod original;
+mod places;
 mod sheet;
+mod smooth;
 mod work;
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
@@ -23,7 +27,9 @@ use crate::geometry::vector::{LARGEST, in_range};
 use crate::spatial::{Closest, NearestTriangle};
 use features::Features;
 use original::Original;
+pub use places::{Labelled, Place, Places, places};
 pub(crate) use sheet::{Change, Sheet};
+pub use smooth::smooth;
 use work::Work;
 
 /// How a surface is made even.

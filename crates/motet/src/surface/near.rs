@@ -64,7 +64,12 @@ impl Near {
         let is_far = |other: [Point; 3]| {
             let Some(old) = &in_place else { return false };
             let reach = ROUNDING * bounds.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-            old.iter().all(|t| triangle_triangle::closest_below(*t, other, reach * reach).is_none())
+            // Where triangles meet, signs say so sooner than a common point does, which is exact.
+            let is_near = |t: &[Point; 3]| {
+                triangle_triangle::meet(*t, other)
+                    || triangle_triangle::closest_below(*t, other, reach * reach).is_some()
+            };
+            !old.iter().any(is_near)
         };
         let meets_any = |t: u32| {
             let other = sheet.triangle(t);

@@ -22,6 +22,8 @@ struct OfLabel {
     normals: Vec<Point>,
     /// The vertices of the triangles.
     corners: Vec<[VertexId; 3]>,
+    /// The ids of the triangles in the given surface.
+    ids: Vec<usize>,
 }
 
 impl Original {
@@ -35,13 +37,17 @@ impl Original {
     ) -> Self {
         let n_labels = labels.iter().max().map_or(0, |&most| most as usize + 1);
         let mut by_label = vec![Vec::new(); n_labels];
-        for (t, &label) in triangles.iter().zip(labels) {
-            by_label[label as usize].push(*t);
+        for (id, &label) in labels.iter().enumerate() {
+            by_label[label as usize].push(id);
         }
-        let of = |corners: Vec<[VertexId; 3]>| OfLabel {
-            tree: NearestTriangle::new(points, &corners, threads),
-            normals: normals(points, &corners, distance),
-            corners,
+        let of = |ids: Vec<usize>| {
+            let corners: Vec<[VertexId; 3]> = ids.iter().map(|&id| triangles[id]).collect();
+            OfLabel {
+                tree: NearestTriangle::new(points, &corners, threads),
+                normals: normals(points, &corners, distance),
+                corners,
+                ids,
+            }
         };
         Self { of_label: by_label.into_iter().map(of).collect(), distance }
     }
@@ -49,6 +55,11 @@ impl Original {
     /// The nearest point of a label's triangles, if it is within `reach`.
     pub(super) fn near(&self, label: u32, p: Point, reach: f64) -> Option<Closest> {
         self.of_label[label as usize].tree.closest_within(p, reach)
+    }
+
+    /// The given triangle on which [`Self::near`] found a point.
+    pub(super) fn id(&self, label: u32, found: &Closest) -> usize {
+        self.of_label[label as usize].ids[found.triangle]
     }
 
     /// The value at a point found by [`Self::near`], of values at vertices.

@@ -3,9 +3,9 @@
 
 use crate::common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};
-use motet::geometry::quality::{dihedral, eas};
+use motet::geometry::quality::{dihedral, eas, highest_eas};
 use motet::geometry::triangle::angle_at;
-use motet::kernel::{Change, Complex, FLATTEST, Hold, Reject, Side, Star, VertexChange, best_at, is_reached};
+use motet::kernel::{Change, Complex, FLATTEST, Hold, Reject, Side, Star, VertexChange, is_reached};
 use motet::mesh::TetMesh;
 use motet::mesh::TetPart;
 use motet::mesh::shapes::box_grid;
@@ -263,13 +263,13 @@ fn a_narrow_wall_forces_its_tet_only_where_it_is_firm() {
     let quality = eas(corners);
     let narrow = angle_at([corners[0], corners[1], corners[2]], 0).to_degrees();
     assert!((narrow - 5.0).abs() < 1e-9);
-    assert_eq!(is_reached(quality, best_at(narrow)), (quality - 5.0 / 60.0).abs() < 1e-6);
+    assert_eq!(is_reached(quality, highest_eas(narrow)), (quality - 5.0 / 60.0).abs() < 1e-6);
     let tets = vec![[0, 1, 2, 3].map(VertexId)];
     let mut complex = Complex::new(&TetMesh::new(corners.to_vec(), tets)).unwrap();
     complex.exempt(&[TetId(0)], 0.2);
     let judged =
         |side: Side, at: usize| complex.judge(corners, |i| if i == at { side } else { Side::Inside });
-    assert!(is_reached(quality, best_at(narrow)), "{quality}");
+    assert!(is_reached(quality, highest_eas(narrow)), "{quality}");
     assert_eq!(judged(Side::Firm, 3), f64::INFINITY);
     assert_eq!([judged(Side::Wall, 3), judged(Side::Inside, 3)], [quality; 2]);
     assert_eq!(judged(Side::Firm, 0), quality);
@@ -283,7 +283,7 @@ fn a_narrow_wall_forces_its_tet_only_where_it_is_firm() {
 
 #[test]
 fn the_best_that_an_angle_allows_is_reached_within_a_millionth() {
-    assert_eq!([0.0, 30.0, 60.0, 120.0, 180.0].map(best_at), [0.0, 0.5, 1.0, 0.5, 0.0]);
+    assert_eq!([0.0, 30.0, 60.0, 120.0, 180.0].map(highest_eas), [0.0, 0.5, 1.0, 0.5, 0.0]);
     assert!(is_reached(0.1, 0.1) && is_reached(0.1, 0.1 + 0.9e-6) && !is_reached(0.1, 0.1 + 1.1e-6));
     assert!(!is_reached(0.0, 0.0) && !is_reached(-1e-9, 0.0));
     // Nearly flat tets are never exempt.

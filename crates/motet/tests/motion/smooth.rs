@@ -4,9 +4,9 @@
 use motet::base::{Point, Threads};
 use motet::geometry::quality::eas;
 use motet::geometry::vector::{add, distance, norm};
-use motet::mesh::Mesh;
 use motet::mesh::shapes::sphere_in_box;
-use motet::motion::{BAD_EAS, Mover, Options};
+use motet::mesh::{BAD_EAS, Mesh};
+use motet::motion::{Mover, Options};
 
 fn movers(mesh: &Mesh) -> [Mover; 2] {
     [0, 2].map(|smoothing| {

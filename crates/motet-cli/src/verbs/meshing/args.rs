@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use motet::base::Point;
-use motet::meshing::{Dividing, EdgeLength, MeshingWords, Seed, WallLayers};
+use motet::meshing::{Dividing, MeshingWords, Seed, WallLayers};
 
 use super::parsers;
+use crate::adapting::AdaptArgs;
 use crate::help;
-use crate::words::positive;
 use crate::writing::WritingArgs;
 
 /// Fill closed surfaces with tets: every triangle becomes a facet of the mesh
@@ -56,20 +56,11 @@ pub(crate) struct MeshArgs {
     /// Output file, in any mesh format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
-    #[arg(long, help = help::effect::<MeshingWords>("size"), value_name = "H|auto", value_parser = EdgeLength::of_text)]
-    pub(crate) size: Option<EdgeLength>,
+    #[command(flatten)]
+    pub(crate) adapting: AdaptArgs<MeshingWords>,
     #[arg(long, help = help::effect::<MeshingWords>("surface"), value_name = "RULE", value_parser = help::name_of::<Dividing>(),
         default_value_t = MeshingWords::default().surface)]
     pub(crate) surface: Dividing,
-    #[arg(long, help = help::effect::<MeshingWords>("distance"), value_name = "D", value_parser = positive)]
-    pub(crate) distance: Option<f64>,
-    #[arg(long, help = help::effect::<MeshingWords>("feature_angle"), value_name = "DEG",
-        default_value_t = MeshingWords::default().feature_angle)]
-    pub(crate) feature_angle: f64,
-    #[arg(long, help = help::effect::<MeshingWords>("growth"), value_name = "G", value_parser = positive)]
-    pub(crate) growth: Option<f64>,
-    #[arg(long, help = help::effect::<MeshingWords>("size_array"), value_name = "NAME")]
-    pub(crate) size_array: Option<String>,
     #[arg(long, help = help::repeatable::<MeshingWords>("seeds"), value_name = "X,Y,Z=NAME", value_parser = parsers::seed,
         allow_hyphen_values = true)]
     pub(crate) seed: Vec<Seed>,
@@ -90,15 +81,11 @@ pub(crate) struct MeshArgs {
     pub(crate) layers_on: Vec<String>,
     #[arg(long, help = help::effect::<MeshingWords>("keep_prisms"), requires = "layers")]
     pub(crate) keep_prisms: bool,
-    #[arg(long, help = help::effect::<MeshingWords>("repair"))]
-    pub(crate) repair: bool,
     #[arg(long, help = help::effect::<MeshingWords>("cut"))]
     pub(crate) cut: bool,
     #[arg(long, help = help::effect::<MeshingWords>("hole_edges"), value_name = "N",
         default_value_t = MeshingWords::default().hole_edges, requires = "repair")]
     pub(crate) hole_edges: usize,
-    #[arg(long, help = help::effect::<MeshingWords>("merge"), value_name = "DISTANCE", requires = "repair")]
-    pub(crate) merge: Option<f64>,
     #[arg(long, help = help::effect::<MeshingWords>("delaunay"))]
     pub(crate) delaunay: bool,
     /// Write what is wrong to this file, as a surface to inspect
@@ -113,12 +100,12 @@ impl MeshArgs {
     pub(super) fn words(&self) -> MeshingWords {
         let usual = MeshingWords::default();
         MeshingWords {
-            size: self.size,
+            size: self.adapting.size,
             surface: self.surface,
-            distance: self.distance,
-            feature_angle: self.feature_angle,
-            growth: self.growth,
-            size_array: self.size_array.clone(),
+            distance: self.adapting.distance,
+            feature_angle: self.adapting.feature_angle,
+            growth: self.adapting.growth,
+            size_array: self.adapting.size_array.clone(),
             seeds: self.seed.clone(),
             holes: self.hole.clone(),
             voids: self.voids,
@@ -126,10 +113,10 @@ impl MeshArgs {
             layers: self.layers.clone(),
             layers_on: self.layers_on.clone(),
             keep_prisms: self.keep_prisms,
-            repair: self.repair,
+            repair: self.adapting.repair,
             cut: self.cut,
             hole_edges: self.hole_edges,
-            merge: self.merge.unwrap_or(usual.merge),
+            merge: self.adapting.merge.unwrap_or(usual.merge),
             delaunay: self.delaunay,
         }
     }

@@ -102,14 +102,14 @@ fn read(
     {
         let (mesh, notes) = io::read_on(file, threads)?;
         notes.iter().for_each(|what| console.warn(what));
-        if let Some(array) = &args.size_array {
+        if let Some(array) = &args.adapting.size_array {
             sizes.push(sizes_by(&mesh, array).map_err(|e| e.in_file(file))?);
         }
         meshes.push((mesh, role, stem(file).unwrap_or_default()));
     }
     let meshes: Vec<_> = meshes.iter().map(|(mesh, role, name)| (mesh, *role, name.as_str())).collect();
     let surfaces = Surfaces::new(&meshes)?;
-    let sizes = args.size_array.as_ref().map(|_| surfaces.sizes(&sizes));
+    let sizes = args.adapting.size_array.as_ref().map(|_| surfaces.sizes(&sizes));
     Ok((surfaces, sizes))
 }
 

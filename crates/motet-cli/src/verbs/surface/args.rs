@@ -1,0 +1,74 @@
+//! Arguments of `motet surface`, as its help shows them.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use motet::meshing::even::SurfaceWords;
+
+use crate::adapting::AdaptArgs;
+use crate::help;
+use crate::writing::WritingArgs;
+
+/// Give a surface even triangles, within a distance of it; it may be open
+///
+/// Long edges are split, short ones collapsed, edges flipped and vertices moved along the surface. Rims,
+/// borders of patches, edges of more than two triangles and creases stay. Triangles that cross none before
+/// cross none afterwards. Arrays and patches are carried.
+#[derive(Debug, Args)]
+#[command(override_usage = "motet surface IN -o OUT [OPTIONS]")]
+#[command(after_help = "\
+IN is a surface of triangles, quads or polygons; of a volume mesh, its surface cells with their \
+patches or, where it has none, its boundary. Points at the same place are merged and triangles \
+without area dropped. The distance is measured both ways, at vertices, middles of edges and \
+centroids. On points, real numbers are interpolated in the nearest triangle of the same patch; \
+whole numbers, names and directions are those of one of its corners. Triangles get the values of \
+the nearest one.
+
+Examples:
+  Even triangles, as many as there are, within a thousandth of the extent:
+    motet surface scan.stl -o even.stl
+  Edges about 0.4 long, at most 0.02 away:
+    motet surface lumen.vtp -o even.vtp --size 0.4 --distance 0.02
+  Sizes from an array, such as a part of the radius:
+    motet surface lumen.vtp -o even.vtp --size-array h
+  Steps of a segmentation smoothed first:
+    motet surface scan.stl -o even.stl --smooth 20 --feature-angle 120
+
+Exit status 3: there is no surface, or a coordinate is not finite; nothing is written. 4: the \
+surface is farther away than allowed, or smoothing made triangles cross; it is written.")]
+pub(crate) struct SurfaceArgs {
+    /// Mesh file of the surface
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    /// Output file, in any mesh format
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) adapting: AdaptArgs<SurfaceWords>,
+    #[arg(long, help = help::effect::<SurfaceWords>("hole_edges"), value_name = "N",
+        default_value_t = SurfaceWords::default().hole_edges, requires = "repair")]
+    pub(crate) hole_edges: usize,
+    #[arg(long, help = help::effect::<SurfaceWords>("smooth"), value_name = "N",
+        default_value_t = SurfaceWords::default().smooth)]
+    pub(crate) smooth: usize,
+    #[command(flatten)]
+    pub(crate) writing: WritingArgs,
+}
+
+impl SurfaceArgs {
+    /// What the call requests.
+    pub(super) fn words(&self) -> SurfaceWords {
+        let AdaptArgs { size, distance, feature_angle, growth, repair, .. } = self.adapting;
+        SurfaceWords {
+            size,
+            distance,
+            feature_angle,
+            growth,
+            size_array: self.adapting.size_array.clone(),
+            repair,
+            hole_edges: self.hole_edges,
+            merge: self.adapting.merge.unwrap_or(SurfaceWords::default().merge),
+            smooth: self.smooth,
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! `motet surface`: what it makes even, what it prints, what it refuses.
+
+use crate::common::{Folder, stderr, stdout};
+use motet::Mesh;
+use motet::base::VertexId;
+use motet::io::read;
+use motet::mesh::shapes::box_grid;
+use motet::mesh::{CellKind, Cells, Field};
+use serde_json::Value;
+
+/// A tube without ends, of radius 1 and length 4, with narrow triangles and a linear point array.
+fn tube() -> Mesh {
+    let (n, m) = (48, 5);
+    let points: Vec<_> = (0..=m)
+        .flat_map(|j| (0..n).map(move |i| (i, j)))
+        .map(|(i, j)| {
+            let angle = std::f64::consts::TAU * i as f64 / n as f64;
+            [angle.cos(), angle.sin(), 4.0 * j as f64 / m as f64]
+        })
+        .collect();
+    let mut cells = Cells::new();
+    for (i, j) in (0..m).flat_map(|j| (0..n).map(move |i| (i, j))) {
+        let id = |i: usize, j: usize| VertexId::new(j * n + i % n);
+        let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
+        cells.push(CellKind::TRIANGLE, [a, b, c]);
+        cells.push(CellKind::TRIANGLE, [a, c, d]);
+    }
+    let mut mesh = Mesh::new(points, cells);
+    let height: Vec<f64> = mesh.points.iter().map(|p| p[2]).collect();
+    mesh.set_point_field(Field::scalars("height", height));
+    mesh
+}
+
+#[test]
+fn an_open_tube_gets_even_triangles_and_a_report() {
+    let folder = Folder::new();
+    folder.mesh("tube.vtp", &tube());
+    let words = ["surface", "tube.vtp", "-o", "even.vtp", "--size", "0.3", "--distance", "0.02"];
+    let call = folder.motet(words.iter().chain(&["--json"])).assert().success();
+    let report: Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    assert_eq!((&report["complete"], &report["not_reached"]), (&Value::Bool(true), &Value::Null));
+    assert_eq!((&report["before"]["rims"], &report["after"]["rims"]), (&2.into(), &2.into()));
+    assert!(report["after"]["angles"]["worst"].as_f64().unwrap() > 25.0, "{report}");
+    assert!(report["before"]["angles"]["worst"].as_f64().unwrap() < 10.0, "{report}");
+    assert_eq!((&report["after"]["crossings"], &report["after"]["volume"]), (&0.into(), &Value::Null));
+    assert_eq!(report["allowed"], 0.02);
+    for key in ["to_given", "from_given"] {
+        assert!(report[key].as_f64().unwrap() <= 0.02, "{report}");
+    }
+    let made = read(folder.path("even.vtp")).unwrap();
+    assert_eq!(report["after"]["triangles"], made.cells.len());
+    let height = made.point_field("height").unwrap().values.to_f64().unwrap();
+    assert!(height.iter().zip(&made.points).all(|(h, p)| (h - p[2]).abs() < 0.03));
+    let text = stdout(&folder.motet(words).assert().success());
+    for part in ["given", "new", "least angle", "rims", "open", "(0.02000 allowed)"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
+#[test]
+fn smoothing_and_volume_meshes_are_named() {
+    let folder = Folder::new();
+    folder.mesh("box.vtu", &box_grid([2, 2, 2], [[0.0; 3], [1.0; 3]]));
+    let call = folder.motet(["surface", "box.vtu", "-o", "box.stl", "--smooth", "2"]).assert().success();
+    let text = stdout(&call);
+    assert!(text.contains("smoothed in 2 passes") && text.contains("the smoothed one"), "{text}");
+    assert!(text.contains("48 cells that are not of the surface are left out"), "{text}");
+}
+
+#[test]
+fn what_is_no_surface_and_wrong_words_are_refused() {
+    let folder = Folder::new();
+    folder.mesh("tube.vtp", &tube());
+    let mut lines = Cells::new();
+    lines.push(CellKind::LINE, [0, 1].map(VertexId::new));
+    folder.mesh("lines.vtp", &Mesh::new(vec![[0.0; 3], [1.0; 3]], lines));
+    for (words, code, part) in [
+        (&["surface", "lines.vtp", "-o", "a.vtp"][..], 3, "no surface"),
+        (&["surface", "none.vtp", "-o", "a.vtp"], 3, "none.vtp"),
+        (&["surface", "tube.vtp", "-o", "a.vtp", "--size-array", "h"], 3, "point arrays: height"),
+        (&["surface", "tube.vtp", "-o", "tube.vtp"], 2, "overwrite"),
+        (&["surface", "tube.vtp", "-o", "a.vtp", "--size", "0"], 2, "--size"),
+        (&["surface", "tube.vtp", "-o", "a.vtp", "--distance", "0"], 2, "--distance"),
+        (&["surface", "tube.vtp", "-o", "a.vtp", "--merge", "0.1"], 2, "--repair"),
+        (&["surface", "tube.vtp", "-o", "a.vtp", "--growth", "2"], 2, "growth"),
+        (&["surface", "tube.vtp", "-o", "a.vtp", "--feature-angle", "200"], 2, "angle"),
+    ] {
+        let call = folder.motet(words).assert().code(code);
+        assert!(stderr(&call).contains(part), "{words:?}: {}", stderr(&call));
+        assert!(!folder.path("a.vtp").exists());
+    }
+}
+
+#[test]
+fn a_flipped_triangle_is_turned_with_repair() {
+    let folder = Folder::new();
+    let mut cells = Cells::new();
+    for (cell, kind, vertices) in tube().cells.iter() {
+        let mut vertices = vertices.to_vec();
+        if cell.index() == 17 {
+            vertices.swap(0, 1);
+        }
+        cells.push(kind, vertices);
+    }
+    folder.mesh("tube.vtp", &Mesh::new(tube().points, cells));
+    let call =
+        folder.motet(["surface", "tube.vtp", "-o", "even.stl", "--repair", "--json"]).assert().success();
+    let report: Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    assert_eq!(report["repairs"][0]["name"], "turned");
+    assert_eq!(
+        (&report["after"]["rims"], report["after"]["open_edges"] != report["before"]["open_edges"]),
+        (&2.into(), true)
+    );
+}
