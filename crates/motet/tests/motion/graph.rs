@@ -5,10 +5,8 @@ use crate::stepped::mover;
 use motet::Mesh;
 use motet::base::{Csr, Point, Threads, VertexId};
 use motet::geometry::vector::{add, distance, norm, scale, sub};
-use motet::mesh::{Boundary, CellKind, Cells, shapes};
-use motet::motion::{
-    BAD_EAS, Extent, FacetSet, Mover, Options, PointMover, Prescribed, RigidLayer, mesh_velocity,
-};
+use motet::mesh::{BAD_EAS, Boundary, CellKind, Cells, shapes};
+use motet::motion::{Extent, FacetSet, Mover, Options, PointMover, Prescribed, RigidLayer, mesh_velocity};
 use proptest::prelude::*;
 
 // ---------------------------------------------------------------- meshes
