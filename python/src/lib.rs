@@ -52,7 +52,7 @@ mod _motet {
     #[pymodule_export]
     use crate::implant::implant;
     #[pymodule_export]
-    use crate::meshing::{Caps, mesh};
+    use crate::meshing::{Caps, mesh, surface};
     #[pymodule_export]
     use crate::motion::{
         Mover, PointMover, choose, interface_vertices, mesh_velocity, patch_vertices, prescribed,

@@ -1,6 +1,8 @@
-//! Closed surfaces filled with tets.
+//! Closed surfaces filled with tets; surfaces that get even triangles.
 
 use motet::base::{Names, Point};
+use motet::mesh::history::Changed;
+use motet::meshing::even::{SurfaceWords, even_surface};
 use motet::meshing::layers::Stack;
 use motet::meshing::{self, EdgeLength, MeshingWords, Seed, Surfaces, WallLayers, fill, sizes_by};
 use motet::preflight::{Repair, Role};
@@ -11,6 +13,7 @@ use serde::Serialize;
 
 use crate::convert::{MeshArg, parts};
 use crate::error::{OrRaise, call};
+use crate::history::{ChangedParts, History};
 use crate::report::{quality, report};
 use crate::watch::watched;
 
@@ -38,9 +41,18 @@ pub(crate) struct Request {
 
 /// The requested edge length, or `auto`.
 #[derive(FromPyObject)]
-enum SizeArg {
+pub(crate) enum SizeArg {
     Length(f64),
     Text(String),
+}
+
+impl SizeArg {
+    fn length(self) -> motet::Result<EdgeLength> {
+        match self {
+            Self::Length(length) => Ok(EdgeLength::Length(length)),
+            Self::Text(text) => EdgeLength::of_text(&text),
+        }
+    }
 }
 
 /// The report of a call.
@@ -98,6 +110,35 @@ pub(crate) fn mesh<'py>(
     Ok((parts(py, filled.mesh)?, reported, not_reached))
 }
 
+/// Returns the new surface, its history, the report, and why the requested result was not reached.
+#[pyfunction]
+#[pyo3(signature = (surface, *, size, distance, feature_angle, growth, size_array, repair, merge, hole_edges, smooth, threads, progress))]
+#[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
+pub(crate) fn surface<'py>(
+    py: Python<'py>,
+    surface: MeshArg,
+    size: Option<SizeArg>,
+    distance: Option<f64>,
+    feature_angle: f64,
+    growth: Option<f64>,
+    size_array: Option<String>,
+    repair: bool,
+    merge: f64,
+    hole_edges: usize,
+    smooth: usize,
+    threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<ChangedParts<'py>> {
+    let size = size.map(SizeArg::length).transpose().or_raise()?;
+    let words =
+        SurfaceWords { size, distance, feature_angle, growth, size_array, repair, hole_edges, merge, smooth };
+    let options = words.options(&surface.0).or_raise()?;
+    let made = watched(py, threads, progress, |threads| even_surface(&surface.0, &options, threads))?;
+    let Changed { mesh, history, report: reported, .. } = made;
+    let not_reached = reported.not_reached();
+    Ok((parts(py, mesh)?, History(history), report(py, &reported)?, not_reached))
+}
+
 /// The caps of a surface, to be put on any frame of it.
 #[pyclass(frozen, module = "motet._motet")]
 pub(crate) struct Caps(meshing::Caps);
@@ -117,16 +158,12 @@ impl Caps {
 
 impl Request {
     fn words(self) -> motet::Result<MeshingWords> {
-        let size = self.size.map(|size| match size {
-            SizeArg::Length(length) => Ok(EdgeLength::Length(length)),
-            SizeArg::Text(text) => EdgeLength::of_text(&text),
-        });
         let layers = |(patch, (count, first, growth))| {
             let stack = Stack { count, first, growth };
             WallLayers { patch, stack }
         };
         Ok(MeshingWords {
-            size: size.transpose()?,
+            size: self.size.map(SizeArg::length).transpose()?,
             surface: Names::of(&self.surface)?,
             distance: self.distance,
             feature_angle: self.feature_angle,

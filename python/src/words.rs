@@ -6,6 +6,7 @@ use motet::Mesh;
 use motet::base::{Names, Threads};
 use motet::mesh::history::{Carry, Rules};
 use motet::meshing::MeshingWords;
+use motet::meshing::even::SurfaceWords;
 use motet::motion::FacetSet;
 use motet::remesh::RemeshWords;
 use pyo3::prelude::*;
@@ -36,6 +37,7 @@ pub(crate) fn defaults(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);
     all.set_item("remesh", report(py, &RemeshWords::default())?)?;
     all.set_item("mesh", report(py, &MeshingWords::default())?)?;
+    all.set_item("surface", report(py, &SurfaceWords::default())?)?;
     Ok(all)
 }
 

@@ -1,4 +1,4 @@
-"""Functions that change or create a mesh: repair, implantation of devices, meshing of surfaces."""
+"""Functions that change or create a mesh: repair, implantation of devices, meshing and remeshing of surfaces."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -457,3 +457,80 @@ def mesh(
     )  # fmt: skip
     parts, reported, not_reached = _motet.mesh(given, request, threads, progress)
     return Changed(Mesh._of(parts), None, report(reported), not_reached)
+
+
+@checked
+def surface(
+    surface: MeshLike,
+    *,
+    size: float | Literal["auto"] | None = None,
+    distance: float | None = None,
+    feature_angle: float = 40.0,
+    growth: float | None = None,
+    size_array: str | None = None,
+    repair: bool = False,
+    merge: float = 0.0,
+    hole_edges: int = 0,
+    smooth: int = 0,
+    threads: int = 0,
+    progress: Progress | bool | None = None,
+) -> Changed:
+    """Give a surface even triangles within a distance of it; it may be open.
+
+    Rims, borders of patches, edges of more than two triangles and creases are kept. Triangles that do not
+    cross before do not cross afterwards. Arrays and patches are carried: on points, floats are interpolated
+    in the nearest triangle of the same patch, and other values are those of one of its corners; triangles get
+    the values of the nearest one. Equivalent to ``motet surface`` on the command line.
+
+    Parameters
+    ----------
+    surface : MeshLike
+        Surface of triangles, quads or polygons: a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data
+        set. Of a volume mesh its surface cells are used or, if it has none, its boundary. Points at the same
+        place are merged, and triangles without area dropped.
+    size : float or "auto", optional
+        Edge length, in units of the surface; shorter where `distance` requires it. By default, and with
+        ``"auto"``, that of as many even triangles.
+    distance : float, optional
+        How far the new surface may stray from the given one, and that from the new one, in units of the
+        surface. Default: a thousandth of its largest extent.
+    feature_angle : float, default 40.0
+        Edges at which triangles meet at more than this angle, in degrees, are creases.
+    growth : float, optional
+        Increase of edge length per unit of distance from where it is smaller. Above 0, at most 0.7. Default:
+        0.3.
+    size_array : str, optional
+        Name of a point or cell array of the surface with the edge length there.
+    repair : bool, default False
+        Whether to repair the surface first: vertices on edges (T-junctions), overlapping faces, duplicates,
+        orientation, and points closer than `merge`.
+    merge : float, default 0.0
+        With `repair`: merge points closer than this, in units of the surface.
+    hole_edges : int, default 0
+        With `repair`: close holes of at most this many edges.
+    smooth : int, default 0
+        Number of passes of smoothing before, which keep the volume (Taubin 1995) and leave rims, borders of
+        patches and creases in place. `distance` then holds from the smoothed surface.
+    threads : int, default 0
+        Number of threads; 0 uses all cores. The result does not depend on it.
+    progress : callable or True, optional
+        True shows a bar for each stage (by tqdm, if it is installed). A function is called
+        as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+        exception that it raises, or Ctrl-C, ends the call.
+
+    Returns
+    -------
+    Changed
+        The new surface with its history and report; ``complete`` is False if the surface is farther away than
+        allowed, or smoothing made triangles cross.
+
+    Raises
+    ------
+    InputError
+        If there is no surface, or a coordinate is not finite.
+    """
+    native = _motet.surface(
+        as_mesh(surface), size=size, distance=distance, feature_angle=feature_angle, growth=growth, size_array=size_array, repair=repair,
+        merge=merge, hole_edges=hole_edges, smooth=smooth, threads=threads, progress=progress,
+    )  # fmt: skip
+    return _changed(native)

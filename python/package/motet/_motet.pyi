@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 __all__ = [
     "Caps", "Contact", "bodies", "cell_kinds", "command", "formats", "is_series", "labels", "name_fields", "names_of_fields", "quality", "read", "summary", "write", "SeriesWriter", "read_nodal", "read_series", "write_nodal", "History", "implant", "mesh", "Mover", "PointMover", "choose",
     "interface_vertices", "mesh_velocity", "patch_vertices", "prescribed", "MovingMesh", "Criterion", "Refinement", "refined", "remesh", "aneurysm", "ball", "box_grid", "coil", "mixed",
-    "sphere_in_box", "stent", "tube", "View", "defaults", "__version__",
+    "sphere_in_box", "stent", "surface", "tube", "View", "defaults", "__version__",
 ]  # fmt: skip
 __version__: str
 
@@ -79,6 +79,21 @@ def implant(
     progress: Any,
 ) -> tuple[_Parts, History, Any, str | None]: ...
 def mesh(surfaces: list[tuple[Any, str, bool]], request: Any, threads: int, progress: Any) -> tuple[_Parts, Any, str | None]: ...
+def surface(
+    surface: Any,
+    *,
+    size: float | str | None,
+    distance: float | None,
+    feature_angle: float,
+    growth: float | None,
+    size_array: str | None,
+    repair: bool,
+    merge: float,
+    hole_edges: int,
+    smooth: int,
+    threads: int,
+    progress: Any,
+) -> tuple[_Parts, History, Any, str | None]: ...
 def refined(mesh: Any, request: Any, threads: int, progress: Any) -> tuple[_Parts, History, Any, str | None]: ...
 def prescribed(mesh: Any, boundary: _Ids, motions: list[tuple[Any, list[Any]]], fractions: list[float]) -> list[Any]: ...
 def choose(mesh: Any, request: Any, least: float | None, frames: list[Any], threads: int, progress: Any) -> tuple[str, float, Any]: ...

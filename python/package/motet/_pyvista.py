@@ -16,7 +16,7 @@ from pyvista.core.utilities.reader_registry import LocalFileRequiredError
 
 from . import _motet
 from ._cap import cap
-from ._changing import History, implant, mesh, remesh
+from ._changing import History, implant, mesh, remesh, surface
 from ._contact import Contact, Gaps
 from ._convert import to_pyvista
 from ._mesh import Mesh, MeshLike, as_mesh, named, read
@@ -117,6 +117,10 @@ class MotetAccessor:
     @_documented(mesh)
     def mesh(self, membranes: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike] = (), **options: Any) -> Any:
         return _result(mesh(_blocks_of(self._data), membranes=_blocks_of(membranes), **options))
+
+    @_documented(surface)
+    def surface(self, **options: Any) -> Any:
+        return _result(surface(self._one("surface"), **options))
 
     @_documented(remesh)
     def remesh(self, **options: Any) -> Any:
