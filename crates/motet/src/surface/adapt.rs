@@ -14,6 +14,9 @@ const LONG: f64 = 4.0 / 3.0;
 const SHORT: f64 = 0.8;
 /// A flipped edge may be as long as this times the size, or as long as it was.
 const FLIPPED: f64 = 2.0;
+/// How many passes of splits a round makes at most: halves of halves, and flips between them, come to an end
+/// long before, except where triangles cross and splits are refused.
+const SPLITS: usize = 24;
 /// How many passes of flips are made at most.
 const FLIPS: usize = 3;
 /// How many rounds are made at most.
@@ -137,7 +140,7 @@ impl Work<'_> {
     /// When there would be more than `max_triangles`.
     fn split_long(&mut self) -> Result<usize> {
         let mut n = 0;
-        loop {
+        for _ in 0..SPLITS {
             if self.sheet.n_slots() > self.max_triangles {
                 let what = format!("the adapted surface needs more than {} triangles", self.max_triangles);
                 return Err(Error::options(what).remedy("give a larger size or distance"));
@@ -146,12 +149,13 @@ impl Work<'_> {
             long.reverse();
             let n_now = long.into_iter().filter(|(_, edge)| self.split(*edge)).count();
             if n_now == 0 {
-                return Ok(n);
+                break;
             }
             n += n_now;
             // Parts of needles get shorter edges before they are split themselves.
             self.flip_once();
         }
+        Ok(n)
     }
 
     /// Edges whose lengths over their sizes are wanted, from the least of these ratios to the greatest.
