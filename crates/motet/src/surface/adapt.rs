@@ -1,10 +1,12 @@
 //! Passes over a surface: long edges are split, short ones collapsed, edges flipped, vertices moved (Botsch,
 //! Kobbelt 2004, *A remeshing approach to multiresolution modeling*), then narrow triangles made wider.
 
+use std::collections::BTreeSet;
+
 use super::features::{Kind, length};
 use super::sheet::{Change, Sheet, edges_of};
 use super::work::{Refusal, Work, cosines};
-use crate::base::{Error, Point, Result, VertexId};
+use crate::base::{Error, Point, Result, VertexId, sorted_ids};
 use crate::geometry::triangle::{area, centroid, largest_cosine, longest_side};
 use crate::geometry::vector::{add, distance, scale};
 
@@ -88,8 +90,8 @@ impl Work<'_> {
         Ok((n_split + n_collapsed, needed))
     }
 
-    /// Triangles that stay narrow although not all of their corners are held: the distance leaves smaller ones
-    /// more room.
+    /// Triangles that stay narrow although not all of their corners are held: the distance leaves smaller
+    /// ones more room.
     fn narrow_by_distance(&self) -> Vec<u32> {
         let mut narrow = self.narrow(HELD_BY_DISTANCE);
         let is_free = |v: &VertexId| self.features.kind(*v) == Kind::Free;
@@ -147,7 +149,7 @@ impl Work<'_> {
     /// # Errors
     /// When there would be more than `max_triangles`.
     fn split_long(&mut self) -> Result<usize> {
-        let (mut n, mut longest) = (0, f64::INFINITY);
+        let (mut n, mut longest, mut refused) = (0, f64::INFINITY, BTreeSet::new());
         for _ in 0..SPLITS {
             if self.sheet.n_slots() > self.max_triangles {
                 let what = format!("the adapted surface needs more than {} triangles", self.max_triangles);
@@ -156,19 +158,38 @@ impl Work<'_> {
             let mut long = self.edges_where(|ratio| ratio > LONG);
             long.reverse();
             let longest_now = long.first().map_or(0.0, |x| x.0);
-            let n_now = long.into_iter().filter(|(_, edge)| self.split(*edge)).count();
+            let mut n_now = 0;
+            for (_, edge) in long {
+                if refused.contains(&edge) || self.is_beside_longer(edge, &refused) {
+                    continue;
+                }
+                if self.split(edge) {
+                    n_now += 1;
+                } else {
+                    refused.insert(edge);
+                }
+            }
             if n_now == 0 {
                 break;
             }
             n += n_now;
             // Parts of needles get shorter edges, and fewer vertices, before they are split themselves.
-            self.flip_once();
+            self.flip_once(LONG);
             if longest_now > 2.0 * LONG && longest_now < SHORTER * longest {
                 longest = longest_now;
                 self.collapse_short(true);
             }
         }
         Ok(n)
+    }
+
+    /// Whether a triangle at an edge has a longer one among `refused`. That triangle has long edges however
+    /// often the others are split.
+    fn is_beside_longer(&self, edge: [VertexId; 2], refused: &BTreeSet<[VertexId; 2]>) -> bool {
+        let ratio = self.ratio(edge);
+        let mut others = self.sheet.at_edge(edge[0], edge[1]).flat_map(|t| edges_of(self.sheet.triangle(t)));
+        !refused.is_empty()
+            && others.any(|other| refused.contains(&sorted_ids(other)) && self.ratio(other) > ratio)
     }
 
     /// Edges whose lengths over their sizes are wanted, from the least of these ratios to the greatest.
@@ -216,17 +237,18 @@ impl Work<'_> {
     /// Flips edges where that widens the narrower of their triangles.
     fn flip_all(&mut self) {
         for _ in 0..FLIPS {
-            if self.flip_once() == 0 {
+            if self.flip_once(FLIPPED) == 0 {
                 return;
             }
         }
     }
 
-    /// Makes one pass of flips. Returns how many there were.
-    fn flip_once(&mut self) -> usize {
+    /// Makes one pass of flips. New edges are no longer than `limit` times the size, or than the old ones.
+    /// Returns how many there were.
+    fn flip_once(&mut self, limit: f64) -> usize {
         let mut n = 0;
         for edge in self.sheet.edges() {
-            let longest = FLIPPED * self.size(edge);
+            let longest = limit * self.size(edge);
             let admits = |sheet: &Sheet, change: &Change| {
                 let [before, after] = cosines(sheet, change);
                 let [c, _, d] = change.added[0].0.map(|v| sheet.points[v.index()]);

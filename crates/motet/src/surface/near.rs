@@ -31,7 +31,7 @@ impl Near {
 
     /// Whether the new triangles of a change meet each other or any triangle that stays, other than in the
     /// vertices and edges that they share. A change that is `in_place` leaves the surface where it is up to
-    /// rounding, and can only meet what is that near.
+    /// rounding, and can only meet what is that near; what it crossed before does not count.
     pub(super) fn crosses(&mut self, sheet: &mut Sheet, change: &Change, in_place: bool) -> bool {
         let old = in_place.then(|| change.removed.iter().map(|&t| sheet.corners(t)).collect());
         let Some((v, place)) = change.placed else { return self.is_met(sheet, change, old) };
@@ -71,6 +71,8 @@ impl Near {
             };
             !old.iter().any(is_near)
         };
+        let met_before =
+            |other| change.removed.iter().any(|&t| meet(&sheet.points, sheet.triangle(t), other));
         let meets_any = |t: u32| {
             let other = sheet.triangle(t);
             if is_flat && shares(&other) && faces(area_vector(corners(&other))) {
@@ -81,6 +83,7 @@ impl Near {
             change.added.iter().any(|(t, _)| is_near(t))
                 && !is_far(corners(&other))
                 && change.added.iter().any(|(t, _)| is_near(t) && meet(&sheet.points, *t, other))
+                && !(in_place.is_some() && met_before(other))
         };
         if self.found.iter().any(|t| !change.removed.contains(t) && meets_any(*t)) {
             return true;

@@ -389,3 +389,27 @@ fn neither_threads_nor_the_order_of_normals_matter() {
     });
     assert_eq!(outward.count(), 0);
 }
+
+/// Two planes of needles that cross each other. Edges across the crossing are split although their parts cross
+/// the other plane as they did.
+#[test]
+fn sheets_that_cross_get_even_triangles_too() {
+    let sheet = |upright: bool| {
+        grid([24, 1], false, move |u, v| match upright {
+            false => [4.0 * u, 4.0 * v, 0.0],
+            true => [4.0 * u, 1.9, 4.0 * v - 2.0],
+        })
+    };
+    let [flat, upright] = [false, true].map(|upright| surface(&sheet(upright)));
+    let n = flat.points.len();
+    let moved = upright.triangles.iter().map(|t| t.map(|v| v.index() + n));
+    let all = flat.triangles.iter().map(|t| t.map(VertexId::index)).chain(moved);
+    let both = triangles([flat.points, upright.points].concat(), all.collect::<Vec<_>>());
+    let made = even(&both, &options(0.2, 0.01));
+    let report = &made.report;
+    assert_eq!(report.not_reached(), None);
+    assert!(report.before.crossings > 0 && report.after.crossings > 0);
+    assert!((report.after.area - 32.0).abs() < 1e-9, "{report:?}");
+    // Only triangles at the crossing cannot be changed freely.
+    assert!(report.after.angles.p5 > 25.0, "{report:?}");
+}

@@ -57,8 +57,10 @@ impl Report {
         };
         let crosses = || {
             let cause = if self.smoothed.is_some() { ": smoothing made them" } else { "" };
-            format!("{} pairs of triangles cross, {} did before{cause}", after.crossings, before.crossings)
+            format!("{} pairs of triangles cross, none did before{cause}", after.crossings)
         };
-        reasons([is_far.then(far), (after.crossings > before.crossings).then(crosses)])
+        // Where triangles crossed before, their number says nothing: smaller ones cross in more pairs.
+        let is_crossed = before.crossings == 0 && after.crossings > 0;
+        reasons([is_far.then(far), is_crossed.then(crosses)])
     }
 }
