@@ -395,7 +395,7 @@ fn neither_threads_nor_the_order_of_normals_matter() {
 #[test]
 fn sheets_that_cross_get_even_triangles_too() {
     let sheet = |upright: bool| {
-        grid([24, 1], false, move |u, v| match upright {
+        grid([24, 8], false, move |u, v| match upright {
             false => [4.0 * u, 4.0 * v, 0.0],
             true => [4.0 * u, 1.9, 4.0 * v - 2.0],
         })
@@ -411,5 +411,5 @@ fn sheets_that_cross_get_even_triangles_too() {
     assert!(report.before.crossings > 0 && report.after.crossings > 0);
     assert!((report.after.area - 32.0).abs() < 1e-9, "{report:?}");
     // Only triangles at the crossing cannot be changed freely.
-    assert!(report.after.angles.p5 > 25.0, "{report:?}");
+    assert!(report.after.angles.median > 45.0 && report.after.triangles < 4000, "{report:?}");
 }
