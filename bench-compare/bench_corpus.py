@@ -41,7 +41,7 @@ def run(record, options):
     print("\n## Surfaces of others\n")
     print(f"One run of each, one thread; {options.limit:g} s at most. Size {SIZE:g} and distance {DISTANCE:g} of the largest extent. Valid: all tets are positive,\n"
           "their boundary is closed and, as they are, has every triangle of the surface. Near: the boundary and the surface are within the distance of each\n"
-          f"other, measured by libigl at vertices and {PLACES:,} random places.")
+          f"other, measured by libigl at vertices and {PLACES:,} random places (holes that are closed and walls inside are far).")
     for title, programs in ("as they are", kept), ("with even triangles", even):
         print(f"\n### Filled {title}\n")
         summary(results, programs)

@@ -21,7 +21,8 @@ while len(seconds) < int(runs) and sum(seconds) < BUDGET:
     done = subprocess.run([motet, "mesh", source, "-o", target, "--threads", "1", "--json", *options], capture_output=True, text=True)
     whole.append(time.perf_counter() - start)
     if done.returncode not in (DONE, NOT_REACHED):
-        print(json.dumps({"error": (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1][:200]}))
+        line = (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
+        print(json.dumps({"error": line.removeprefix("error: ").replace(f"{source}: ", "")[:200]}))
         break
     report = json.loads(done.stdout)
     seconds.append(report["seconds"]["check"] + report["seconds"]["fill"])
