@@ -138,6 +138,7 @@ class Page:
     def violations(self):
         """Return the rules of accessibility that the page violates, as axe finds them."""
         axe = pytest.importorskip("axe_core_python.selenium")
+        self.driver.set_script_timeout(100)  # a busy machine with software rendering takes longer than the usual 30 s
         return [violation["help"] for violation in axe.Axe().run(self.driver)["violations"]]
 
     def errors(self):
