@@ -163,7 +163,7 @@ fn expected(points: &[Point], triangles: &[[VertexId; 3]], sizes: &[f64]) -> f64
 }
 
 /// The fraction of the allowed distance that changes may use, since distances are measured at samples.
-const SHARE: f64 = 0.8;
+const SHARE: f64 = 0.75;
 
 /// The largest distance of each of two surfaces from the other, as measured by [`farthest`].
 pub fn distances(surfaces: [(&[Point], &[[VertexId; 3]]); 2], threads: &Threads) -> [f64; 2] {

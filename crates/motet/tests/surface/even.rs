@@ -25,9 +25,16 @@ fn corners(of: &Adapted) -> impl Iterator<Item = [Point; 3]> + '_ {
     of.triangles.iter().map(|t| t.map(|v| of.points[v.index()]))
 }
 
-fn least_angle(of: &Adapted) -> f64 {
+/// The least angles of all triangles in degrees, in rising order.
+fn least_angles(of: &Adapted) -> Vec<f64> {
     let of_triangle = |t: [Point; 3]| (0..3).map(|k| angle_at(t, k)).fold(f64::INFINITY, f64::min);
-    corners(of).map(of_triangle).fold(f64::INFINITY, f64::min).to_degrees()
+    let mut angles: Vec<f64> = corners(of).map(of_triangle).map(f64::to_degrees).collect();
+    angles.sort_by(f64::total_cmp);
+    angles
+}
+
+fn least_angle(of: &Adapted) -> f64 {
+    least_angles(of)[0]
 }
 
 /// Whether each edge has two triangles that run along it in both directions.
@@ -94,7 +101,10 @@ fn a_ball_of_narrow_triangles_gets_even_ones_near_it() {
     for (n, size) in [(8, 0.3), (16, 0.15), (16, 0.6)] {
         let old = disturbed(Surface::boundary_of(&ball(n, 2)), 1.2 / n as f64, &mut random);
         let new = adapted(&old, &options(size, 0.02));
-        check(&format!("{n} {size}"), &old, &new, 0.02, 25.0);
+        // Where the given surface is folded new triangles must face as it does, and a few stay narrow.
+        check(&format!("{n} {size}"), &old, &new, 0.02, 18.0);
+        let angles = least_angles(&new);
+        assert!(angles[angles.len() / 100] > 30.0, "{n} {size}: {:?}", &angles[..8]);
     }
 }
 
