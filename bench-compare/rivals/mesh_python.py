@@ -41,18 +41,24 @@ def meshlab_tetgen(points, triangles, size, threads, distance):
     return seconds + more, *made
 
 
-def gmsh_adapt(points, triangles, size, threads, distance):
-    """Find features of the surface in Gmsh, remesh it, fill it and optimise with Netgen."""
-    import gmsh as program
-
-    program.initialize()
-    options = {"General.Terminal": 0, "General.NumThreads": threads, "Mesh.MeshSizeMin": size, "Mesh.MeshSizeMax": size, "Mesh.OptimizeNetgen": 1}
+def gmsh_surface(program, points, triangles, options):
+    """Return Gmsh's mesh, with the triangles as its discrete surface 1."""
     for name, value in options.items():
         program.option.setNumber(name, value)
     program.model.addDiscreteEntity(2, 1)
     mesh = program.model.mesh
     mesh.addNodes(2, 1, np.arange(len(points)) + 1, points.ravel())
     mesh.addElementsByType(1, 2, [], triangles.ravel() + 1)
+    return mesh
+
+
+def gmsh_adapt(points, triangles, size, threads, distance):
+    """Find features of the surface in Gmsh, remesh it, fill it and optimise with Netgen."""
+    import gmsh as program
+
+    program.initialize()
+    options = {"General.Terminal": 0, "General.NumThreads": threads, "Mesh.MeshSizeMin": size, "Mesh.MeshSizeMax": size, "Mesh.OptimizeNetgen": 1}
+    mesh = gmsh_surface(program, points, triangles, options)
 
     def work():
         mesh.classifySurfaces(np.radians(40), True, True)
@@ -75,12 +81,7 @@ def gmsh(points, triangles, size, threads, distance, algorithm):
     options = {"General.Terminal": 0, "General.NumThreads": threads, "Mesh.Algorithm3D": algorithm,
                # A uniform interior size, as in the other programs.
                "Mesh.MeshSizeMin": size, "Mesh.MeshSizeMax": size, "Mesh.MeshSizeExtendFromBoundary": 0}
-    for name, value in options.items():
-        program.option.setNumber(name, value)
-    program.model.addDiscreteEntity(2, 1)
-    mesh = program.model.mesh
-    mesh.addNodes(2, 1, np.arange(len(points)) + 1, points.ravel())
-    mesh.addElementsByType(1, 2, [], triangles.ravel() + 1)
+    mesh = gmsh_surface(program, points, triangles, options)
     program.model.geo.addVolume([program.model.geo.addSurfaceLoop([1])])
     program.model.geo.synchronize()
     seconds, _ = clocked(lambda: mesh.generate(3))

@@ -18,9 +18,9 @@ pub struct Narrow {
     pub n_triangles: usize,
     /// The highest EAS of a tet on the narrowest.
     pub highest_eas: f64,
-    /// The narrowest.
+    /// The narrowest triangle.
     pub triangle: u32,
-    /// Its centroid.
+    /// The centroid of the narrowest one.
     pub at: Point,
 }
 

@@ -3,14 +3,8 @@
 use super::sheet::{Change, Sheet};
 use crate::base::{Point, VertexId};
 use crate::geometry::distance::triangle_triangle;
-use crate::geometry::triangle::area_vector;
-use crate::geometry::vector::{add, dot, norm, unit};
 use crate::preflight::meet;
 use crate::spatial::{GrowingBoxes, bounding_box, touch};
-
-/// The cosine of the largest angle between triangles that share vertices and one direction, so that they
-/// cannot cross: seen along it, all face the same way. 60 degrees.
-const MIN_COSINE: f64 = 0.5;
 
 /// The middle of an edge is off it by less than this times the largest coordinate.
 const ROUNDING: f64 = 1e-14;
@@ -33,14 +27,14 @@ impl Near {
     /// vertices and edges that they share. A change that is `in_place` leaves the surface where it is up to
     /// rounding, and can only meet what is that near; what it crossed before does not count.
     pub(super) fn crosses(&mut self, sheet: &mut Sheet, change: &Change, in_place: bool) -> bool {
-        let old = in_place.then(|| change.removed.iter().map(|&t| sheet.corners(t)).collect());
-        let Some((v, place)) = change.placed else { return self.is_met(sheet, change, old) };
+        let old: Vec<[Point; 3]> = change.removed.iter().map(|&t| sheet.corners(t)).collect();
+        let Some((v, place)) = change.placed else { return self.is_met(sheet, change, &old, in_place) };
         let is_new = v.index() == sheet.points.len();
         if is_new {
             sheet.points.push(place);
         }
         let before = std::mem::replace(&mut sheet.points[v.index()], place);
-        let met = self.is_met(sheet, change, old);
+        let met = self.is_met(sheet, change, &old, in_place);
         match is_new {
             true => drop(sheet.points.pop()),
             false => sheet.points[v.index()] = before,
@@ -48,7 +42,8 @@ impl Near {
         met
     }
 
-    fn is_met(&mut self, sheet: &Sheet, change: &Change, in_place: Option<Vec<[Point; 3]>>) -> bool {
+    /// Whether the new triangles meet others or each other; `old` are the corners of the removed ones.
+    fn is_met(&mut self, sheet: &Sheet, change: &Change, old: &[[Point; 3]], in_place: bool) -> bool {
         let corners = |t: &[VertexId; 3]| t.map(|v| sheet.points[v.index()]);
         let mut vertices: Vec<VertexId> = change.added.iter().flat_map(|(t, _)| *t).collect();
         vertices.sort_unstable();
@@ -56,34 +51,25 @@ impl Near {
         let bounds = bounding_box(vertices.iter().map(|v| sheet.points[v.index()]));
         self.found.clear();
         self.boxes.touching(bounds, &mut self.found);
-        let added = || change.added.iter().map(|(t, _)| area_vector(corners(t)));
-        let direction = unit(added().fold([0.0; 3], add)).unwrap_or_default();
-        let faces = |normal: Point| dot(normal, direction) > MIN_COSINE * norm(normal);
-        let is_flat = added().all(faces);
-        let shares = |t: &[VertexId; 3]| t.iter().any(|v| vertices.binary_search(v).is_ok());
         let is_far = |other: [Point; 3]| {
-            let Some(old) = &in_place else { return false };
             let reach = ROUNDING * bounds.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
             // Where triangles meet, signs say so sooner than a common point does, which is exact.
             let is_near = |t: &[Point; 3]| {
                 triangle_triangle::meet(*t, other)
                     || triangle_triangle::closest_below(*t, other, reach * reach).is_some()
             };
-            !old.iter().any(is_near)
+            in_place && !old.iter().any(is_near)
         };
         let met_before =
             |other| change.removed.iter().any(|&t| meet(&sheet.points, sheet.triangle(t), other));
         let meets_any = |t: u32| {
             let other = sheet.triangle(t);
-            if is_flat && shares(&other) && faces(area_vector(corners(&other))) {
-                return false;
-            }
             let of_other = bounding_box(corners(&other));
             let is_near = |t: &[VertexId; 3]| touch(bounding_box(corners(t)), of_other);
             change.added.iter().any(|(t, _)| is_near(t))
                 && !is_far(corners(&other))
                 && change.added.iter().any(|(t, _)| is_near(t) && meet(&sheet.points, *t, other))
-                && !(in_place.is_some() && met_before(other))
+                && !(in_place && met_before(other))
         };
         if self.found.iter().any(|t| !change.removed.contains(t) && meets_any(*t)) {
             return true;
@@ -91,7 +77,7 @@ impl Near {
         let is_met = |(k, (t, _)): (usize, &([VertexId; 3], u32))| {
             change.added[..k].iter().any(|(other, _)| meet(&sheet.points, *t, *other))
         };
-        !is_flat && change.added.iter().enumerate().any(is_met)
+        change.added.iter().enumerate().any(is_met)
     }
 
     /// Takes out the triangles that a change removes, before it is made.
