@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand};
 use crate::common::Common;
 use crate::verbs::{
     cap, contact, convert, demo, implant, info, meshing, moving, quality, refine, remesh, report, run, shell,
-    surface, view,
+    surface, view, wall,
 };
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
@@ -36,6 +36,7 @@ pub(crate) enum Verb {
     Cap(cap::CapArgs),
     Surface(Box<surface::SurfaceArgs>),
     Mesh(Box<meshing::MeshArgs>),
+    Wall(Box<wall::WallArgs>),
     Move(Box<moving::MoveArgs>),
     Remesh(Box<remesh::RemeshArgs>),
     Refine(Box<refine::RefineArgs>),

@@ -44,6 +44,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Verb::Cap(args) => verbs::cap::run(&args, &call.common, &console),
         Verb::Surface(args) => verbs::surface::run(&args, &call.common, &console),
         Verb::Mesh(args) => verbs::meshing::run(&args, &call.common, &console),
+        Verb::Wall(args) => verbs::wall::run(&args, &call.common, &console),
         Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
         Verb::Remesh(args) => verbs::remesh::run(&args, &call.common, &console),
         Verb::Refine(args) => verbs::refine::run(&args, &call.common, &console),

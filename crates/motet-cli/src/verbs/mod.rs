@@ -16,3 +16,4 @@ pub(crate) mod run;
 pub(crate) mod shell;
 pub(crate) mod surface;
 pub(crate) mod view;
+pub(crate) mod wall;

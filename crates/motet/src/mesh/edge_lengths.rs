@@ -40,6 +40,9 @@ pub fn edge_lengths<const N: usize>(
     Some([least, *lengths.select_nth_unstable_by(middle, f64::total_cmp).1, largest])
 }
 
+/// The edges of a tet by its corners; the first three are those of a triangle.
+const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [1, 2], [0, 3], [1, 3], [2, 3]];
+
 /// Calls `found` with each edge once. Edges are gathered at their lower end, where each list is short: many
 /// times faster than sorting all of them.
 pub(crate) fn for_each_edge<const N: usize>(
@@ -48,7 +51,7 @@ pub(crate) fn for_each_edge<const N: usize>(
     mut found: impl FnMut([VertexId; 2]),
 ) {
     let ends = |corners: [VertexId; N]| {
-        let pairs = (1..N).flat_map(move |j| (0..j).map(move |i| [corners[i], corners[j]]));
+        let pairs = EDGES[..N * (N - 1) / 2].iter().map(move |&[i, j]| [corners[i], corners[j]]);
         pairs.map(|[u, v]| (u.min(v).index(), u.max(v)))
     };
     let mut upper = Csr::from_pairs(n_points, || simplices.clone().flat_map(ends));

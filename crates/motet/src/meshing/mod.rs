@@ -15,6 +15,7 @@
 //! | quality | [`crate::remesh`] | bad tets repaired, the surface kept |
 //! | bodies | `bodies` | numbered from the outside in, named, left out on request |
 //! | labels | `fill` | each enclosed body is a region, triangles keep their patches |
+//! | walls | [`wall`] | a solid wall on the outer side of a vessel: layers outward |
 //! | words | `words` | options as callers write them, with names of patches |
 
 mod adapt;
@@ -33,6 +34,7 @@ mod sheet;
 mod size_field;
 mod sizes;
 mod surfaces;
+pub mod wall;
 mod words;
 
 pub use adapt::{Adapted, Adapting};

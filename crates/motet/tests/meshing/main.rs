@@ -8,3 +8,4 @@ mod divide;
 mod layers;
 mod sizes_and_regions;
 mod voids;
+mod wall;

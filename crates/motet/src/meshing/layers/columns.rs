@@ -55,8 +55,9 @@ impl<'a> Columns<'a> {
         if level == 0 || stack == NONE {
             return foot;
         }
-        let share = self.heights.heights[w] / self.heights.requested[w];
-        add(foot, scale(self.heights.lifts[w], self.levels[stack as usize][level as usize] * share))
+        let levels = &self.levels[stack as usize];
+        let share = self.heights.heights[w] / levels[levels.len() - 1];
+        add(foot, scale(self.heights.lifts[w], levels[level as usize] * share))
     }
 
     /// The topmost site of a column.

@@ -50,7 +50,8 @@ impl Freedom {
             if part == NONE {
                 return Self::Nowhere;
             }
-            if !parts.contains(&part) {
+            // A part without a normal continues the wall.
+            if !parts.contains(&part) && skin.flats.normals[part as usize] != [0.0; 3] {
                 parts.push(part);
             }
         }

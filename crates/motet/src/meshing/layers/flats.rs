@@ -3,7 +3,7 @@
 use super::neighbors::{NONE, neighbors};
 use crate::base::{Point, VertexId};
 use crate::geometry::triangle::{area_vector, centroid};
-use crate::geometry::vector::{self, add, dot, norm, sub};
+use crate::geometry::vector::{self, add, dot, norm, scale, sub};
 
 /// The largest distance of a corner from the plane of a part's largest triangle, relative to its distance
 /// from the middle of that triangle. A plane rounded to single precision is ten times flatter, and walls are
@@ -61,14 +61,58 @@ impl Flats {
         }
         flats
     }
+
+    /// Finds the parts of triangles for which `wanted` holds, connected by edges, flat or not. Where a part
+    /// ends a vessel, all around across its walls, its normal is the mean one, turned; zero where it
+    /// continues the walls.
+    pub(super) fn ends(
+        points: &[Point],
+        triangles: &[[VertexId; 3]],
+        behind: &[[u32; 3]],
+        wanted: impl Fn(usize) -> bool,
+    ) -> Self {
+        let area = |t: usize| area_vector(triangles[t].map(|v| points[v.index()]));
+        let mut parts = Self { of: vec![NONE; triangles.len()], normals: Vec::new() };
+        for seed in (0..triangles.len()).filter(|&t| wanted(t)) {
+            if parts.of[seed] != NONE {
+                continue;
+            }
+            let part = parts.normals.len() as u32;
+            let (mut todo, mut sum, mut total, mut walls) = (vec![seed], [0.0; 3], 0.0, Vec::new());
+            parts.of[seed] = part;
+            while let Some(t) = todo.pop() {
+                (sum, total) = (add(sum, area(t)), total + norm(area(t)));
+                for &next in behind[t].iter().filter(|&&next| next != NONE) {
+                    let next = next as usize;
+                    if !wanted(next) {
+                        walls.push(next);
+                    } else if parts.of[next] == NONE {
+                        parts.of[next] = part;
+                        todo.push(next);
+                    }
+                }
+            }
+            let normal = scale(unit(sum), -1.0);
+            let across = walls.iter().filter(|&&t| -dot(unit(area(t)), normal) < SHARP).count();
+            let is_end = norm(sum) >= ONE_WAY * total && across as f64 >= MOST * walls.len() as f64;
+            parts.normals.push(if is_end { normal } else { [0.0; 3] });
+        }
+        parts
+    }
 }
+
+/// The least area of an end as seen along its normal, relative to its area.
+const ONE_WAY: f64 = 0.8;
+
+/// The least fraction of the triangles around an end that stand across it.
+const MOST: f64 = 0.9;
 
 /// The fewest triangles of a cap: on a rough wall single triangles may stand out.
 const MIN_TRIANGLES: usize = 3;
 
 /// For each triangle, whether it is on a cap: a flat part with a sharp crease all around. If all would be,
 /// none is.
-pub(super) fn is_on_cap(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
+pub(in crate::meshing) fn is_on_cap(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
     let behind = neighbors(triangles);
     let flats = Flats::find(points, triangles, &behind, |_| true);
     let normal = |t: usize| unit(area_vector(triangles[t].map(|v| points[v.index()])));

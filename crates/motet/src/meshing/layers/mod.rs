@@ -11,7 +11,8 @@
 //! | prisms | `columns` | levels, and cells where columns have fewer of them |
 //! | core | `core` | the surfaces around the core, to be filled |
 //! | check | `tangles` | exact: which columns are at fault |
-//! | settle | `settle` | columns at fault are made thinner, and everything is checked again |
+//! | settle | `growth`, `settle` | columns at fault are made thinner, and everything is checked again |
+//! | outward | `outward`, `shell` | layers on the outer side, for the walls of vessels |
 //! | one mesh | `glue`, `split` | prisms joined to the tets of the core, and divided by the smallest vertex number |
 
 mod columns;
@@ -19,17 +20,22 @@ mod core;
 mod directions;
 mod flats;
 mod glue;
+mod growth;
 mod neighbors;
 mod options;
+mod outward;
 mod report;
 mod settle;
+mod shell;
 mod skin;
 mod slide;
 mod split;
 mod tangles;
 mod thickness;
 
+pub(super) use flats::is_on_cap;
 pub use options::{Layers, MOST_LAYERS, Stack};
+pub(super) use outward::{EndFacet, OutwardLayers, radii};
 pub use report::Report;
 pub(super) use settle::GrownLayers;
 pub(super) use split::split;

@@ -1,49 +1,27 @@
 //! Layers on surfaces: as thick as possible, the core between them filled, and all joined.
 
-use super::columns::{Columns, Prism, Site};
+use super::columns::Columns;
 use super::core::Core;
 use super::glue::glue;
-use super::neighbors::NONE;
+use super::growth::Growth;
 use super::options::Layers;
 use super::report::Report;
 use super::skin::{Sides, Skin};
 use super::slide::Sliders;
-use super::split::n_tets;
 use super::tangles::{CapRims, tangles};
-use super::thickness::Heights;
-use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
+use super::thickness::{Heights, Limits};
+use crate::base::{Error, Result, Threads, VertexId};
 use crate::delaunay::Constrained;
-use crate::geometry::tet::volume;
 use crate::mesh::Mesh;
 use crate::meshing::surfaces::Surfaces;
-
-/// The factor by which columns at fault are made thinner.
-const THINNING: f64 = 0.7;
-
-/// How often a column may be at fault before it is removed; a twentieth of its thickness is left by then.
-const MAX_BLAMES: u8 = 8;
-
-/// The number of rounds after which all columns at fault are removed at once, with their neighbours.
-const PATIENT_ROUNDS: usize = 40;
-
-/// The number of rounds after which all columns are removed.
-const ROUNDS: usize = 80;
-
-/// The largest number of prisms.
-const MAX_PRISMS: usize = 200_000_000;
 
 /// Layers fitted to surfaces.
 pub(crate) struct GrownLayers<'a> {
     surfaces: &'a Surfaces,
     sides: Vec<Sides>,
-    skin: Skin,
-    /// The neighbors of each vertex along walls.
-    around: Csr<VertexId>,
+    growth: Growth,
     slide: Sliders,
     rims: CapRims,
-    heights: Heights,
-    blames: Vec<u8>,
-    rounds: usize,
     core: Core,
 }
 
@@ -60,51 +38,10 @@ impl<'a> GrownLayers<'a> {
     ) -> Result<Self> {
         layers.check()?;
         let skin = Skin::new(surfaces, layers, &sides)?;
-        check_count(&skin)?;
-        let around = around(&skin);
-        let heights = Heights::find(&skin, &around, threads);
         let (slide, rims) = (Sliders::new(&skin), CapRims::new(&skin));
-        let core = build(surfaces, &sides, &skin, &heights, &slide);
-        let blames = vec![0; skin.points.len()];
-        let mut grown = Self { surfaces, sides, skin, around, slide, rims, heights, blames, rounds: 0, core };
-        grown.settle(threads)?;
-        Ok(grown)
-    }
-
-    fn columns(&self) -> Columns<'_> {
-        Columns::new(&self.skin, &self.heights)
-    }
-
-    /// Makes layers thinner until there are no tangles.
-    fn settle(&mut self, threads: &Threads) -> Result<()> {
-        loop {
-            threads.watch().report_and_check("fitting layers", self.rounds, 0)?;
-            let blamed = tangles(&self.skin, &self.columns(), &self.core, &self.rims, threads);
-            if blamed.is_empty() {
-                return Ok(());
-            }
-            self.give_way(&blamed);
-        }
-    }
-
-    /// Makes columns thinner, and neighbouring ones as far as the slope requires.
-    fn give_way(&mut self, blamed: &[VertexId]) {
-        self.rounds += 1;
-        for v in blamed {
-            let w = v.index();
-            self.blames[w] = self.blames[w].saturating_add(1);
-            let is_removed = self.blames[w] > MAX_BLAMES || self.rounds > PATIENT_ROUNDS;
-            self.heights.heights[w] *= if is_removed { 0.0 } else { THINNING };
-        }
-        if self.rounds > PATIENT_ROUNDS {
-            let beside = blamed.iter().flat_map(|v| self.around.list(v.index()));
-            beside.for_each(|v| self.heights.heights[v.index()] = 0.0);
-        }
-        if self.rounds > ROUNDS {
-            self.heights.heights.fill(0.0);
-        }
-        self.heights.limit_slope(&self.skin, &self.around);
-        self.core = build(self.surfaces, &self.sides, &self.skin, &self.heights, &self.slide);
+        let mut growth = Growth::new(skin, &Limits::INSIDE, |_, full| full, threads)?;
+        let core = settle(&mut growth, surfaces, &sides, &slide, &rims, threads)?;
+        Ok(Self { surfaces, sides, growth, slide, rims, core })
     }
 
     /// Fills the core. `fill` gets its surfaces, and for each of their triangles the original triangle; what
@@ -125,18 +62,19 @@ impl<'a> GrownLayers<'a> {
                 self.rename(&mut filled)?;
                 return Ok((filled, extra));
             }
-            self.give_way(&blamed);
-            self.settle(threads)?;
+            self.growth.give_way(&blamed);
+            self.core =
+                settle(&mut self.growth, self.surfaces, &self.sides, &self.slide, &self.rims, threads)?;
         }
     }
 
     /// The columns under tops that are in pieces.
     fn in_pieces(&self, filled: &Constrained) -> Vec<VertexId> {
         let is_off = |i: &usize| self.core.is_raised[*i] && filled.triangle_to_facets.list(*i).len() != 1;
-        let columns = self.columns();
+        let columns = self.growth.columns();
         let off = (0..self.core.is_raised.len()).filter(is_off);
-        let on_skin = off.flat_map(|i| self.core.skin_triangles(&self.skin, i as u32));
-        let corners = on_skin.flat_map(|s| self.skin.triangles[s as usize]);
+        let on_skin = off.flat_map(|i| self.core.skin_triangles(&self.growth.skin, i as u32));
+        let corners = on_skin.flat_map(|s| self.growth.skin.triangles[s as usize]);
         let mut blamed: Vec<VertexId> = corners.filter(|&v| columns.count(v) > 0).collect();
         blamed.sort_unstable();
         blamed.dedup();
@@ -179,7 +117,7 @@ impl<'a> GrownLayers<'a> {
     /// Joins the mesh of the core and the layers, as prisms; `to_mesh` maps vertices of the core to those of
     /// its mesh.
     pub(crate) fn glue(&self, mesh: &Mesh, to_mesh: &[VertexId]) -> Mesh {
-        glue(mesh, to_mesh, self.surfaces, &self.skin, &self.columns(), &self.core)
+        glue(mesh, to_mesh, self.surfaces, &self.growth.skin, &self.growth.columns(), &self.core)
     }
 
     /// The number of triangles of the surfaces.
@@ -189,17 +127,7 @@ impl<'a> GrownLayers<'a> {
 
     /// Statistics on the layers.
     pub(crate) fn report(&self) -> Report {
-        let columns = self.columns();
-        let mut report = Report::new(&self.skin, &columns, &self.heights, self.rounds);
-        for t in 0..self.skin.triangles.len() as u32 {
-            for prism in columns.prisms(t) {
-                let Some((kind, _)) = prism.cell() else { continue };
-                report.prisms += 1;
-                report.tets += n_tets(kind);
-                report.volume += prism_volume(&columns, &prism);
-            }
-        }
-        report
+        self.growth.report()
     }
 
     /// Counts the triangles of the surfaces that are facets unchanged, where `is_whole` tells which triangles
@@ -214,40 +142,18 @@ impl<'a> GrownLayers<'a> {
     }
 }
 
-fn build(surfaces: &Surfaces, sides: &[Sides], skin: &Skin, heights: &Heights, slide: &Sliders) -> Core {
-    let motions: Vec<Point> = slide.motions(skin, heights);
-    Core::new(surfaces, sides, skin, &Columns::new(skin, heights), &motions)
-}
-
-fn around(skin: &Skin) -> Csr<VertexId> {
-    let walls = skin.triangles.iter().zip(&skin.stack_of).filter(|(_, stack)| **stack != NONE);
-    let ends = walls.flat_map(|(&[a, b, c], _)| [(a, b), (b, a), (b, c), (c, b), (c, a), (a, c)]);
-    let mut ends: Vec<(VertexId, VertexId)> = ends.collect();
-    ends.sort_unstable();
-    ends.dedup();
-    Csr::from_pairs(skin.points.len(), || ends.iter().map(|&(from, to)| (from.index(), to)))
-}
-
-fn check_count(skin: &Skin) -> Result<()> {
-    let count = |&stack: &u32| if stack == NONE { 0 } else { skin.stacks[stack as usize].count as usize };
-    let n: usize = skin.stack_of.iter().map(count).sum();
-    match n {
-        0 => Err(Error::options("there is no triangle to grow layers on")
-            .remedy("name a patch that bounds a body")),
-        n if n > MAX_PRISMS => {
-            Err(Error::options(format!("the layers would have {n} prisms; at most {MAX_PRISMS} are allowed"))
-                .remedy("request fewer layers"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// The volume of a prism: the mean over both choices of diagonals in its sides, so that neighbours agree
-/// about the side between them.
-fn prism_volume(columns: &Columns, prism: &Prism) -> f64 {
-    let ([a, b, c], [d, e, f]) = (prism.bottom, prism.top);
-    let of = |tet: [Site; 4]| volume(tet.map(|site| columns.at(site)));
-    let one = of([a, c, b, d]) + of([b, c, e, d]) + of([d, e, f, c]);
-    let other = of([d, e, f, a]) + of([a, c, b, f]) + of([a, b, e, f]);
-    0.5 * (one + other)
+/// Makes layers thinner until there are no tangles. Returns the core that they leave.
+fn settle(
+    growth: &mut Growth,
+    surfaces: &Surfaces,
+    sides: &[Sides],
+    slide: &Sliders,
+    rims: &CapRims,
+    threads: &Threads,
+) -> Result<Core> {
+    let build = |skin: &Skin, heights: &Heights| {
+        let motions = slide.motions(skin, heights);
+        Core::new(surfaces, sides, skin, &Columns::new(skin, heights), &motions)
+    };
+    growth.settle(build, |skin, columns, core| tangles(skin, columns, core, rims, threads), threads)
 }

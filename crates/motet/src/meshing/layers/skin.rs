@@ -56,6 +56,27 @@ impl Skin {
     pub(super) fn new(surfaces: &Surfaces, layers: &Layers, sides: &[Sides]) -> Result<Self> {
         let stacks: Vec<Stack> = layers.everywhere.iter().chain(layers.by_patch.values()).copied().collect();
         let chosen = stacks_of_triangles(surfaces, layers, sides)?;
+        Ok(Self::of(surfaces, stacks, &chosen, sides))
+    }
+
+    /// Builds the skin around closed surfaces, on which one stack grows outward where `on` holds. The other
+    /// triangles form ends.
+    pub(super) fn outside(surfaces: &Surfaces, stack: Stack, on: &[bool]) -> Self {
+        let chosen: Vec<_> = on.iter().map(|&on| on.then_some((0, 0))).collect();
+        let mut skin = Self::of(surfaces, vec![stack], &chosen, &vec![[Some(0), None]; on.len()]);
+        skin.flats = Flats::ends(&skin.points, &skin.triangles, &skin.behind, |t| skin.stack_of[t] == NONE);
+        skin
+    }
+
+    /// Builds the skin inside closed surfaces, on which one stack grows inward where `on` holds.
+    pub(super) fn inside(surfaces: &Surfaces, stack: Stack, on: &[bool]) -> Self {
+        let chosen: Vec<_> = on.iter().map(|&on| on.then_some((0, 1))).collect();
+        Self::of(surfaces, vec![stack], &chosen, &vec![[None, Some(0)]; on.len()])
+    }
+
+    /// Builds the skin of the bodies in which something grows: `chosen` has the stack on each triangle and
+    /// the side on which it grows.
+    fn of(surfaces: &Surfaces, stacks: Vec<Stack>, chosen: &[Option<(u32, usize)>], sides: &[Sides]) -> Self {
         let mut grows_in = vec![false; sides.iter().flatten().flatten().max().map_or(0, |&b| b as usize + 1)];
         for (t, side) in chosen.iter().enumerate().filter_map(|(t, c)| c.map(|(_, side)| (t, side))) {
             sides[t][side].into_iter().for_each(|body| grows_in[body as usize] = true);
@@ -78,7 +99,7 @@ impl Skin {
         }
         skin.number(surfaces, &corners);
         skin.relate(sides);
-        Ok(skin)
+        skin
     }
 
     /// Numbers the corners separately for each body.

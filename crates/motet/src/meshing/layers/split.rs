@@ -45,7 +45,7 @@ fn tets(kind: CellKind, vertices: &[VertexId], each: &mut impl FnMut([VertexId; 
 }
 
 /// The triangles of a ring, all around its vertex of smallest number.
-fn fan(ring: &[VertexId]) -> impl Iterator<Item = [VertexId; 3]> + '_ {
+pub(super) fn fan(ring: &[VertexId]) -> impl Iterator<Item = [VertexId; 3]> + '_ {
     let n = ring.len();
     let first = (0..n).min_by_key(|&i| ring[i]).unwrap_or(0);
     (1..n.saturating_sub(1)).map(move |i| [ring[first], ring[(first + i) % n], ring[(first + i + 1) % n]])

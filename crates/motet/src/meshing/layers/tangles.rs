@@ -67,7 +67,7 @@ pub(super) fn tangles(
     columns
 }
 
-fn prisms_are_positive(columns: &Columns, triangle: u32) -> bool {
+pub(super) fn prisms_are_positive(columns: &Columns, triangle: u32) -> bool {
     let is_positive = |tet: [Site; 4]| {
         let [a, b, c, d] = tet.map(|site| columns.at(site));
         orient3d(a, b, c, d) > 0
@@ -76,10 +76,11 @@ fn prisms_are_positive(columns: &Columns, triangle: u32) -> bool {
 }
 
 /// Whether the sides of prisms that lie in flat parts face the same way as these, however they are divided.
-fn sides_lie_flat(skin: &Skin, columns: &Columns, triangle: u32) -> bool {
+pub(super) fn sides_lie_flat(skin: &Skin, columns: &Columns, triangle: u32) -> bool {
     let is_rim = |k: &usize| {
         let beyond = skin.behind[triangle as usize][*k];
-        skin.has_stack(triangle) && beyond != NONE && skin.flats.of[beyond as usize] != NONE
+        let part = if beyond == NONE { NONE } else { skin.flats.of[beyond as usize] };
+        skin.has_stack(triangle) && part != NONE && skin.flats.normals[part as usize] != [0.0; 3]
     };
     (0..3).filter(is_rim).all(|k| {
         let normal = skin.flats.normals[skin.flats.of[skin.behind[triangle as usize][k] as usize] as usize];

@@ -19,14 +19,31 @@ use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::vector::{add, distance, dot, scale, sub};
 use crate::spatial::NearestTriangle;
 
-/// The largest fraction of a ball's radius that a column may take: three tenths of the way across a vessel.
-const OF_BALL: f64 = 0.6;
+/// How far columns go into the space around them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// The largest fraction of a ball's radius that a column may take.
+    of_ball: f64,
+    /// The largest fraction of an edge of the wall by which the columns at its ends may converge.
+    of_edge: f64,
+    /// By how much the thickness may grow per unit of distance along the wall.
+    slope: f64,
+}
 
-/// The largest fraction of an edge of the wall by which the columns at its ends may converge.
-const OF_EDGE: f64 = 0.6;
+impl Limits {
+    /// Inside a vessel: three tenths of the way across, so that the core keeps the rest.
+    pub(super) const INSIDE: Self = Self { of_ball: 0.6, of_edge: 0.6, slope: 0.3 };
 
-/// By how much the thickness may grow per unit of distance along the wall.
-const SLOPE: f64 = 0.3;
+    /// Outside, where nothing needs space beyond the columns.
+    pub(super) const OUTSIDE: Self = Self { of_ball: 0.9, of_edge: 0.8, slope: 1.0 };
+
+    /// The largest thickness that the columns at both ends of an edge allow each other.
+    fn of_edge(&self, skin: &Skin, lifts: &[Point], [w, v]: [VertexId; 2]) -> f64 {
+        let edge = sub(skin.points[v.index()], skin.points[w.index()]);
+        let closing = dot(sub(lifts[w.index()], lifts[v.index()]), edge);
+        if closing > 0.0 { self.of_edge * dot(edge, edge) / closing } else { f64::INFINITY }
+    }
+}
 
 /// The largest ratio of the length of a leaning column to the requested thickness.
 const STRETCH: f64 = 2.0;
@@ -52,10 +69,19 @@ pub(super) struct Heights {
     pub(super) heights: Vec<f64>,
     /// The displacement of a vertex per unit of thickness.
     pub(super) lifts: Vec<Point>,
+    limits: Limits,
 }
 
 impl Heights {
-    pub(super) fn find(skin: &Skin, around: &Csr<VertexId>, threads: &Threads) -> Self {
+    /// Finds the heights; `requested` returns the thickness at a vertex, given that of the stack there.
+    pub(super) fn find(
+        skin: &Skin,
+        around: &Csr<VertexId>,
+        limits: &Limits,
+        requested: impl Fn(VertexId, f64) -> f64 + Sync,
+        threads: &Threads,
+    ) -> Self {
+        let &limits = limits;
         let directions = Directions::find(skin, around, threads);
         let full: Vec<f64> = skin.stacks.iter().map(super::Stack::thickness).collect();
         let thinnest = |w: usize| {
@@ -64,8 +90,12 @@ impl Heights {
         };
         let n = skin.points.len();
         let stack_of: Vec<u32> = (0..n).map(thinnest).collect();
-        let requested: Vec<f64> =
-            stack_of.iter().map(|&s| if s == NONE { 0.0 } else { full[s as usize] }).collect();
+        let requested: Vec<f64> = (0..n)
+            .map(|w| match stack_of[w] {
+                NONE => 0.0,
+                stack => requested(VertexId::new(w), full[stack as usize]),
+            })
+            .collect();
         let lift = |w: usize| match directions.cosines[w] {
             cosine if cosine > 0.0 => scale(directions.ways[w], 1.0 / cosine),
             _ => [0.0; 3],
@@ -82,13 +112,13 @@ impl Heights {
                 &tree,
                 VertexId::new(w),
                 directions.ways[w],
-                requested[w] * stretch / OF_BALL,
+                requested[w] * stretch / limits.of_ball,
             );
-            let beside = around.list(w).iter().map(|v| edge_limit(skin, &lifts, [VertexId::new(w), *v]));
+            let beside = around.list(w).iter().map(|v| limits.of_edge(skin, &lifts, [VertexId::new(w), *v]));
             let most = requested[w].min(requested[w] * STRETCH / stretch);
-            beside.fold(most.min(OF_BALL * ball / stretch), f64::min)
+            beside.fold(most.min(limits.of_ball * ball / stretch), f64::min)
         });
-        let mut all = Self { stack_of, requested, heights, lifts };
+        let mut all = Self { stack_of, requested, heights, lifts, limits };
         all.limit_slope(skin, around);
         all
     }
@@ -118,7 +148,7 @@ impl Heights {
                 continue;
             }
             for &v in around.list(w) {
-                let most = height + SLOPE * distance(skin.points[w], skin.points[v.index()]);
+                let most = height + self.limits.slope * distance(skin.points[w], skin.points[v.index()]);
                 if most < self.heights[v.index()] {
                     self.heights[v.index()] = most;
                     next.push(key(most, v.index()));
@@ -130,7 +160,13 @@ impl Heights {
 
 /// The radius of the largest ball that touches the skin at a vertex from inside and contains no wall facing
 /// it; at most `radius`.
-fn largest_ball(skin: &Skin, tree: &NearestTriangle, vertex: VertexId, way: Point, mut radius: f64) -> f64 {
+pub(super) fn largest_ball(
+    skin: &Skin,
+    tree: &NearestTriangle,
+    vertex: VertexId,
+    way: Point,
+    mut radius: f64,
+) -> f64 {
     let (from, star) = (skin.points[vertex.index()], skin.stars.list(vertex.index()));
     let body = star.first().map(|&t| skin.bodies[t as usize]);
     let is_facing = |t: u32| {
@@ -149,11 +185,4 @@ fn largest_ball(skin: &Skin, tree: &NearestTriangle, vertex: VertexId, way: Poin
         radius = smaller;
     }
     radius
-}
-
-/// The largest thickness for which the columns at both ends of an edge do not meet.
-fn edge_limit(skin: &Skin, lifts: &[Point], [w, v]: [VertexId; 2]) -> f64 {
-    let edge = sub(skin.points[v.index()], skin.points[w.index()]);
-    let closing = dot(sub(lifts[w.index()], lifts[v.index()]), edge);
-    if closing > 0.0 { OF_EDGE * dot(edge, edge) / closing } else { f64::INFINITY }
 }
