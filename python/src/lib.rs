@@ -30,6 +30,7 @@ mod report;
 mod series;
 mod shapes;
 mod view;
+mod wall;
 mod watch;
 mod words;
 
@@ -70,6 +71,8 @@ mod _motet {
     use crate::shapes::{aneurysm, ball, box_grid, coil, mixed, sphere_in_box, stent, tube};
     #[pymodule_export]
     use crate::view::View;
+    #[pymodule_export]
+    use crate::wall::wall;
     #[pymodule_export]
     use crate::words::defaults;
 

@@ -7,6 +7,7 @@ use motet::base::{Names, Threads};
 use motet::mesh::history::{Carry, Rules};
 use motet::meshing::MeshingWords;
 use motet::meshing::even::SurfaceWords;
+use motet::meshing::wall::WallWords;
 use motet::motion::FacetSet;
 use motet::remesh::RemeshWords;
 use pyo3::prelude::*;
@@ -38,6 +39,7 @@ pub(crate) fn defaults(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     all.set_item("remesh", report(py, &RemeshWords::default())?)?;
     all.set_item("mesh", report(py, &MeshingWords::default())?)?;
     all.set_item("surface", report(py, &SurfaceWords::default())?)?;
+    all.set_item("wall", report(py, &WallWords::default())?)?;
     Ok(all)
 }
 

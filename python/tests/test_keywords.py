@@ -61,11 +61,11 @@ def test_load_and_move_have_the_options_of_the_classes():
     assert all(move[name].default == p.default for name, p in mover.items() if name not in ("mesh", "threads"))
 
 
-@pytest.mark.parametrize("call", [motet.remesh, motet.mesh, motet.surface])
+@pytest.mark.parametrize("call", [motet.remesh, motet.mesh, motet.surface, motet.wall])
 def test_defaults_are_those_of_the_library(call):
     words = motet._motet.defaults()[call.__name__]
     given = {name: p.default for name, p in inspect.signature(call).parameters.items() if name in words}
-    assert len(given) > 8
+    assert len(given) > 6
     for name, default in given.items():
         assert words[name] == default or words[name] in (None, []) and default in (None, ()), name
 

@@ -12,7 +12,7 @@ they never modify their arguments. :class:`Mover`, :class:`MovingMesh`, :class:`
 from . import shapes
 from ._motet import __version__, formats
 from ._cap import cap
-from ._changing import Changed, History, implant, mesh, remesh, surface
+from ._changing import Changed, History, implant, mesh, remesh, surface, wall
 from ._contact import Ahead, Body, Contact, Gaps
 from ._frames import read_log, to_frame
 from .errors import Error, FileError, InputError, InternalError, OptionsError
@@ -27,5 +27,5 @@ from ._view import View, view
 __all__ = [
     "Ahead", "Body", "Changed", "Contact", "Error", "FileError", "Gaps", "History", "InputError", "InternalError", "Mesh", "MeshLike", "Moved", "Mover",
     "MovingMesh", "OptionsError", "PointMover", "Refinement", "Report", "SeriesWriter", "View", "as_mesh", "cap", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_log", "read_nodal",
-    "read_series", "refine", "remesh", "shapes", "surface", "to_frame", "view", "write_nodal", "__version__",
+    "read_series", "refine", "remesh", "shapes", "surface", "to_frame", "view", "wall", "write_nodal", "__version__",
 ]  # fmt: skip

@@ -534,3 +534,73 @@ def surface(
         merge=merge, hole_edges=hole_edges, smooth=smooth, threads=threads, progress=progress,
     )  # fmt: skip
     return _changed(native)
+
+
+@checked
+def wall(
+    mesh: MeshLike,
+    *,
+    thickness: float | str | ArrayLike | None = None,
+    of_radius: float | None = None,
+    layers: int = 1,
+    growth: float = 1.0,
+    on: Sequence[str] = (),
+    keep_prisms: bool = False,
+    name: str = "wall",
+    threads: int = 0,
+    progress: Progress | bool | None = None,
+) -> Changed:
+    """Put a solid wall around a vessel: layers outward that share the vertices of the lumen.
+
+    The wall ends in the planes of caps and of open rims. Where there is no space, such as between branches, it
+    is thinner. It is a region of the mesh; its outer side and its ends are patches. Equivalent to
+    ``motet wall`` on the command line.
+
+    Parameters
+    ----------
+    mesh : MeshLike
+        Volume mesh on whose boundary the wall stands, or a surface, closed or open at its ends; of a surface
+        the result is the wall alone. A :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set.
+    thickness : float, str or array_like of shape (n,), optional
+        Thickness in units of the mesh: one number, the name of a point or cell array, or a value for each point.
+    of_radius : float, optional
+        Thickness as a part of the local radius: that of the largest ball that touches the surface from inside.
+        One of `thickness` and `of_radius` is required.
+    layers : int, default 1
+        Number of layers.
+    growth : float, default 1.0
+        Ratio of the thickness of each layer to that of the one inside it.
+    on : sequence of str, optional
+        Names or numbers of the patches on which the wall stands. Default: all of the surface but caps, which are
+        flat parts with a sharp crease all around.
+    keep_prisms : bool, default False
+        Whether layers stay wedges and pyramids instead of being divided into tets.
+    name : str, default "wall"
+        Name of the region of the wall.
+    threads : int, default 0
+        Number of threads; 0 uses all cores. The result does not depend on it.
+    progress : callable or True, optional
+        True shows a bar for each stage (by tqdm, if it is installed). A function is called
+        as ``progress(stage, done, total)`` several times per second; ``total`` is 0 if unknown. An
+        exception that it raises, or Ctrl-C, ends the call.
+
+    Returns
+    -------
+    Changed
+        The mesh with its wall, its history and report; ``complete`` is False if there is no space for a wall at
+        some vertices. Points and cells of the wall have the values of arrays at its foot.
+
+    Raises
+    ------
+    InputError
+        If there is no surface, it crosses itself, or a facet for the wall is not a triangle.
+    OptionsError
+        If the thickness is given not at all or twice, or a patch does not exist.
+    """
+    if thickness is not None and not isinstance(thickness, (str, int, float)):
+        thickness = np.asarray(thickness, dtype=float).ravel().tolist()
+    native = _motet.wall(
+        as_mesh(mesh), thickness=thickness, of_radius=of_radius, layers=layers, growth=growth, on=[str(patch) for patch in on],
+        keep_prisms=keep_prisms, name=name, threads=threads, progress=progress,
+    )  # fmt: skip
+    return _changed(native)

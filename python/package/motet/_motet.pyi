@@ -94,6 +94,19 @@ def surface(
     threads: int,
     progress: Any,
 ) -> tuple[_Parts, History, Any, str | None]: ...
+def wall(
+    mesh: Any,
+    *,
+    thickness: float | str | Any | None,
+    of_radius: float | None,
+    layers: int,
+    growth: float,
+    on: list[str],
+    keep_prisms: bool,
+    name: str,
+    threads: int,
+    progress: Any,
+) -> tuple[_Parts, History, Any, str | None]: ...
 def refined(mesh: Any, request: Any, threads: int, progress: Any) -> tuple[_Parts, History, Any, str | None]: ...
 def prescribed(mesh: Any, boundary: _Ids, motions: list[tuple[Any, list[Any]]], fractions: list[float]) -> list[Any]: ...
 def choose(mesh: Any, request: Any, least: float | None, frames: list[Any], threads: int, progress: Any) -> tuple[str, float, Any]: ...

@@ -16,7 +16,7 @@ from pyvista.core.utilities.reader_registry import LocalFileRequiredError
 
 from . import _motet
 from ._cap import cap
-from ._changing import History, implant, mesh, remesh, surface
+from ._changing import History, implant, mesh, remesh, surface, wall
 from ._contact import Contact, Gaps
 from ._convert import to_pyvista
 from ._mesh import Mesh, MeshLike, as_mesh, named, read
@@ -121,6 +121,10 @@ class MotetAccessor:
     @_documented(surface)
     def surface(self, **options: Any) -> Any:
         return _result(surface(self._one("surface"), **options))
+
+    @_documented(wall)
+    def wall(self, **options: Any) -> Any:
+        return _result(wall(self._one("wall"), **options))
 
     @_documented(remesh)
     def remesh(self, **options: Any) -> Any:

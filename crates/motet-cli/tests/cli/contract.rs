@@ -125,7 +125,7 @@ fn every_verb_takes_more_threads_than_the_machine_has_and_gives_the_same_files()
     folder.write("ball.off", format!("OFF\n6 8 0\n{}\n{triangles}\n", corners.join("\n")).as_bytes());
     folder
         .write("open.off", format!("OFF\n6 7 0\n{}\n{}\n", corners.join("\n"), &triangles[..55]).as_bytes());
-    let calls: [&[&str]; 10] = [
+    let calls: [&[&str]; 11] = [
         &["convert", "box.vtu", "-o"],
         &["info", "box.vtu", "-o"],
         &["mesh", "ball.off", "--size", "0.1", "-o"],
@@ -136,6 +136,7 @@ fn every_verb_takes_more_threads_than_the_machine_has_and_gives_the_same_files()
         &["contact", "box.vtu", "--patches", "sphere,box", "-o"],
         &["cap", "open.off", "-o"],
         &["surface", "open.off", "--size", "0.1", "-o"],
+        &["wall", "box.vtu", "--thickness", "0.1", "--on", "box", "-o"],
     ];
     for words in calls {
         let made = |name: &str, threads: &str| {
@@ -149,7 +150,7 @@ fn every_verb_takes_more_threads_than_the_machine_has_and_gives_the_same_files()
     }
     for verb in [
         "info", "quality", "convert", "mesh", "move", "remesh", "refine", "implant", "contact", "run", "cap",
-        "report", "surface",
+        "report", "surface", "wall",
     ] {
         let call = folder.motet([verb, "--threads", "-1"]).assert().code(2);
         assert!(stderr(&call).contains("invalid value '-1' for '--threads <N>'"), "{}", stderr(&call));

@@ -16,3 +16,4 @@ mod report;
 mod run;
 mod surface;
 mod view;
+mod wall;

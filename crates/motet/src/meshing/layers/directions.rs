@@ -98,9 +98,12 @@ impl Directions {
             if normals.is_empty() {
                 return ([0.0; 3], 0.0, Freedom::Nowhere);
             }
-            let freedom = Freedom::of(skin, vertex);
-            let way = best(&normals, freedom);
-            let cosine = least(&normals, way);
+            let mut freedom = Freedom::of(skin, vertex);
+            let (mut way, mut cosine) = best_with_cosine(&normals, freedom);
+            if cosine < MIN_COSINE && skin.may_slant && freedom != Freedom::Nowhere {
+                freedom = Freedom::Anywhere;
+                (way, cosine) = best_with_cosine(&normals, freedom);
+            }
             if cosine < MIN_COSINE { ([0.0; 3], 0.0, freedom) } else { (way, cosine, freedom) }
         });
         let mut all =
@@ -128,6 +131,12 @@ fn inward(skin: &Skin, vertex: VertexId) -> Vec<Point> {
 
 fn least(normals: &[Point], way: Point) -> f64 {
     normals.iter().map(|&n| dot(n, way)).fold(f64::INFINITY, f64::min)
+}
+
+/// The free direction that sees the normals best, and its smallest cosine with any of them.
+fn best_with_cosine(normals: &[Point], freedom: Freedom) -> (Point, f64) {
+    let way = best(normals, freedom);
+    (way, least(normals, way))
 }
 
 /// The free direction that sees the normals best; zero if there is none.

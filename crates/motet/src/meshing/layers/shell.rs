@@ -7,7 +7,7 @@ use super::columns::{Columns, Site, distinct};
 use super::neighbors::NONE;
 use super::skin::Skin;
 use super::split::fan;
-use super::tangles::{prisms_are_positive, sides_lie_flat};
+use super::tangles::prisms_are_positive;
 use crate::base::{Point, Threads, VertexId};
 use crate::meshing::surfaces::Surfaces;
 use crate::preflight::own_crossings;
@@ -86,9 +86,7 @@ impl Shell {
 
     /// The columns at fault for any problem, in rising order; none if there is no problem.
     pub(super) fn tangles(&self, skin: &Skin, columns: &Columns, threads: &Threads) -> Vec<VertexId> {
-        let off: Vec<bool> = threads.map(skin.triangles.len(), |t| {
-            !prisms_are_positive(columns, t as u32) || !sides_lie_flat(skin, columns, t as u32)
-        });
+        let off: Vec<bool> = threads.map(skin.triangles.len(), |t| !prisms_are_positive(columns, t as u32));
         let mut blamed: Vec<u32> = (0u32..).zip(off).filter(|(_, off)| *off).map(|(t, _)| t).collect();
         for pair in own_crossings(&self.points, &self.triangles, threads) {
             blamed.extend(pair.map(|i| self.stands_on[i as usize]).into_iter().filter(|&t| t != NONE));

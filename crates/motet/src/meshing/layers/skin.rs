@@ -42,6 +42,8 @@ pub(super) struct Skin {
     /// Flat parts among the triangles on which nothing grows and which have no body on the other side: edges
     /// of layers may slide there.
     pub(super) flats: Flats,
+    /// Whether a column rises out of the plane of a cap where it hardly could in it.
+    pub(super) may_slant: bool,
     /// For each vertex of the surfaces, its vertices in the skin, with their bodies.
     of_vertex: Csr<(u32, VertexId)>,
     /// For each triangle of the surfaces, its triangles in the skin.
@@ -64,6 +66,7 @@ impl Skin {
     pub(super) fn outside(surfaces: &Surfaces, stack: Stack, on: &[bool]) -> Self {
         let chosen: Vec<_> = on.iter().map(|&on| on.then_some((0, 0))).collect();
         let mut skin = Self::of(surfaces, vec![stack], &chosen, &vec![[Some(0), None]; on.len()]);
+        skin.may_slant = true;
         skin.flats = Flats::ends(&skin.points, &skin.triangles, &skin.behind, |t| skin.stack_of[t] == NONE);
         skin
     }

@@ -76,7 +76,7 @@ pub(super) fn prisms_are_positive(columns: &Columns, triangle: u32) -> bool {
 }
 
 /// Whether the sides of prisms that lie in flat parts face the same way as these, however they are divided.
-pub(super) fn sides_lie_flat(skin: &Skin, columns: &Columns, triangle: u32) -> bool {
+fn sides_lie_flat(skin: &Skin, columns: &Columns, triangle: u32) -> bool {
     let is_rim = |k: &usize| {
         let beyond = skin.behind[triangle as usize][*k];
         let part = if beyond == NONE { NONE } else { skin.flats.of[beyond as usize] };

@@ -21,23 +21,27 @@ use crate::mesh::history::Changed;
 pub fn wall(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<Changed<Report>> {
     let stack = options.stack()?;
     let lumen = Lumen::of(mesh, &options.on, threads)?;
-    let thickness = thickness(&lumen, &options.thickness, threads)?;
+    let thickness = thickness(&lumen, mesh.points.len(), &options.thickness, threads)?;
     let layers = OutwardLayers::new(&lumen.surfaces, lumen.n_real, &lumen.on, stack, &thickness, threads)?;
     join(mesh, &lumen, &layers, options, threads)
 }
 
 /// The thickness at each point of the surfaces.
-fn thickness(lumen: &Lumen, of: &Thickness, threads: &Threads) -> Result<Vec<f64>> {
+fn thickness(lumen: &Lumen, n_points: usize, of: &Thickness, threads: &Threads) -> Result<Vec<f64>> {
     let n = lumen.surfaces.points.len();
+    if let Thickness::AtPoints(values) = of
+        && values.len() != n_points
+    {
+        return Err(Error::options(format!(
+            "the thickness of the wall has {} values for {n_points} points",
+            values.len()
+        )));
+    }
     let thickness = match of {
         Thickness::Uniform(thickness) => vec![*thickness; n],
-        Thickness::AtPoints(values) => lumen
-            .points
-            .iter()
-            .map(|v| values.get(v.index()).copied().unwrap_or(f64::NAN))
-            .chain(std::iter::repeat(0.0))
-            .take(n)
-            .collect(),
+        Thickness::AtPoints(values) => {
+            lumen.points.iter().map(|v| values[v.index()]).chain(std::iter::repeat(0.0)).take(n).collect()
+        }
         Thickness::OfRadius(part) => {
             radii(&lumen.surfaces, &lumen.on, threads).into_iter().map(|radius| part * radius).collect()
         }
