@@ -112,7 +112,7 @@ pub(crate) fn mesh<'py>(
 
 /// Returns the new surface, its history, the report, and why the requested result was not reached.
 #[pyfunction]
-#[pyo3(signature = (surface, *, size, distance, feature_angle, growth, size_array, repair, merge, hole_edges, smooth, threads, progress))]
+#[pyo3(signature = (surface, *, size, distance, feature_angle, growth, size_array, clip, repair, merge, hole_edges, smooth, threads, progress))]
 #[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
 pub(crate) fn surface<'py>(
     py: Python<'py>,
@@ -122,6 +122,7 @@ pub(crate) fn surface<'py>(
     feature_angle: f64,
     growth: Option<f64>,
     size_array: Option<String>,
+    clip: Vec<Vec<f64>>,
     repair: bool,
     merge: f64,
     hole_edges: usize,
@@ -130,8 +131,18 @@ pub(crate) fn surface<'py>(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<ChangedParts<'py>> {
     let size = size.map(SizeArg::length).transpose().or_raise()?;
-    let words =
-        SurfaceWords { size, distance, feature_angle, growth, size_array, repair, hole_edges, merge, smooth };
+    let words = SurfaceWords {
+        size,
+        distance,
+        feature_angle,
+        growth,
+        size_array,
+        clip,
+        repair,
+        hole_edges,
+        merge,
+        smooth,
+    };
     let options = words.options(&surface.0).or_raise()?;
     let made = watched(py, threads, progress, |threads| even_surface(&surface.0, &options, threads))?;
     let Changed { mesh, history, report: reported, .. } = made;
@@ -145,9 +156,26 @@ pub(crate) struct Caps(meshing::Caps);
 
 #[pymethods]
 impl Caps {
+    /// `inlet`: whether ends are named by size, and the place of the inlet, if given; `extend`: lengths of
+    /// extensions, each with its end, or for all without one of their own.
     #[new]
-    fn new(py: Python<'_>, surface: MeshArg) -> PyResult<Self> {
-        call(py, || meshing::Caps::of(&surface.0)).map(Self)
+    fn new(
+        py: Python<'_>,
+        surface: MeshArg,
+        inlet: Option<(Option<Point>,)>,
+        extend: Vec<(Option<String>, f64)>,
+    ) -> PyResult<Self> {
+        let made = call(py, || {
+            let mut caps = meshing::Caps::of(&surface.0)?;
+            if let Some((place,)) = inlet {
+                caps.name_ends(&surface.0, place)?;
+            }
+            for (end, length) in extend {
+                caps.extend(&surface.0, end.as_deref(), length)?;
+            }
+            Ok(caps)
+        });
+        made.map(Self)
     }
 
     /// Closes a frame of the surface.

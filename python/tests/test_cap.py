@@ -51,3 +51,20 @@ def test_all_frames_have_the_same_triangles(tmp_path):
 def test_surfaces_that_cannot_be_capped_raise_an_error(given, message):
     with pytest.raises(motet.InputError, match=message):
         motet.cap(given())
+
+
+def test_ends_are_named_and_extended():
+    vessel = open_vessel()
+    long = motet.cap(vessel, inlet="largest", extend={"inlet": 3.0, "outlet": 2.0})
+    assert sorted(long.patch_names.values()) == ["inlet", "outlet", "wall"]
+    plain = motet.cap(vessel)
+    volumes = [motet.mesh(mesh).mesh.summary().volume for mesh in (plain, long)]
+    assert volumes[1] > volumes[0] + 4.0
+    np.testing.assert_array_equal(long.points[: vessel.n_points], vessel.points)
+    outlet = long.points[long.triangles[long.cell_data["patch"] == next(k for k, v in long.patch_names.items() if v == "outlet")]].mean((0, 1))
+    turned = motet.cap(vessel, inlet=outlet, extend=1.0)
+    assert sorted(turned.patch_names.values()) == ["inlet", "outlet", "wall"]
+    with pytest.raises(motet.OptionsError, match="no open end `x`"):
+        motet.cap(vessel, extend={"x": 1.0})
+    with pytest.raises(motet.InputError, match="three numbers"):
+        motet.cap(vessel, inlet=[1.0, 2.0])

@@ -82,3 +82,14 @@ def test_data_sets_of_pyvista_have_it_as_a_method():
     even = tube.motet.surface(size=0.3, distance=0.02)
     assert even.motet.complete and even.motet.report.after.rims == 2
     assert "Give a surface even triangles" in type(even.motet).surface.__doc__
+
+
+def test_ends_are_cut_off():
+    vessel = shapes.tube(radius=1.0, length=4.0)
+    done = motet.surface(vessel, clip=[(0, 0, 3.1, 0, 0, 1), (0, 0, 0, 0.5)])
+    assert [cut.divided > 0 for cut in done.report.cuts] == [True, True]
+    assert done.mesh.points[:, 2].max() == pytest.approx(3.1) and done.report.after.rims == 2
+    with pytest.raises(motet.OptionsError, match="6 numbers"):
+        motet.surface(vessel, clip=[(1, 2, 3)])
+    with pytest.raises(motet.InputError, match="does not meet"):
+        motet.surface(vessel, clip=[(0, 0, 9, 0, 0, 1)])

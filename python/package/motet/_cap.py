@@ -2,28 +2,32 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
-from typing import Any, overload
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Literal, overload
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _motet
-from ._mesh import Mesh, MeshLike, as_mesh, read
+from ._mesh import Mesh, MeshLike, as_mesh, point, read
 from ._series import read_series
 from ._keywords import checked
 from .errors import InputError
 
 
+Inlet = Literal["largest"] | ArrayLike
+
+
 @overload
-def cap(surfaces: str | os.PathLike[str]) -> Any: ...
+def cap(surfaces: str | os.PathLike[str], *, inlet: Inlet | None = ..., extend: float | Mapping[str, float] | None = ...) -> Any: ...
 @overload
-def cap(surfaces: Mesh) -> Mesh: ...
+def cap(surfaces: Mesh, *, inlet: Inlet | None = ..., extend: float | Mapping[str, float] | None = ...) -> Mesh: ...
 @overload
-def cap(surfaces: Sequence[MeshLike]) -> list[Mesh]: ...
+def cap(surfaces: Sequence[MeshLike], *, inlet: Inlet | None = ..., extend: float | Mapping[str, float] | None = ...) -> list[Mesh]: ...
 @overload
-def cap(surfaces: Any) -> Any: ...
+def cap(surfaces: Any, *, inlet: Inlet | None = ..., extend: float | Mapping[str, float] | None = ...) -> Any: ...
 @checked
-def cap(surfaces: Any) -> Any:
+def cap(surfaces: Any, *, inlet: Any = None, extend: float | Mapping[str, float] | None = None) -> Any:
     """Close the open rims of a surface, or of every frame of a moving surface.
 
     Each rim is closed by a cap of triangles about as large as the edges of the rim. The caps are patches
@@ -37,6 +41,12 @@ def cap(surfaces: Any) -> Any:
         A surface (a :class:`Mesh`, file path, ``meshio.Mesh`` or PyVista data set), a sequence of frames, or
         the path of a ``.pvd`` series. All frames must have the same points in the same order. Frames after
         the first may be arrays of points only, shape (n, 3).
+    inlet : "largest" or array_like of shape (3,), optional
+        Names the ends by size instead: ``inlet`` the largest one, or the one nearest to this place; the others
+        ``outlet_1``, ``outlet_2``, ..., by falling size, or ``outlet`` if there is only one.
+    extend : float or mapping of str to float, optional
+        Length of straight tubes that continue the vessel beyond its open ends, in units of the surface, or one
+        length for each of some ends, by the names of their caps. Cross-sections become circles of the same area.
 
     Returns
     -------
@@ -47,17 +57,23 @@ def cap(surfaces: Any) -> Any:
     Raises
     ------
     InputError
-        If there is no open rim, if rims touch, or if the number of points differs between frames.
+        If there is no open rim, if rims touch, if the number of points differs between frames, or if an
+        extension meets the surface.
+    OptionsError
+        If an end does not exist.
     """
     if isinstance(surfaces, (str, os.PathLike)) and _motet.is_series(surfaces):
         times = read_series(surfaces)
-        return list(zip([time for time, _ in times], _closed(read(file) for _, file in times)))
+        return list(zip([time for time, _ in times], _closed((read(file) for _, file in times), inlet, extend)))
     if isinstance(surfaces, (list, tuple)):
-        return _closed(surfaces)
-    return _closed([surfaces])[0]
+        return _closed(surfaces, inlet, extend)
+    return _closed([surfaces], inlet, extend)[0]
 
 
-def _closed(frames: Iterable[Any]) -> list[Mesh]:
+def _closed(frames: Iterable[Any], inlet: Any, extend: float | Mapping[str, float] | None) -> list[Mesh]:
+    if inlet is not None:
+        inlet = (None,) if isinstance(inlet, str) and inlet == "largest" else (point(inlet, "inlet"),)
+    lengths = [] if extend is None else list(extend.items()) if isinstance(extend, Mapping) else [(None, extend)]
     caps, first, closed = None, None, []
     for given in frames:
         if isinstance(given, np.ndarray):
@@ -70,7 +86,7 @@ def _closed(frames: Iterable[Any]) -> list[Mesh]:
         else:
             frame = as_mesh(given)
         if caps is None:
-            caps, first = _motet.Caps(frame), frame
+            caps, first = _motet.Caps(frame, inlet, lengths), frame
         closed.append(Mesh._of(caps.close(frame)))
     if not closed:
         raise InputError("no frames to cap")

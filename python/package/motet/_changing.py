@@ -468,6 +468,7 @@ def surface(
     feature_angle: float = 40.0,
     growth: float | None = None,
     size_array: str | None = None,
+    clip: Sequence[ArrayLike] = (),
     repair: bool = False,
     merge: float = 0.0,
     hole_edges: int = 0,
@@ -501,6 +502,10 @@ def surface(
         0.3.
     size_array : str, optional
         Name of a point or cell array of the surface with the edge length there.
+    clip : sequence of array_like, optional
+        Ends that are cut off first. Six numbers x, y, z, nx, ny, nz: the part in front of the plane through the
+        place x, y, z with this normal, along the line nearest to the place; the rest of the vessel is kept
+        where it meets the plane again. Four numbers x, y, z, r: all inside a sphere.
     repair : bool, default False
         Whether to repair the surface first: vertices on edges (T-junctions), overlapping faces, duplicates,
         orientation, and points closer than `merge`.
@@ -530,7 +535,8 @@ def surface(
         If there is no surface, or a coordinate is not finite.
     """
     native = _motet.surface(
-        as_mesh(surface), size=size, distance=distance, feature_angle=feature_angle, growth=growth, size_array=size_array, repair=repair,
+        as_mesh(surface), size=size, distance=distance, feature_angle=feature_angle, growth=growth, size_array=size_array,
+        clip=[np.asarray(cut, dtype=float).ravel().tolist() for cut in clip], repair=repair,
         merge=merge, hole_edges=hole_edges, smooth=smooth, threads=threads, progress=progress,
     )  # fmt: skip
     return _changed(native)

@@ -87,6 +87,7 @@ def surface(
     feature_angle: float,
     growth: float | None,
     size_array: str | None,
+    clip: list[list[float]],
     repair: bool,
     merge: float,
     hole_edges: int,
@@ -163,7 +164,7 @@ class Contact:
 
 @final
 class Caps:
-    def __new__(cls, surface: Any) -> Caps: ...
+    def __new__(cls, surface: Any, inlet: tuple[list[float] | None] | None, extend: list[tuple[str | None, float]]) -> Caps: ...
     def close(self, frame: Any) -> _Parts: ...
 
 @final

@@ -111,8 +111,8 @@ class MotetAccessor:
         return self.to_mesh().quality(measure)
 
     @_documented(cap)
-    def cap(self) -> Any:
-        return to_pyvista(cap(self.to_mesh()))
+    def cap(self, **options: Any) -> Any:
+        return to_pyvista(cap(self.to_mesh(), **options))
 
     @_documented(mesh)
     def mesh(self, membranes: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike] = (), **options: Any) -> Any:

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use motet::base::Threads;
+use motet::base::{Point, Threads};
 use motet::meshing::{Caps, RimPlane};
 use motet::{Error, Mesh, Result, io};
 use serde_json::json;
@@ -28,10 +28,11 @@ Examples:
   motet cap frame_*.vtk -o wall.pvd --period 0.8          frames of one cycle, evenly in time
   motet cap wall.pvd -o closed.pvd
   motet cap lumen.stl -o closed.vtp --flatten             uneven rims, caps that can slide
+  motet cap lumen.stl -o long.vtp --inlet largest --extend inlet=5 --extend 3   straight tubes at the ends
   motet mesh closed_0000.vtu -o lumen.vtu --size 2        then the inside
 
 Exit status 3: the surface has no open rim, rims touch, or frames have different numbers of \
-points; nothing is written.")]
+points, or an extension meets the surface; nothing is written.")]
 pub(crate) struct CapArgs {
     /// A surface, several files that are frames of one, or a series
     #[arg(value_name = "SURFACE", required = true)]
@@ -44,6 +45,14 @@ pub(crate) struct CapArgs {
     /// how far rims are off
     #[arg(long)]
     flatten: bool,
+    /// Name the ends by size instead: `inlet` the largest, or the one nearest to a place; the others
+    /// `outlet_1`, `outlet_2`, ..., by falling size, or `outlet` if there is only one
+    #[arg(long, value_name = "largest|X,Y,Z", value_parser = inlet)]
+    inlet: Option<Inlet>,
+    /// Continue the vessel beyond each open end, or the one that its cap names, by a straight tube of this
+    /// length; its cross-section becomes a circle of the same area; may be repeated
+    #[arg(long, value_name = "[END=]LENGTH", value_parser = extension)]
+    extend: Vec<Extension>,
     /// Duration of one period, for frames given as files; after the last frame the first follows again
     #[arg(long, value_name = "TIME", default_value_t = 1.0, value_parser = crate::words::positive)]
     period: f64,
@@ -63,7 +72,7 @@ pub(crate) fn run(args: &CapArgs, common: &Common, console: &Console) -> Result<
             .remedy("use a name that ends in .pvd"));
     }
     let first = read(&frames[0].1, &threads, console)?;
-    let caps = Caps::of(&first).map_err(|e| e.in_file(&frames[0].1))?;
+    let caps = caps(args, &first).map_err(|e| e.in_file(&frames[0].1))?;
     let mut planes = Vec::new();
     let mut closed = |file: &Path| {
         let (closed, found) =
@@ -112,6 +121,56 @@ pub(crate) fn run(args: &CapArgs, common: &Common, console: &Console) -> Result<
         "planes": planes,
     }));
     Ok(Outcome::Done)
+}
+
+/// Which end is the inlet.
+#[derive(Clone, Copy, Debug)]
+enum Inlet {
+    Largest,
+    Nearest(Point),
+}
+
+fn inlet(text: &str) -> std::result::Result<Inlet, String> {
+    match text {
+        "largest" => Ok(Inlet::Largest),
+        _ => match crate::words::numbers(text)?[..] {
+            [x, y, z] => Ok(Inlet::Nearest([x, y, z])),
+            _ => Err(format!("`largest`, or a place X,Y,Z; got `{text}`")),
+        },
+    }
+}
+
+/// The length of extensions, of one end or of all others.
+#[derive(Clone, Debug)]
+struct Extension {
+    end: Option<String>,
+    length: f64,
+}
+
+fn extension(text: &str) -> std::result::Result<Extension, String> {
+    let (end, length) = match text.rsplit_once('=') {
+        Some((end, length)) => (Some(end.to_owned()), length),
+        None => (None, text),
+    };
+    crate::words::positive(length).map(|length| Extension { end, length })
+}
+
+/// The caps that a call requests, made from the first frame.
+fn caps(args: &CapArgs, first: &Mesh) -> Result<Caps> {
+    let mut caps = Caps::of(first)?;
+    match args.inlet {
+        Some(Inlet::Largest) => caps.name_ends(first, None)?,
+        Some(Inlet::Nearest(place)) => caps.name_ends(first, Some(place))?,
+        None => {}
+    }
+    // Those with a name first: the others are for ends without an extension of their own.
+    for one in args.extend.iter().filter(|one| one.end.is_some()) {
+        caps.extend(first, one.end.as_deref(), one.length)?;
+    }
+    for one in args.extend.iter().filter(|one| one.end.is_none()) {
+        caps.extend(first, None, one.length)?;
+    }
+    Ok(caps)
 }
 
 /// Rims that deviate from their plane by less than this part of their radius count as flat: the rounding of

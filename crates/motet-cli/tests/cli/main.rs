@@ -1,6 +1,7 @@
 //! The program `motet`, called as a user or a script calls it.
 
 mod bad_input;
+mod cap;
 mod common;
 mod contact;
 mod contract;

@@ -4,4 +4,5 @@
 mod common;
 
 mod alone;
+mod clip;
 mod even;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use motet::meshing::even::SurfaceWords;
+use motet::meshing::even::{Cut, SurfaceWords};
 
 use crate::adapting::AdaptArgs;
 use crate::help;
@@ -31,6 +31,9 @@ Examples:
     motet surface lumen.vtp -o even.vtp --size 0.4 --distance 0.02
   Sizes from an array, such as a part of the radius:
     motet surface lumen.vtp -o even.vtp --size-array h
+  Cut a branch off at a place, then close and extend the ends:
+    motet surface scan.stl -o cut.vtp --clip 12,3,-40,0,0.5,-1 --smooth 10
+    motet cap cut.vtp -o lumen.vtp --inlet largest --extend 20
   Steps of a segmentation smoothed first:
     motet surface scan.stl -o even.stl --smooth 20 --feature-angle 120
 
@@ -45,6 +48,9 @@ pub(crate) struct SurfaceArgs {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) adapting: AdaptArgs<SurfaceWords>,
+    #[arg(long, help = help::repeatable::<SurfaceWords>("clip"), value_name = "X,Y,Z,NX,NY,NZ|X,Y,Z,R",
+        value_parser = clip, allow_hyphen_values = true)]
+    pub(crate) clip: Vec<Vec<f64>>,
     #[arg(long, help = help::effect::<SurfaceWords>("hole_edges"), value_name = "N",
         default_value_t = SurfaceWords::default().hole_edges, requires = "repair")]
     pub(crate) hole_edges: usize,
@@ -53,6 +59,11 @@ pub(crate) struct SurfaceArgs {
     pub(crate) smooth: usize,
     #[command(flatten)]
     pub(crate) writing: WritingArgs,
+}
+
+fn clip(text: &str) -> Result<Vec<f64>, String> {
+    let numbers = crate::words::numbers(text)?;
+    Cut::of_numbers(&numbers).map(|_| numbers).map_err(|e| e.to_string())
 }
 
 impl SurfaceArgs {
@@ -65,6 +76,7 @@ impl SurfaceArgs {
             feature_angle,
             growth,
             size_array: self.adapting.size_array.clone(),
+            clip: self.clip.clone(),
             repair,
             hole_edges: self.hole_edges,
             merge: self.adapting.merge.unwrap_or(SurfaceWords::default().merge),

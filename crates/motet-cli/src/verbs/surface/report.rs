@@ -56,6 +56,13 @@ impl<'a> Report<'a> {
                 counted(self.report.left_out, "cell")
             ));
         }
+        for cut in &self.report.cuts {
+            console.print(format_args!(
+                "cut off: {}, {} divided",
+                counted(cut.removed, "triangle"),
+                count(cut.divided)
+            ));
+        }
         if !repairs.is_empty() {
             console.print(format_args!("{} (--json lists them)", counted(repairs.len(), "repair")));
         }

@@ -2,6 +2,7 @@
 
 use super::super::adapt::Adapting;
 use super::super::sizes::Sizes;
+use super::clip::Cut;
 use crate::preflight::Repairs;
 
 /// How a surface is made even.
@@ -12,6 +13,8 @@ pub struct Options {
     pub sizes: Option<Sizes>,
     /// How far the surface may stray, and which edges are creases.
     pub adapting: Adapting,
+    /// What is cut off first. Default: nothing.
+    pub cuts: Vec<Cut>,
     /// What is repaired first; triangles without area are dropped in any case. Default: nothing.
     pub repairs: Repairs,
     /// How many passes of smoothing come before: vertices move, but those of rims, borders of patches and

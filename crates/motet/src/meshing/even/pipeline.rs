@@ -3,6 +3,7 @@
 use super::super::adapt::{Adapting, adapt};
 use super::super::compact::{compact, used_vertices};
 use super::super::surfaces::Surfaces;
+use super::clip::clip;
 use super::measured::Measured;
 use super::options::Options;
 use super::origins::{Given, history, numbers};
@@ -10,7 +11,7 @@ use super::report::{Report, Smoothed};
 use crate::base::{Error, Result, Threads};
 use crate::geometry::vector::in_range;
 use crate::mesh::history::{Changed, Rules};
-use crate::mesh::{CellKind, Cells, Mesh, Surface};
+use crate::mesh::{CellKind, Cells, Field, Mesh, Surface};
 use crate::preflight::{Repairs, Role, renamed};
 use crate::surface;
 
@@ -18,12 +19,42 @@ use crate::surface;
 /// volume cells. The surface may be open; rims, borders of patches, edges of more than two triangles and
 /// creases stay. Points at the same place are merged. Arrays are carried by the history: on points, floats
 /// are interpolated in the nearest given triangle of the same patch and other values are those of one of its
-/// corners; triangles get the values of the nearest given one.
+/// corners; triangles get the values of the nearest given one. Parts are cut off first, if requested.
 ///
 /// # Errors
-/// When the mesh has no surface, a coordinate is not finite, an option is out of its range, or a size
-/// requires too many triangles.
+/// When the mesh has no surface, a coordinate is not finite, an option is out of its range, a cut separates
+/// no part, or a size requires too many triangles.
 pub fn even_surface(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<Changed<Report>> {
+    if options.cuts.is_empty() {
+        return even(mesh, options, threads);
+    }
+    check(&Surface::own_or_boundary_of(mesh))?;
+    let cut = clip(mesh, &options.cuts, threads)?;
+    let at_points = |values: &[f64]| {
+        let field = Field::scalars("size", values.to_vec());
+        let carried = cut.history.transfer_points(&field).ok();
+        carried.and_then(|field| field.values.to_f64()).unwrap_or_default()
+    };
+    let sizes = options.sizes.clone().map(|sizes| sizes.map_points(at_points));
+    let rest = Options { cuts: Vec::new(), sizes, ..options.clone() };
+    let made = even(&cut.mesh, &rest, threads)?;
+    let given = Surface::of(mesh);
+    let is_boundary = given.triangles.is_empty();
+    let is_used = used_cells(mesh.cells.len(), &given);
+    Ok(Changed {
+        history: cut.history.then(&made.history),
+        report: Report {
+            cuts: cut.report,
+            is_boundary,
+            left_out: if is_boundary { 0 } else { is_used.iter().filter(|is_used| !**is_used).count() },
+            ..made.report
+        },
+        mesh: made.mesh,
+    })
+}
+
+/// Makes the surface of a mesh even, without cutting anything off.
+fn even(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<Changed<Report>> {
     let own = Surface::of(mesh);
     let is_boundary = own.triangles.is_empty();
     let given = if is_boundary { Surface::boundary_of(mesh) } else { own };
@@ -52,6 +83,7 @@ pub fn even_surface(mesh: &Mesh, options: &Options, threads: &Threads) -> Result
     history.transfer_on(mesh, &mut made, &Rules::default(), threads)?;
     let is_used = used_cells(mesh.cells.len(), &given);
     let report = Report {
+        cuts: Vec::new(),
         before,
         after,
         allowed: adapted.allowed,

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::clip::Clipped;
 use super::measured::Measured;
 use crate::base::reasons;
 use crate::preflight::Repair;
@@ -10,7 +11,9 @@ use crate::preflight::Repair;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Report {
-    /// The given surface, double points merged.
+    /// What was cut off first.
+    pub cuts: Vec<Clipped>,
+    /// The given surface, as cut, double points merged.
     pub before: Measured,
     /// The new surface.
     pub after: Measured,

@@ -3,6 +3,7 @@
 use super::super::adapt::Adapting;
 use super::super::sizes::{Sizes, sizes_by};
 use super::super::words::EdgeLength;
+use super::clip::Cut;
 use super::options::Options;
 use crate::base::Result;
 use crate::mesh::Mesh;
@@ -24,6 +25,10 @@ words! {
         growth: Option<f64> = None,
         /// An array of the surface's points or cells that has the sizes there, up to `size`.
         size_array: Option<String> = None,
+        /// Ends that are cut off first. Six numbers x, y, z, nx, ny, nz: the part in front of the plane
+        /// through the place x, y, z with this normal, along the line nearest to the place; the rest of the
+        /// vessel stays where it meets the plane again. Four numbers x, y, z, r: all inside a sphere.
+        clip: Vec<Vec<f64>> = Vec::new(),
         /// The surface is repaired first: edges are divided at vertices on them (T-junctions), faces that lie
         /// on each other are divided alike, duplicates are dropped, triangles are turned to face one side,
         /// outward where the surface is closed. Holes stay, unless `hole_edges` is given.
@@ -57,6 +62,7 @@ impl SurfaceWords {
             false => Repairs::default(),
         };
         Ok(Options {
+            cuts: self.clip.iter().map(|numbers| Cut::of_numbers(numbers)).collect::<Result<_>>()?,
             sizes: Sizes::of(largest, false, self.growth, at_points),
             adapting: Adapting { distance: self.distance, feature_angle: self.feature_angle },
             repairs,

@@ -2,18 +2,24 @@
 //!
 //! A cap consists of rings of vertices that shrink towards the middle of its rim, each vertex a fixed mean of
 //! vertices of the rim: so caps follow a rim that moves or bends. A cap is as flat as its rim. Rims that were
-//! cut by hand are not flat; they can be moved onto their planes.
+//! cut by hand are not flat; they can be moved onto their planes. Ends can be named by their size, and
+//! continued by straight tubes: `extension`.
 
+mod extension;
+
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use serde::Serialize;
 
-use crate::base::{Error, Point, Result, VertexId};
+use crate::base::{Error, Point, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::triangle::area_vector;
-use crate::geometry::vector::{add, distance, dot, scale, sub, unit};
+use crate::geometry::vector::{add, distance, dot, norm, scale, sub, unit};
 use crate::mesh::disc::{disc_of_rings, n_rings};
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh, Surface, unused_name};
-use crate::preflight::open_rims;
+use crate::preflight::{crossings, open_rims};
+use extension::{Extension, RimFrame};
 
 /// The caps of a surface, made from one frame and applied to any.
 #[derive(Clone, Debug)]
@@ -46,6 +52,7 @@ struct Rim {
     /// The number of rings inside it.
     n_rings: usize,
     label: i32,
+    extension: Option<Extension>,
 }
 
 impl Caps {
@@ -72,7 +79,7 @@ impl Caps {
                 unused_name(&format!("cap_{}", label - first + 1), |name| names.values().any(|n| n == name));
             names.insert(label, name);
             let n_rings = n_rings(points, &vertices);
-            made.push(Rim { vertices, n_rings, label });
+            made.push(Rim { vertices, n_rings, label, extension: None });
         }
         Ok(Self { n_points: surface.points.len(), triangles, patches, names, rims: made })
     }
@@ -85,6 +92,83 @@ impl Caps {
     /// Whether there are no rims; always false.
     pub fn is_empty(&self) -> bool {
         self.rims.is_empty()
+    }
+
+    /// Names the caps by size: `inlet` the one whose middle is nearest to a place or, without one, that with
+    /// the largest area; the others `outlet_1`, `outlet_2`, ..., by falling area, or `outlet` if there is
+    /// only one. A name that a patch of the surface has gets a number.
+    ///
+    /// # Errors
+    /// When the frame has a different number of points, or a rim encloses no area.
+    pub fn name_ends(&mut self, frame: &Mesh, inlet: Option<Point>) -> Result<()> {
+        self.check(frame)?;
+        let mut ends = Vec::new();
+        for (k, rim) in self.rims.iter().enumerate() {
+            let (middle, area) = self.area_of(rim, &frame.points)?;
+            ends.push((inlet.map_or(0.0, |place| distance(place, middle)), -norm(area), k));
+        }
+        // Without a place all distances are equal, and the largest end comes first.
+        let first = ends.iter().copied().min_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+        let Some((_, _, first)) = first else { return Ok(()) };
+        let mut others: Vec<_> = ends.iter().filter(|end| end.2 != first).map(|end| (end.1, end.2)).collect();
+        others.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let labels: Vec<i32> = self.rims.iter().map(|rim| rim.label).collect();
+        labels.iter().for_each(|label| drop(self.names.remove(label)));
+        let mut name = |k: usize, name: &str| {
+            let free = unused_name(name, |name| self.names.values().any(|known| known == name));
+            self.names.insert(labels[k], free);
+        };
+        name(first, "inlet");
+        for (i, (_, k)) in others.iter().enumerate() {
+            name(*k, &if others.len() == 1 { "outlet".to_owned() } else { format!("outlet_{}", i + 1) });
+        }
+        Ok(())
+    }
+
+    /// Continues the vessel beyond an end, or beyond each without an extension of its own, by a straight tube
+    /// of a length in the unit of the surface. Its cross-section becomes a circle of the same area, and it
+    /// ends flat. Its triangles belong to the patches at the rim.
+    ///
+    /// # Errors
+    /// When no end has this name, the length is not above 0, or too many rows of triangles are needed.
+    pub fn extend(&mut self, frame: &Mesh, end: Option<&str>, length: f64) -> Result<()> {
+        self.check(frame)?;
+        let beside = self.patches_at_rims();
+        let is_named =
+            |rim: &Rim| end.is_none_or(|end| self.names.get(&rim.label).is_some_and(|name| name == end));
+        let chosen: Vec<usize> = (0..self.rims.len()).filter(|&k| is_named(&self.rims[k])).collect();
+        if chosen.is_empty() {
+            let known = self.rims.iter().filter_map(|rim| self.names.get(&rim.label).cloned());
+            return Err(Error::options(format!("the surface has no open end `{}`", end.unwrap_or_default()))
+                .remedy(format!("it has {}", known.collect::<Vec<_>>().join(", "))));
+        }
+        for k in chosen {
+            let rim = &mut self.rims[k];
+            if end.is_none() && rim.extension.is_some() {
+                continue;
+            }
+            let corners: Vec<Point> = rim.vertices.iter().map(|v| frame.points[v.index()]).collect();
+            let n = rim.vertices.len();
+            let edge = |i: usize| sorted_ids([rim.vertices[i], rim.vertices[(i + 1) % n]]);
+            let patches = (0..n).map(|i| beside.get(&edge(i)).copied().unwrap_or(0)).collect();
+            rim.extension = Some(Extension::new(&corners, patches, length)?);
+        }
+        Ok(())
+    }
+
+    /// The patch of the triangle at each edge of a rim.
+    fn patches_at_rims(&self) -> BTreeMap<[VertexId; 2], i32> {
+        let mut at: BTreeMap<[VertexId; 2], i32> = BTreeMap::new();
+        for rim in &self.rims {
+            let n = rim.vertices.len();
+            at.extend((0..n).map(|i| (sorted_ids([rim.vertices[i], rim.vertices[(i + 1) % n]]), 0)));
+        }
+        for (&[a, b, c], &patch) in self.triangles.iter().zip(&self.patches) {
+            for edge in [[a, b], [b, c], [c, a]] {
+                at.entry(sorted_ids(edge)).and_modify(|known| *known = patch);
+            }
+        }
+        at
     }
 
     /// Returns how flat the rims of a frame are, in the order of the caps.
@@ -144,14 +228,8 @@ impl Caps {
     fn plane_of(&self, rim: &Rim, points: &[Point]) -> Result<(RimPlane, Point, Point)> {
         let patch = self.names.get(&rim.label).cloned().unwrap_or_default();
         let corners: Vec<Point> = rim.vertices.iter().map(|v| points[v.index()]).collect();
-        let middle = scale(corners.iter().copied().fold([0.0; 3], add), 1.0 / corners.len() as f64);
-        let next = corners.iter().cycle().skip(1);
-        let area =
-            corners.iter().zip(next).fold([0.0; 3], |sum, (&p, &q)| add(sum, area_vector([middle, p, q])));
-        let Some(normal) = unit(area) else {
-            return Err(Error::input("the rim encloses no area, so it has no plane")
-                .at(format!("{patch}, point {}", rim.vertices[0])));
-        };
+        let (middle, area) = self.area_of(rim, points)?;
+        let normal = unit(area).unwrap_or_default();
         let off = |p: &Point| dot(normal, sub(*p, middle)).abs();
         let plane = RimPlane {
             patch,
@@ -161,18 +239,50 @@ impl Caps {
         Ok((plane, middle, normal))
     }
 
+    /// Returns the middle of a rim and its area vector, which is not zero.
+    fn area_of(&self, rim: &Rim, points: &[Point]) -> Result<(Point, Point)> {
+        let corners: Vec<Point> = rim.vertices.iter().map(|v| points[v.index()]).collect();
+        let middle = scale(corners.iter().copied().fold([0.0; 3], add), 1.0 / corners.len() as f64);
+        let next = corners.iter().cycle().skip(1);
+        let area =
+            corners.iter().zip(next).fold([0.0; 3], |sum, (&p, &q)| add(sum, area_vector([middle, p, q])));
+        match unit(area) {
+            Some(_) => Ok((middle, area)),
+            None => Err(Error::input("the rim encloses no area, so it has no plane").at(format!(
+                "{}, point {}",
+                self.names.get(&rim.label).cloned().unwrap_or_default(),
+                rim.vertices[0]
+            ))),
+        }
+    }
+
     /// Returns a frame of the surface, closed. Its own points come first; the numbers of points and triangles
     /// are the same for every frame.
     ///
     /// # Errors
-    /// When the frame has a different number of points.
+    /// When the frame has a different number of points, or an extension meets the surface.
     pub fn close(&self, frame: &Mesh) -> Result<Mesh> {
         self.check(frame)?;
         let (mut points, mut triangles, mut patches) =
             (frame.points.clone(), self.triangles.clone(), self.patches.clone());
+        let mut extended = Vec::new();
         for rim in &self.rims {
-            triangles.extend(disc_of_rings(&mut points, &rim.vertices, rim.n_rings));
+            let mut end = rim.vertices.clone();
+            if let Some(extension) = &rim.extension {
+                let (middle, area) = self.area_of(rim, &frame.points)?;
+                let at = RimFrame { middle, normal: unit(area).unwrap_or_default() };
+                let (rows, of_rows, last) = extension.build(&mut points, &rim.vertices, at)?;
+                let first = triangles.len();
+                triangles.extend(rows);
+                patches.extend(of_rows);
+                extended.push((first..triangles.len(), rim));
+                end = last;
+            }
+            triangles.extend(disc_of_rings(&mut points, &end, rim.n_rings));
             patches.resize(triangles.len(), rim.label);
+        }
+        for (range, rim) in extended {
+            self.check_extension(&points, &triangles, range, rim)?;
         }
         let cells = Cells::uniform(CellKind::TRIANGLE, triangles.into_flattened())?;
         Ok(Mesh {
@@ -180,6 +290,29 @@ impl Caps {
             label_names: LabelNames { patches: self.names.clone(), ..LabelNames::default() },
             ..Mesh::new(points, cells)
         })
+    }
+
+    /// # Errors
+    /// When a triangle of an extension meets another one of the closed surface.
+    fn check_extension(
+        &self,
+        points: &[Point],
+        triangles: &[[VertexId; 3]],
+        range: Range<usize>,
+        rim: &Rim,
+    ) -> Result<()> {
+        let met = crossings(points, &triangles[range.clone()], triangles, &Threads::single());
+        let is_other = |&[i, j]: &[u32; 2]| range.start + i as usize != j as usize;
+        match met.into_iter().find(is_other) {
+            None => Ok(()),
+            Some([i, _]) => {
+                let [a, ..] = triangles[range.start + i as usize];
+                let name = self.names.get(&rim.label).cloned().unwrap_or_default();
+                Err(Error::input(format!("the extension of `{name}` meets the surface"))
+                    .at(format!("{:?}", points[a.index()]))
+                    .remedy("give a shorter one, or cut the vessel where there is space beyond"))
+            }
+        }
     }
 }
 
@@ -205,118 +338,4 @@ fn length(rim: &[VertexId], points: &[Point]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::base::Threads;
-    use crate::mesh::shapes::Aneurysm;
-    use crate::preflight::{Role, preflight};
-
-    /// An aneurysm without its inlet and outlet.
-    fn open() -> Mesh {
-        let whole = Aneurysm::default().mesh().unwrap();
-        let surface = Surface::of(&whole);
-        let wall = whole.find_patch("wall").unwrap();
-        let kept = surface.triangles.iter().zip(&surface.patches).filter(|(_, p)| **p == wall);
-        let triangles: Vec<VertexId> = kept.flat_map(|(t, _)| *t).collect();
-        Mesh::new(whole.points, Cells::uniform(CellKind::TRIANGLE, triangles).unwrap())
-    }
-
-    #[test]
-    fn a_vessel_gets_two_caps_and_encloses_what_it_did() {
-        let open = open();
-        let caps = Caps::of(&open).unwrap();
-        assert_eq!(caps.len(), 2);
-        let closed = caps.close(&open).unwrap();
-        assert_eq!(closed.points[..open.points.len()], open.points);
-        let surface = Surface::of(&closed);
-        assert!(crate::mesh::check::is_closed(surface.triangles.iter().map(|t| t.as_slice())));
-        let whole = Surface::of(&Aneurysm::default().mesh().unwrap()).enclosed_volume();
-        // Rims are flat, so caps are.
-        assert!((surface.enclosed_volume() - whole).abs() < 1e-12 * whole);
-        assert_eq!(closed.label_names.patches.values().collect::<Vec<_>>(), ["wall", "cap_1", "cap_2"]);
-        assert!(
-            preflight(
-                &surface.points,
-                &surface.triangles,
-                &vec![0; surface.triangles.len()],
-                &[Role::Boundary],
-                &Threads::single()
-            )
-            .is_fit()
-        );
-    }
-
-    #[test]
-    fn caps_follow_a_rim_that_moves() {
-        let open = open();
-        let caps = Caps::of(&open).unwrap();
-        let mut moved = open.clone();
-        let map = |p: Point| [1.1 * p[0] + 0.2 * p[1] + 3.0, 0.9 * p[1], p[2] - 0.3 * p[0]];
-        moved.points.iter_mut().for_each(|p| *p = map(*p));
-        let [a, b] = [&open, &moved].map(|frame| caps.close(frame).unwrap());
-        assert_eq!(a.cells, b.cells);
-        for (p, q) in a.points.iter().zip(&b.points) {
-            assert!(distance(map(*p), *q) < 1e-13);
-        }
-        moved.points.pop();
-        assert!(caps.close(&moved).is_err());
-    }
-
-    #[test]
-    fn rims_are_flattened_and_nothing_else_is_touched() {
-        let mut open = open();
-        let caps = Caps::of(&open).unwrap();
-        let before = open.clone();
-        let flat_rims: Vec<RimPlane> = caps.planes(&open).unwrap();
-        assert!(flat_rims.iter().all(|rim| rim.deviation < 1e-12 * rim.radius));
-        // Every other vertex of a rim is off by 0.02 of the radius along the normal of its plane, the others
-        // by -0.02.
-        for (rim, plane) in caps.rims.iter().zip(&flat_rims) {
-            let (_, _, normal) = caps.plane_of(rim, &before.points).unwrap();
-            for (i, v) in rim.vertices.iter().enumerate() {
-                let by = if i % 2 == 0 { 0.02 } else { -0.02 } * plane.radius;
-                open.points[v.index()] = add(open.points[v.index()], scale(normal, by));
-            }
-        }
-        let (flat, planes) = caps.flatten(&open).unwrap();
-        assert_eq!(planes, caps.planes(&open).unwrap());
-        let is_on_rim = |v: usize| caps.rims.iter().any(|rim| rim.vertices.contains(&VertexId::new(v)));
-        for (v, (p, q)) in open.points.iter().zip(&flat.points).enumerate() {
-            assert!(is_on_rim(v) || p == q);
-        }
-        for (plane, was) in caps.planes(&flat).unwrap().iter().zip(&planes) {
-            assert!(plane.deviation < 1e-14 * plane.radius, "{plane:?}");
-            assert!((was.deviation / was.radius - 0.02).abs() < 2e-3, "{was:?}");
-        }
-    }
-
-    #[test]
-    fn a_rim_that_cannot_be_flattened_is_refused_with_its_place() {
-        // A tent without its floor: two of its four corners are so high that the walls would turn over.
-        let points =
-            vec![[1.0, 0.0, 3.0], [0.0, 1.0, -3.0], [-1.0, 0.0, 3.0], [0.0, -1.0, -3.0], [0.0, 0.0, 1.0]];
-        let walls = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]].map(|t| t.map(VertexId));
-        let cells = |walls: &[[VertexId; 3]]| {
-            Cells::uniform(CellKind::TRIANGLE, walls.as_flattened().to_vec()).unwrap()
-        };
-        let tent = Mesh::new(points, cells(&walls));
-        let caps = Caps::of(&tent).unwrap();
-        assert!((caps.planes(&tent).unwrap()[0].deviation - 3.0).abs() < 1e-15);
-        assert!(caps.flatten(&tent).is_ok());
-        let mut folded = tent.clone();
-        folded.points[4] = [0.9, 0.0, 2.0];
-        folded.points[0] = [0.5, 0.0, 3.0];
-        let error = caps.flatten(&folded).unwrap_err().to_string();
-        assert!(error.contains("point") && error.contains("turn over"), "{error}");
-    }
-
-    #[test]
-    fn what_has_no_rim_is_reported() {
-        let whole = Aneurysm::default().mesh().unwrap();
-        assert!(Caps::of(&whole).unwrap_err().to_string().contains("no open rim"));
-        // Two that share an edge and face opposite sides.
-        let two = [[0, 1, 2], [0, 1, 3]].map(|t| t.map(VertexId)).as_flattened().to_vec();
-        let torn = Mesh::new(vec![[0.0; 3]; 4], Cells::uniform(CellKind::TRIANGLE, two).unwrap());
-        assert!(Caps::of(&torn).unwrap_err().to_string().starts_with("point "));
-    }
-}
+mod tests;
