@@ -35,12 +35,12 @@ struct Reader {
 }
 
 fn read(input: &Input<'_>) -> Result<Mesh> {
-    let mut text = Text::with_comments(input.bytes, b'#');
+    let mut text = Text::with_comments(without_zeros(input), b'#');
     let mut reader = Reader::default();
     while let Some(statement) = text.word() {
         match statement {
             b"v" => reader.vertex(&mut text, input)?,
-            b"f" => reader.element(&mut text, face_kind)?,
+            b"f" => reader.face(&mut text, input)?,
             b"l" => reader.element(&mut text, line_kind)?,
             b"p" => reader.element(&mut text, point_kind)?,
             b"g" | b"o" => reader.group(&mut text),
@@ -56,6 +56,15 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
         }
     }
     reader.into_mesh()
+}
+
+/// The bytes of the file without zeros at its end, which some writers leave there.
+fn without_zeros<'a>(input: &Input<'a>) -> &'a [u8] {
+    let n = input.bytes.iter().rev().take_while(|byte| **byte == 0).count();
+    if n > 0 {
+        input.notes.add("zero bytes at the end are skipped");
+    }
+    &input.bytes[..input.bytes.len() - n]
 }
 
 /// Whether this is a statement of the format that is skipped here.
@@ -154,13 +163,37 @@ impl Reader {
         Ok(())
     }
 
+    /// A face; one of two vertices encloses nothing and is left out.
+    fn face(&mut self, text: &mut Text<'_>, input: &Input<'_>) -> Result<()> {
+        let vertices = self.vertices(text)?;
+        match vertices.len() {
+            2 => input.notes.add("faces of two vertices are left out"),
+            _ => self.push(vertices, text, face_kind)?,
+        }
+        Ok(())
+    }
+
     fn element(&mut self, text: &mut Text<'_>, kind: fn(usize) -> Option<CellKind>) -> Result<()> {
+        let vertices = self.vertices(text)?;
+        self.push(vertices, text, kind)
+    }
+
+    fn vertices(&mut self, text: &mut Text<'_>) -> Result<Vec<VertexId>> {
         let mut vertices = Vec::with_capacity(4);
         while let Some(word) = next_word(text) {
             let id = word.split(|&b| b == b'/').next().unwrap_or_default();
             let id = parse_int(id).ok_or_else(|| text.unexpected("vertex", "a whole number", word))?;
             vertices.push(self.vertex_id(id, text)?);
         }
+        Ok(vertices)
+    }
+
+    fn push(
+        &mut self,
+        vertices: Vec<VertexId>,
+        text: &Text<'_>,
+        kind: fn(usize) -> Option<CellKind>,
+    ) -> Result<()> {
         let Some(kind) = kind(vertices.len()) else {
             return Err(text
                 .error(format!("too few vertices for this element: {}", vertices.len()))

@@ -710,7 +710,7 @@ fn damaged_files_are_reported() {
         (".obj", "# nothing\n".into(), "the file contains no vertices"),
         (".obj", "v 0 0\n".into(), "line 1: expected three coordinates of a vertex"),
         (".obj", "v 0 0 zero\n".into(), "line 1: coordinate: expected a number, found `zero`"),
-        (".obj", "v 0 0 0\nf 1 1\n".into(), "line 2: too few vertices for this element: 2"),
+        (".obj", "v 0 0 0\nf 1\n".into(), "line 2: too few vertices for this element: 1"),
         (
             ".obj",
             "v 0 0 0\nf 1 1 0\n".into(),
