@@ -44,6 +44,9 @@ pub struct Options {
     pub feature_angle: f64,
     /// How much sizes may grow per unit of distance.
     pub growth: f64,
+    /// For each point of the surface, whether it stays; edges between two points that stay are kept. Empty if
+    /// none has to.
+    pub held: Vec<bool>,
 }
 
 impl Options {
@@ -69,6 +72,10 @@ impl Options {
         }
         if self.sizes.len() != 1 && self.sizes.len() != n_points {
             return Err(Error::options(format!("{} sizes for {n_points} points", self.sizes.len())));
+        }
+        if !self.held.is_empty() && self.held.len() != n_points {
+            let what = format!("{} marks of points that stay for {n_points} points", self.held.len());
+            return Err(Error::options(what));
         }
         Ok(())
     }
@@ -125,6 +132,7 @@ pub fn adapt(
     let sheet = Sheet::new(points.to_vec(), triangles.to_vec(), labels.to_vec());
     let features = Features::of(&sheet, options.feature_angle, original.distance);
     let mut work = Work::new(sheet, features, original, at_points.clone(), max_triangles, threads);
+    work.hold(&options.held);
     let is_uniform = options.sizes.len() == 1;
     let sizes = |work: &Work<'_>, label: u32, p: Point| match is_uniform {
         true => options.sizes[0],

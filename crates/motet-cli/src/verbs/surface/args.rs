@@ -6,8 +6,8 @@ use clap::Args;
 use motet::meshing::even::SurfaceWords;
 use motet::meshing::tubes::{BraidWords, CoilWords, TubeWords};
 
-use crate::adapting::AdaptArgs;
 use super::shape;
+use crate::adapting::AdaptArgs;
 use crate::help;
 use crate::words::not_negative;
 use crate::writing::WritingArgs;
@@ -18,7 +18,9 @@ use crate::writing::WritingArgs;
 /// borders of patches, edges of more than two triangles and creases stay. Triangles that cross none before
 /// cross none afterwards. Arrays and patches are carried.
 #[derive(Debug, Args)]
-#[command(override_usage = "motet surface IN -o OUT [OPTIONS]\n       motet surface LINES -o OUT --tubes R [OPTIONS]")]
+#[command(
+    override_usage = "motet surface IN -o OUT [OPTIONS]\n       motet surface LINES -o OUT --tubes R [OPTIONS]"
+)]
 #[command(after_help = "\
 IN is a surface of triangles, quads or polygons; of a volume mesh, its surface cells with their \
 patches or, where it has none, its boundary. Points at the same place are merged and triangles \

@@ -7,12 +7,12 @@ mod shape;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use motet::Mesh;
 use motet::base::Threads;
 use motet::io;
 use motet::mesh::history::Changed;
 use motet::meshing::even::even_surface;
 use motet::meshing::tubes::even_tubes;
-use motet::Mesh;
 
 pub(crate) use args::SurfaceArgs;
 
@@ -58,7 +58,8 @@ pub(crate) fn run(args: &SurfaceArgs, common: &Common, console: &Console) -> mot
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
     let outcome = Outcome::of(report.not_reached());
-    Report::new(args, &report, wires.as_ref(), [seconds_read, write, begin.elapsed().as_secs_f64()]).print(&outcome, console);
+    Report::new(args, &report, wires.as_ref(), [seconds_read, write, begin.elapsed().as_secs_f64()])
+        .print(&outcome, console);
     Ok(outcome)
 }
 

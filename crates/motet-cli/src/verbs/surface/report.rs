@@ -94,7 +94,8 @@ impl<'a> Report<'a> {
 
 fn print_wires(wires: &tubes::Report, console: &Console) {
     let [least, largest] = wires.radii;
-    let radius = if least == largest { short(least) } else { format!("{} to {}", short(least), short(largest)) };
+    let radius =
+        if least == largest { short(least) } else { format!("{} to {}", short(least), short(largest)) };
     console.print(format_args!(
         "{} of {}, {} long, of radius {radius}, as tubes of {} sides",
         counted(wires.chains, "wire"),

@@ -7,7 +7,8 @@ use serde_json::{Map, Value};
 /// The help of an option that takes a shape: what it is, and its parameters with their defaults.
 pub(super) fn help<W: Words>(what: &str) -> String {
     let words = W::words();
-    let of = words.iter().map(|word| format!("{}={} ({})", word.name, word.default, brief(&word.effect_text())));
+    let of =
+        words.iter().map(|word| format!("{}={} ({})", word.name, word.default, brief(&word.effect_text())));
     format!("{what}: {}", of.collect::<Vec<_>>().join(", "))
 }
 

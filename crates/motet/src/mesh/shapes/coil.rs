@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{LARGEST, add};
-use crate::mesh::{CellKind, Cells, Field, Mesh};
 use crate::mesh::shapes::{check_count, wire};
+use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 /// A helix around a line along z. All lengths are in one unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -185,7 +185,8 @@ fn unit_ball(parts: usize) -> (Vec<Point>, Vec<[usize; 3]>) {
     }
     let are_joined = |i: usize, j: usize| i != j && distance(corners[i], corners[j]) < 2.1;
     let (mut points, mut triangles, mut ids) = (Vec::new(), Vec::new(), HashMap::new());
-    for (a, b, c) in (0..12).flat_map(|a| (a + 1..12).flat_map(move |b| (b + 1..12).map(move |c| (a, b, c)))) {
+    for (a, b, c) in (0..12).flat_map(|a| (a + 1..12).flat_map(move |b| (b + 1..12).map(move |c| (a, b, c))))
+    {
         if !(are_joined(a, b) && are_joined(b, c) && are_joined(c, a)) {
             continue;
         }

@@ -61,6 +61,7 @@ impl SurfaceWords {
             adapting: Adapting { distance: self.distance, feature_angle: self.feature_angle },
             repairs,
             smooth: self.smooth,
+            held: Vec::new(),
         })
     }
 }

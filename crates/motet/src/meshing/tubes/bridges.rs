@@ -63,7 +63,8 @@ impl Bridges {
         let reach = largest + options.gap(largest).max(largest);
         let boxes: Vec<_> = pieces.iter().map(|piece| expanded(bounding_box(piece.ends), reach)).collect();
         let tree = BoxTree::new(&boxes);
-        let lengths: Vec<f64> = wires.iter().map(|w| (0..w.n_segments()).map(|s| w.length(s)).sum()).collect();
+        let lengths: Vec<f64> =
+            wires.iter().map(|w| (0..w.n_segments()).map(|s| w.length(s)).sum()).collect();
         let found: Vec<Vec<Contact>> = threads.map(wires.len(), |w| {
             let mut found = Vec::new();
             contacts(w, wires, &pieces, &tree, &lengths, &mut found);
@@ -73,16 +74,23 @@ impl Bridges {
         let mut by_pair: BTreeMap<[u32; 2], Vec<Contact>> = BTreeMap::new();
         for contact in found.into_iter().flatten() {
             let allowed = options.gap(contact.radius / RADIUS);
-            if contact.gap.abs() <= allowed && allowed > 0.0 {
+            if contact.gap <= allowed {
                 by_pair.entry(contact.wires).or_default().push(contact);
-            } else if contact.gap > 0.0 {
+            } else if contact.gap < contact.radius / RADIUS {
                 bridges.least_gap = Some(bridges.least_gap.map_or(contact.gap, |g| g.min(contact.gap)));
             }
         }
         for contacts in by_pair.values() {
             let is_next =
                 |a: &Contact, b: &Contact| b.step == a.step + 1 && distance(a.middle, b.middle) < a.radius;
-            contacts.chunk_by(is_next).for_each(|run| bridges.add(run, around));
+            for run in contacts.chunk_by(is_next) {
+                let least = run.iter().map(|contact| contact.gap).fold(f64::INFINITY, f64::min);
+                let allowed = options.gap(run[0].radius / RADIUS);
+                // Wires that overlap by more are one body already.
+                if allowed > 0.0 && least >= -allowed {
+                    bridges.add(run, around);
+                }
+            }
         }
         bridges
     }
@@ -91,7 +99,8 @@ impl Bridges {
     fn add(&mut self, run: &[Contact], around: usize) {
         self.n += 1;
         let length: f64 = run.windows(2).map(|pair| distance(pair[0].middle, pair[1].middle)).sum();
-        let nearest = run.iter().min_by(|a, b| a.gap.abs().total_cmp(&b.gap.abs())).expect("runs are not empty");
+        let nearest =
+            run.iter().min_by(|a, b| a.gap.abs().total_cmp(&b.gap.abs())).expect("runs are not empty");
         if length <= SHORT * nearest.radius {
             self.balls.push(Ball { centre: nearest.middle, radius: nearest.radius });
             return;
@@ -158,7 +167,12 @@ fn contacts(
                 let t = segment::closest(other.ends, place);
                 let at = add(other.ends[0], scale(sub(other.ends[1], other.ends[0]), t));
                 let of_other = (1.0 - t) * other.radii[0] + t * other.radii[1];
-                let way = way(wires, lengths, [number, other.wire as usize], [along, other.begin + t * other.length]);
+                let way = way(
+                    wires,
+                    lengths,
+                    [number, other.wire as usize],
+                    [along, other.begin + t * other.length],
+                );
                 if way < APART * (radius + of_other) {
                     continue;
                 }

@@ -83,8 +83,10 @@ fn fault(mesh: &Mesh, ends: [VertexId; 2], radii: [f64; 2], radius: &Radius) -> 
     let [a, b] = ends.map(|v| mesh.points[v.index()]);
     if let Some(k) = [a, b].into_iter().position(|p| !in_range(p)) {
         let v = ends[k];
-        let what =
-            format!("a line goes to point {v}, whose coordinates {:?} are not finite or too large", [a, b][k]);
+        let what = format!(
+            "a line goes to point {v}, whose coordinates {:?} are not finite or too large",
+            [a, b][k]
+        );
         return Some(Error::input(what).remedy(remedy));
     }
     if let Some(k) = radii.into_iter().position(|r| !(r > 0.0 && r <= LARGEST)) {

@@ -22,6 +22,8 @@ pub(super) struct Divided {
     pub(super) points: Vec<Point>,
     /// The pieces, each with the triangle of the soup that it is or is part of.
     pub(super) pieces: Vec<([VertexId; 3], u32)>,
+    /// Whether each triangle of the soup belongs to such a cluster.
+    pub(super) is_cut: Vec<bool>,
     /// The number of clusters of triangles that met.
     pub(super) clusters: usize,
     /// How many of them were divided only after their points had been shifted.
@@ -44,8 +46,7 @@ struct Cluster {
 pub(super) fn divide(soup: &Soup, near: f64, threads: &Threads) -> Result<Divided, Point> {
     let clusters = clusters(soup, threads);
     let cuts = threads.map(clusters.len(), |k| clusters[k].cut(soup, near));
-    let mut divided =
-        Divided { points: soup.points.clone(), clusters: clusters.len(), ..Divided::default() };
+    let mut divided = Divided { points: soup.points.clone(), clusters: clusters.len(), ..Divided::default() };
     let mut kept: Vec<VertexId> = (0..soup.points.len()).map(VertexId::new).collect();
     let mut is_cut = vec![false; soup.triangles.len()];
     for (cluster, cut) in clusters.iter().zip(cuts) {
@@ -68,7 +69,8 @@ pub(super) fn divide(soup: &Soup, near: f64, threads: &Threads) -> Result<Divide
             }
         }
         cluster.triangles.iter().for_each(|&t| is_cut[t as usize] = true);
-        let pieces = cut.pieces.iter().map(|(t, origin)| (t.map(global), cluster.triangles[*origin as usize]));
+        let pieces =
+            cut.pieces.iter().map(|(t, origin)| (t.map(global), cluster.triangles[*origin as usize]));
         divided.pieces.extend(pieces);
     }
     for (t, triangle) in (0u32..).zip(&soup.triangles).filter(|(t, _)| !is_cut[*t as usize]) {
@@ -77,6 +79,7 @@ pub(super) fn divide(soup: &Soup, near: f64, threads: &Threads) -> Result<Divide
             divided.pieces.push(([a, b, c], t));
         }
     }
+    divided.is_cut = is_cut;
     Ok(divided)
 }
 

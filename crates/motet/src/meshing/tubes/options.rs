@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use crate::base::{Error, Result};
 use crate::geometry::vector::LARGEST;
+use crate::mesh::shapes::corner_radius;
 
 /// The fewest sides of a tube, if the caller does not choose.
 const FEWEST_SIDES: usize = 8;
@@ -12,7 +13,7 @@ const FEWEST_SIDES: usize = 8;
 pub const MOST_SIDES: usize = 360;
 
 /// The allowed distance of surfaces from round tubes, over the smallest radius, if the caller does not choose.
-const DISTANCE_OVER_RADIUS: f64 = 0.05;
+const DISTANCE_OVER_RADIUS: f64 = 1.0 / 15.0;
 
 /// Wires nearer than this times the smaller radius are joined, if the caller does not choose.
 const JOIN_OVER_RADIUS: f64 = 0.1;
@@ -40,7 +41,7 @@ pub struct Options {
     pub join: Option<f64>,
     /// The length of edges that the surface gets later; `None`: not known. Default: `None`.
     pub size: Option<f64>,
-    /// How far sections may be from round ones; `None`: a twentieth of the smallest radius. Default: `None`.
+    /// How far sections may be from round ones; `None`: a fifteenth of the smallest radius. Default: `None`.
     pub distance: Option<f64>,
     /// Whether segments with a point or a radius that is not finite, and those without length, are left out,
     /// and points at the same place joined. Default: no; such segments are errors.
@@ -82,10 +83,9 @@ impl Options {
     /// The number of sides of wires with these smallest and largest radii.
     pub(super) fn n_sides(&self, [smallest, largest]: [f64; 2]) -> usize {
         let by_size = self.size.map_or(0.0, |size| 2.0 * PI * smallest / size);
-        let cosine = (1.0 - self.allowed(smallest) / largest).max(0.0);
-        let by_distance = PI / cosine.acos();
-        let n = by_size.max(by_distance).ceil().min(MOST_SIDES as f64) as usize;
-        self.sides.unwrap_or(n.max(FEWEST_SIDES))
+        let n = by_size.ceil().clamp(FEWEST_SIDES as f64, MOST_SIDES as f64) as usize;
+        let is_far = |n: &usize| (corner_radius(*n) - 1.0) * largest > self.allowed(smallest);
+        self.sides.unwrap_or_else(|| (n..MOST_SIDES).find(|n| !is_far(n)).unwrap_or(MOST_SIDES))
     }
 
     /// The gap at which wires with this smaller radius are joined.

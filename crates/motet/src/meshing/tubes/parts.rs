@@ -62,10 +62,7 @@ impl Parts {
         let mut parts = Self::default();
         for (v, others) in neighbours.iter().filter(|(_, others)| others.len() > 2) {
             parts.branches += usize::from(!others.is_empty());
-            parts.balls.push(Ball {
-                centre: lines.points[v.index()],
-                radius: BALL_OVER_RADIUS * largest[v],
-            });
+            parts.balls.push(Ball { centre: lines.points[v.index()], radius: BALL_OVER_RADIUS * largest[v] });
         }
         let mean = |v: VertexId| radii[&v].0 / radii[&v].1;
         let corner = corner_radius(around);
@@ -87,8 +84,7 @@ impl Parts {
             };
             let cuts = sharp_bends(&wire, corner);
             parts.sharp_bends += cuts.len();
-            let ball =
-                |&i: &usize| Ball { centre: wire.points[i], radius: BALL_OVER_RADIUS * wire.radii[i] };
+            let ball = |&i: &usize| Ball { centre: wire.points[i], radius: BALL_OVER_RADIUS * wire.radii[i] };
             parts.balls.extend(cuts.iter().map(ball));
             parts.wires.extend(divided(&wire, &cuts));
             parts.chains.push(wire);

@@ -11,8 +11,8 @@ use super::parts::{Ball, Parts};
 use super::report::{EvenReport, EvenTubes, Report, Tubes};
 use super::union::{Failure, United, branching_edges, pinched_vertices, union};
 use crate::base::{DisjointSets, Error, Result, Threads, splitmix64};
-use crate::mesh::shapes::{Soup, Wire, add_ball, check_count};
 use crate::mesh::history::Changed;
+use crate::mesh::shapes::{Soup, Wire, add_ball, check_count};
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh, Surface};
 
 /// How often parts are turned otherwise where uniting them fails.
@@ -22,7 +22,10 @@ const ATTEMPTS: usize = 6;
 const NEAR_OVER_RADIUS: [f64; 3] = [1e-6, 1e-8, 1e-4];
 
 /// Rings are at most this many sides apart.
-const SPACING: f64 = 1.0;
+const SPACING: f64 = 1.25;
+
+/// Edges are this many sides long where the surface is made even.
+const SIZE_OVER_SIDE: f64 = 1.2;
 
 /// Edges of balls are divided so that there are about as many triangles around them as a tube has sides.
 const EDGES_AROUND_BALL: usize = 5;
@@ -168,5 +171,6 @@ fn made(united: United, report: Report, allowed: f64) -> Result<Tubes> {
         ..Mesh::new(united.points, cells)
     };
     let volume = Surface::of(&mesh).enclosed_volume();
-    Ok(Tubes { mesh, report: Report { volume, ..report }, sizes: united.sizes, allowed })
+    let sizes = united.sizes.iter().map(|side| SIZE_OVER_SIDE * side).collect();
+    Ok(Tubes { mesh, report: Report { volume, ..report }, sizes, is_far: united.is_far, allowed })
 }

@@ -13,8 +13,11 @@ pub struct Tubes {
     pub mesh: Mesh,
     /// What became of the wires.
     pub report: Report,
-    /// The length of the sides of the tubes at each point.
+    /// The length of edges at each point: that of the sides of the tubes, and a little more, so that the
+    /// triangles between rings need no division.
     pub sizes: Vec<f64>,
+    /// Whether each point is so far from where tubes met that its triangles are even as they are.
+    pub is_far: Vec<bool>,
     /// How far the surface may stray when it is made even.
     pub allowed: f64,
 }
@@ -100,6 +103,7 @@ impl Tubes {
                 Some(Sizes::Graded(grading)) => grading.growth,
                 _ => Grading::default().growth,
             };
+            options.held.clone_from(&self.is_far);
             options.sizes =
                 Some(Sizes::Graded(Grading { at_points: Some(self.sizes.clone()), growth, largest: None }));
         }

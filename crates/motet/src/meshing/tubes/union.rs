@@ -6,10 +6,13 @@ use super::super::compact::{compact, used_vertices};
 use super::clusters::divide;
 use crate::base::{DisjointSets, Point, Threads, VertexId, same_orientation, sorted_ids};
 use crate::geometry::triangle::{area, centroid, longest_side};
-use crate::mesh::shapes::Soup;
 use crate::mesh::open_edges;
+use crate::mesh::shapes::Soup;
 use crate::preflight::{own_crossings, renamed};
 use crate::spatial::{WindingNumber, winding_of_triangle};
+
+/// So many rings of triangles beside the place where parts met are made even with it.
+const RINGS: usize = 2;
 
 /// Why parts were not united.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +30,8 @@ pub(super) struct United {
     pub(super) triangles: Vec<[VertexId; 3]>,
     /// The length of the sides of the parts at each point.
     pub(super) sizes: Vec<f64>,
+    /// Whether each point is so far from where parts met that its triangles are as even as they were made.
+    pub(super) is_far: Vec<bool>,
     /// The number of places where parts met.
     pub(super) clusters: usize,
     /// How many of these could be divided only after points had been shifted by a tiny length.
@@ -58,12 +63,28 @@ pub(super) fn union(soup: &Soup, near: f64, threads: &Threads) -> Result<United,
     let (points, old_to_new) = compact(&cut.points, &is_used);
     let triangles = renamed(&kept, &old_to_new);
     let mut sizes = vec![f64::INFINITY; points.len()];
-    for (t, origin) in triangles.iter().zip(origins) {
+    for (t, &origin) in triangles.iter().zip(&origins) {
         for v in t {
             sizes[v.index()] = sizes[v.index()].min(soup.sizes[origin as usize]);
         }
     }
-    Ok(United { points, triangles, sizes, shifted: cut.shifted, clusters: cut.clusters })
+    let is_near: Vec<bool> = origins.iter().map(|&t| cut.is_cut[t as usize]).collect();
+    let is_far = far(points.len(), &triangles, &is_near);
+    Ok(United { points, triangles, sizes, is_far, shifted: cut.shifted, clusters: cut.clusters })
+}
+
+/// The points that are more than [`RINGS`] edges away from triangles that are near the place where parts met.
+fn far(n_points: usize, triangles: &[[VertexId; 3]], is_near: &[bool]) -> Vec<bool> {
+    let mut is_far = vec![true; n_points];
+    triangles.iter().zip(is_near).filter(|of| *of.1).for_each(|(t, _)| {
+        t.iter().for_each(|v| is_far[v.index()] = false);
+    });
+    for _ in 0..RINGS {
+        let beside = |t: &&[VertexId; 3]| t.iter().any(|v| !is_far[v.index()]);
+        let ring: Vec<VertexId> = triangles.iter().filter(beside).flatten().copied().collect();
+        ring.into_iter().for_each(|v| is_far[v.index()] = false);
+    }
+    is_far
 }
 
 /// Pieces without those that have the same vertices as another: of those that face one side one stays, of two
