@@ -82,3 +82,28 @@ def test_data_sets_of_pyvista_have_it_as_a_method():
     even = tube.motet.surface(size=0.3, distance=0.02)
     assert even.motet.complete and even.motet.report.after.rims == 2
     assert "Give a surface even triangles" in type(even.motet).surface.__doc__
+
+
+def test_wires_become_one_closed_surface():
+    braid = shapes.braid(0.6, length=1.0, wires=4, pitch=3.0, wire_radius=0.05)
+    made = motet.surface(braid, tubes="radius")
+    wires = made.report["wires"]
+    assert made.history is None and made.complete
+    assert made.report["after"]["crossings"] == made.report["after"]["open_edges"] == 0
+    assert (wires["chains"], wires["branching_edges"], wires["bodies"]) == (4, 0, 1)
+    assert abs(wires["volume"] / wires["wire_volume"] - 1) < 0.1
+    same = motet.surface(braid, tubes=0.05)
+    assert np.array_equal(same.mesh.points, made.mesh.points)
+
+
+def test_wires_of_two_texts_and_wrong_calls(tmp_path):
+    (tmp_path / "positions.txt").write_text("0 0 0\n1 0 0\n2 0 1\n")
+    (tmp_path / "segments.txt").write_text("1 2\n2 3\n")
+    made = motet.surface(tmp_path / "positions.txt", segments=tmp_path / "segments.txt", tubes=0.1, sides=12)
+    assert made.report["wires"]["sides"] == 12 and made.report["wires"]["segments"] == 2
+    with pytest.raises(motet.OptionsError, match="tubes"):
+        motet.surface(shapes.braid(), sides=8)
+    with pytest.raises(motet.InputError, match="no array `r`"):
+        motet.surface(shapes.braid(), tubes="r")
+    with pytest.raises(motet.InputError, match="no line cells"):
+        motet.surface(shapes.aneurysm(), tubes=0.1)

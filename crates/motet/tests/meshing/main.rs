@@ -7,4 +7,5 @@ mod adapt;
 mod divide;
 mod layers;
 mod sizes_and_regions;
+mod tubes;
 mod voids;

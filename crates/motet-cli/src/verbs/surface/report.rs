@@ -104,10 +104,10 @@ fn print_wires(wires: &tubes::Report, console: &Console) {
         wires.sides
     ));
     console.print(format_args!(
-        "{} and {} joined by balls; {} by material between wires",
+        "{} and {} joined by balls; {} joined by material between wires",
         counted(wires.branches, "branch point"),
         counted(wires.sharp_bends, "sharp bend"),
-        counted(wires.bridges, "place joined").replace("place joineds", "places joined")
+        counted(wires.bridges, "place"),
     ));
     console.print(format_args!(
         "the wires have a volume of {}, each for itself; united {}, in {}",
