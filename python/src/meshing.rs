@@ -4,7 +4,7 @@ use motet::base::{Names, Point};
 use motet::mesh::history::Changed;
 use motet::meshing::even::{SurfaceWords, even_surface};
 use motet::meshing::layers::Stack;
-use motet::meshing::{self, tubes, EdgeLength, MeshingWords, Seed, Surfaces, WallLayers, fill, sizes_by};
+use motet::meshing::{self, EdgeLength, MeshingWords, Seed, Surfaces, WallLayers, fill, sizes_by, tubes};
 use motet::preflight::{Repair, Role};
 use motet::{Mesh, remesh};
 use pyo3::prelude::*;

@@ -186,7 +186,8 @@ fn a_braid_has_crossings_where_wires_are_their_gap_apart() {
         for i in (0..wires[0].len()).step_by(16) {
             let of = |p: Point| (p[1].atan2(p[0]), p[0].hypot(p[1]));
             let (angle, radius) = of(wires[0][i]);
-            let is_there = |w: &&Vec<Point>| ((of(w[i]).0 - angle).rem_euclid(2.0 * PI) + 1e-9) % (2.0 * PI) < 2e-9;
+            let is_there =
+                |w: &&Vec<Point>| ((of(w[i]).0 - angle).rem_euclid(2.0 * PI) + 1e-9) % (2.0 * PI) < 2e-9;
             let other = wires[4..].iter().find(is_there).expect("wires cross here");
             assert!(((radius - of(other[i]).1).abs() - 2.0 * 0.05 - gap).abs() < 1e-9);
         }
@@ -195,7 +196,8 @@ fn a_braid_has_crossings_where_wires_are_their_gap_apart() {
 
 #[test]
 fn what_cannot_be_a_tube_is_named() {
-    let nan = lines(&[[0.0; 3], [1.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0], [3.0, 0.0, 0.0]], &[&[0, 1, 2], &[2, 3]]);
+    let nan =
+        lines(&[[0.0; 3], [1.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0], [3.0, 0.0, 0.0]], &[&[0, 1, 2], &[2, 3]]);
     let refused = |mesh: &Mesh, options: &Options| {
         tubes(mesh, options, &Threads::single()).expect_err("it is refused").to_string()
     };

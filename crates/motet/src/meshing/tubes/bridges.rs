@@ -60,7 +60,7 @@ impl Bridges {
     pub(super) fn of(wires: &[Wire], around: usize, options: &Options, threads: &Threads) -> Self {
         let pieces = pieces(wires);
         let largest = pieces.iter().flat_map(|piece| piece.radii).fold(0.0, f64::max);
-        let reach = largest + options.gap(largest).max(largest);
+        let reach = 2.0 * largest + options.gap(largest).max(largest);
         let boxes: Vec<_> = pieces.iter().map(|piece| expanded(bounding_box(piece.ends), reach)).collect();
         let tree = BoxTree::new(&boxes);
         let lengths: Vec<f64> =
