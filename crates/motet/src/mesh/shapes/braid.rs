@@ -88,7 +88,10 @@ impl Braid {
 
     fn check(&self) -> Result<()> {
         let lengths = [self.radius, self.length, self.pitch, self.wire_radius];
-        if lengths.iter().any(|x| !(*x > 0.0 && *x <= LARGEST)) || !(self.gap.abs() <= LARGEST) {
+        if lengths.iter().any(|x| !(*x > 0.0 && *x <= LARGEST))
+            || self.gap.is_nan()
+            || self.gap.abs() > LARGEST
+        {
             return Err(Error::options(format!(
                 "got {lengths:?} for radius, length, pitch and wire radius, and the gap {}",
                 self.gap

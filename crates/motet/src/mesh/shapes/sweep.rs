@@ -108,12 +108,12 @@ impl Wire {
             n_rings += 1;
         }
         let id = |ring: usize, side: usize| VertexId::new(first + ring % n_rings * around + side % around);
-        for ring in 0..n_rings - usize::from(!self.closed) {
+        for (ring, &size) in sizes.iter().enumerate() {
             for side in 0..around {
                 let [a, b] = [id(ring, side), id(ring, side + 1)];
                 let [c, d] = [id(ring + 1, side + 1), id(ring + 1, side)];
                 soup.triangles.extend([[a, b, c], [a, c, d]]);
-                soup.sizes.extend([sizes[ring]; 2]);
+                soup.sizes.extend([size; 2]);
             }
         }
         if !self.closed {
