@@ -65,8 +65,8 @@ pub(crate) struct SurfaceArgs {
     pub(crate) smooth: usize,
     #[arg(long, help = help::effect::<TubeWords>("tubes"), value_name = "R|ARRAY", help_heading = "Wires")]
     pub(crate) tubes: Option<String>,
-    /// IN is a text of positions, three numbers a row, and this one has the segments between them: two numbers
-    /// of positions a row, counted from 1.
+    /// IN is a text of positions, three numbers a row, and this one has the segments between them: two
+    /// numbers of positions a row, counted from 1.
     #[arg(long, value_name = "FILE", requires = "tubes", help_heading = "Wires")]
     pub(crate) segments: Option<PathBuf>,
     #[arg(long, help = help::effect::<TubeWords>("sides"), value_name = "N", help_heading = "Wires")]

@@ -82,9 +82,10 @@ impl Wire {
         (0..self.n_segments()).map(of).sum()
     }
 
-    /// Adds a tube with `around` sides along the line, closed at its ends, to a soup. Its sections are regular
-    /// polygons of the area of the circles, the first of them turned by `phase`; rings are at most `spacing`
-    /// sides apart. At bends rings lie in the planes that halve the angle, so the tube is made of prisms.
+    /// Adds a tube with `around` sides along the line, closed at its ends, to a soup. Its sections are
+    /// regular polygons of the area of the circles, the first of them turned by `phase`; rings are at most
+    /// `spacing` sides apart. At bends rings lie in the planes that halve the angle, so the tube is made of
+    /// prisms.
     pub(crate) fn sweep(&self, around: usize, phase: f64, spacing: f64, soup: &mut Soup) {
         let nodes = self.nodes(around, phase);
         let first = soup.points.len();

@@ -22,8 +22,8 @@ impl CentreLines {
     /// The line cells of a mesh: straight ones, polylines, and curves of higher order through their nodes.
     ///
     /// # Errors
-    /// When there is no line cell, no such array, a point or radius is not finite, or a segment has no length,
-    /// unless such segments are to be left out.
+    /// When there is no line cell, no such array, a point or radius is not finite, or a segment has no
+    /// length, unless such segments are to be left out.
     pub(super) fn of(mesh: &Mesh, options: &Options) -> Result<Self> {
         let radius = RadiusOf::new(mesh, &options.radius)?;
         let firsts = options.repair.then(|| firsts_at_place(&mesh.points));

@@ -12,7 +12,8 @@ const FEWEST_SIDES: usize = 8;
 /// The most sides that a tube may have.
 pub const MOST_SIDES: usize = 360;
 
-/// The allowed distance of surfaces from round tubes, over the smallest radius, if the caller does not choose.
+/// The allowed distance of surfaces from round tubes, over the smallest radius, if the caller does not
+/// choose.
 const DISTANCE_OVER_RADIUS: f64 = 1.0 / 15.0;
 
 /// Wires nearer than this times the smaller radius are joined, if the caller does not choose.

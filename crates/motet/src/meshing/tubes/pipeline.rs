@@ -33,10 +33,10 @@ const EDGES_AROUND_BALL: usize = 5;
 /// Makes one closed surface of round tubes along the line cells of a mesh.
 ///
 /// Sections are regular polygons with the area of the round section, so a straight wire, or one that bends
-/// where a mitre fits, has the volume of the round one. Where a line bends by more than 90 degrees, or so that
-/// sections lean into each other, and where three or more segments meet, tubes end and a ball of 1.1 times
-/// their radius joins them. Where tubes meet, the surface is that of their union. Wires whose gap is at most
-/// [`Options::join`] are joined by material between them, of three quarters of their radius.
+/// where a mitre fits, has the volume of the round one. Where a line bends by more than 90 degrees, or so
+/// that sections lean into each other, and where three or more segments meet, tubes end and a ball of 1.1
+/// times their radius joins them. Where tubes meet, the surface is that of their union. Wires whose gap is
+/// at most [`Options::join`] are joined by material between them, of three quarters of their radius.
 ///
 /// # Errors
 /// When there are no lines, a point or a radius is not finite, an option is out of its range, the surface

@@ -128,8 +128,8 @@ fn connected(pieces: &[([VertexId; 3], u32)]) -> Vec<u32> {
     sets.roots()
 }
 
-/// For each part of pieces, whether it bounds the union: before it no part of the soup winds around, behind it
-/// one does. Decided at the middle of its best piece, where its own triangle counts half on either side.
+/// For each part of pieces, whether it bounds the union: before it no part of the soup winds around, behind
+/// it one does. Decided at the middle of its best piece, where its own triangle counts half on either side.
 fn outer(
     points: &[Point],
     soup: &Soup,
