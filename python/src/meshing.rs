@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::convert::{MeshArg, parts};
 use crate::error::{OrRaise, call};
-use crate::history::{ChangedParts, History};
+use crate::history::History;
 use crate::report::{quality, report};
 use crate::watch::watched;
 
