@@ -28,6 +28,16 @@ pub(crate) fn read(
     Ok((parts(py, mesh)?, notes))
 }
 
+/// Reads centre lines from a text of positions and one of segments.
+#[pyfunction]
+pub(crate) fn read_segments(
+    py: Python<'_>,
+    positions: PathBuf,
+    segments: PathBuf,
+) -> PyResult<Bound<'_, PyDict>> {
+    parts(py, call(py, || io::read_segments(&positions, &segments))?)
+}
+
 /// Writes a mesh; returns what the format cannot hold.
 #[pyfunction]
 pub(crate) fn write(py: Python<'_>, path: PathBuf, mesh: MeshArg, threads: usize) -> PyResult<Vec<String>> {

@@ -46,7 +46,8 @@ mod _motet {
     use crate::contact::{Contact, bodies};
     #[pymodule_export]
     use crate::files::{
-        cell_kinds, formats, labels, name_fields, names_of_fields, quality, read, summary, write,
+        cell_kinds, formats, labels, name_fields, names_of_fields, quality, read, read_segments, summary,
+        write,
     };
     #[pymodule_export]
     use crate::history::History;
@@ -68,7 +69,7 @@ mod _motet {
     use crate::series::{SeriesWriter, is_series, read_nodal, read_series, write_nodal};
 
     #[pymodule_export]
-    use crate::shapes::{aneurysm, ball, box_grid, coil, mixed, sphere_in_box, stent, tube};
+    use crate::shapes::{aneurysm, ball, box_grid, braid, coil, mixed, sphere_in_box, stent, tube};
     #[pymodule_export]
     use crate::view::View;
     #[pymodule_export]

@@ -4,7 +4,7 @@ use motet::base::{Names, Point};
 use motet::mesh::history::Changed;
 use motet::meshing::even::{SurfaceWords, even_surface};
 use motet::meshing::layers::Stack;
-use motet::meshing::{self, EdgeLength, MeshingWords, Seed, Surfaces, WallLayers, fill, sizes_by};
+use motet::meshing::{self, EdgeLength, MeshingWords, Seed, Surfaces, WallLayers, fill, sizes_by, tubes};
 use motet::preflight::{Repair, Role};
 use motet::{Mesh, remesh};
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::convert::{MeshArg, parts};
 use crate::error::{OrRaise, call};
-use crate::history::{ChangedParts, History};
+use crate::history::History;
 use crate::report::{quality, report};
 use crate::watch::watched;
 
@@ -110,9 +110,28 @@ pub(crate) fn mesh<'py>(
     Ok((parts(py, filled.mesh)?, reported, not_reached))
 }
 
+/// A radius, or the name of an array with radii.
+#[derive(FromPyObject)]
+pub(crate) enum RadiusArg {
+    Length(f64),
+    Array(String),
+}
+
+impl RadiusArg {
+    fn radius(self) -> tubes::Radius {
+        match self {
+            Self::Length(radius) => tubes::Radius::Same(radius),
+            Self::Array(name) => tubes::Radius::Array(name),
+        }
+    }
+}
+
+/// The parts of a surface made even; without a history if it was made of wires.
+type SurfaceParts<'py> = (Bound<'py, PyDict>, Option<History>, Bound<'py, PyAny>, Option<String>);
+
 /// Returns the new surface, its history, the report, and why the requested result was not reached.
 #[pyfunction]
-#[pyo3(signature = (surface, *, size, distance, feature_angle, growth, size_array, clip, repair, merge, hole_edges, smooth, threads, progress))]
+#[pyo3(signature = (surface, *, size, distance, feature_angle, growth, size_array, clip, repair, merge, hole_edges, smooth, tubes, sides, join, threads, progress))]
 #[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
 pub(crate) fn surface<'py>(
     py: Python<'py>,
@@ -127,9 +146,12 @@ pub(crate) fn surface<'py>(
     merge: f64,
     hole_edges: usize,
     smooth: usize,
+    tubes: Option<RadiusArg>,
+    sides: Option<usize>,
+    join: Option<f64>,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<ChangedParts<'py>> {
+) -> PyResult<SurfaceParts<'py>> {
     let size = size.map(SizeArg::length).transpose().or_raise()?;
     let words = SurfaceWords {
         size,
@@ -143,11 +165,19 @@ pub(crate) fn surface<'py>(
         merge,
         smooth,
     };
+    if let Some(radius) = tubes {
+        let options = tubes::Options { sides, join, repair, ..tubes::Options::of(radius.radius()) };
+        let made = watched(py, threads, progress, |threads| {
+            tubes::even_tubes(&surface.0, &options, &words, threads)
+        })?;
+        let not_reached = made.report.surface.not_reached();
+        return Ok((parts(py, made.mesh)?, None, report(py, &made.report)?, not_reached));
+    }
     let options = words.options(&surface.0).or_raise()?;
     let made = watched(py, threads, progress, |threads| even_surface(&surface.0, &options, threads))?;
     let Changed { mesh, history, report: reported, .. } = made;
     let not_reached = reported.not_reached();
-    Ok((parts(py, mesh)?, History(history), report(py, &reported)?, not_reached))
+    Ok((parts(py, mesh)?, Some(History(history)), report(py, &reported)?, not_reached))
 }
 
 /// The caps of a surface, to be put on any frame of it.

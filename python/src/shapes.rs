@@ -2,7 +2,7 @@
 
 use motet::base::Point;
 use motet::geometry::vector::in_range;
-use motet::mesh::shapes::{self, Aneurysm, Coil, Stent, TubeOptions, WallCells};
+use motet::mesh::shapes::{self, Aneurysm, Braid, Coil, Stent, TubeOptions, WallCells};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -83,6 +83,23 @@ pub(crate) fn stent(
 ) -> PyResult<Bound<'_, PyDict>> {
     let stent = Stent { length, rings, crowns, strut_width, thickness, ..Stent::default() };
     parts(py, stent.mesh(radius).or_raise()?)
+}
+
+#[pyfunction]
+#[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
+pub(crate) fn braid(
+    py: Python<'_>,
+    radius: f64,
+    length: f64,
+    wires: usize,
+    pitch: f64,
+    wire_radius: f64,
+    gap: f64,
+    over: usize,
+    steps: usize,
+) -> PyResult<Bound<'_, PyDict>> {
+    let braid = Braid { radius, length, wires, pitch, wire_radius, gap, over };
+    parts(py, braid.lines(steps).or_raise()?)
 }
 
 #[pyfunction]

@@ -5,7 +5,7 @@ import pytest
 import motet
 from motet import shapes
 
-ALL = [shapes.sphere_in_box, shapes.box, shapes.ball, shapes.mixed, shapes.tube, shapes.aneurysm, shapes.stent, shapes.coil]
+ALL = [shapes.sphere_in_box, shapes.box, shapes.ball, shapes.mixed, shapes.tube, shapes.aneurysm, shapes.stent, shapes.braid, shapes.coil]
 
 
 def same(a, b):

@@ -93,3 +93,28 @@ def test_ends_are_cut_off():
         motet.surface(vessel, clip=[(1, 2, 3)])
     with pytest.raises(motet.InputError, match="does not meet"):
         motet.surface(vessel, clip=[(0, 0, 9, 0, 0, 1)])
+
+
+def test_wires_become_one_closed_surface():
+    braid = shapes.braid(0.6, length=1.0, wires=4, pitch=3.0, wire_radius=0.05)
+    made = motet.surface(braid, tubes="radius")
+    wires = made.report["wires"]
+    assert made.history is None and made.complete
+    assert made.report["after"]["crossings"] == made.report["after"]["open_edges"] == 0
+    assert (wires["chains"], wires["branching_edges"], wires["bodies"]) == (4, 0, 1)
+    assert abs(wires["volume"] / wires["wire_volume"] - 1) < 0.1
+    same = motet.surface(braid, tubes=0.05)
+    assert np.array_equal(same.mesh.points, made.mesh.points)
+
+
+def test_wires_of_two_texts_and_wrong_calls(tmp_path):
+    (tmp_path / "positions.txt").write_text("0 0 0\n1 0 0\n2 0 1\n")
+    (tmp_path / "segments.txt").write_text("1 2\n2 3\n")
+    made = motet.surface(tmp_path / "positions.txt", segments=tmp_path / "segments.txt", tubes=0.1, sides=12)
+    assert made.report["wires"]["sides"] == 12 and made.report["wires"]["segments"] == 2
+    with pytest.raises(motet.OptionsError, match="tubes"):
+        motet.surface(shapes.braid(), sides=8)
+    with pytest.raises(motet.InputError, match="no array `r`"):
+        motet.surface(shapes.braid(), tubes="r")
+    with pytest.raises(motet.InputError, match="no line cells"):
+        motet.surface(shapes.aneurysm(), tubes=0.1)

@@ -1,6 +1,7 @@
 """Functions that change or create a mesh: repair, implantation of devices, meshing and remeshing of surfaces."""
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -13,6 +14,7 @@ from ._mesh import Mesh, MeshLike, as_mesh, named, point
 from ._progress import Progress
 from ._report import Report, report
 from ._keywords import checked, checked_class
+from .errors import OptionsError
 
 Carry = Literal["mean", "linear", "inherit", "drop"]
 
@@ -473,6 +475,10 @@ def surface(
     merge: float = 0.0,
     hole_edges: int = 0,
     smooth: int = 0,
+    tubes: float | str | None = None,
+    sides: int | None = None,
+    join: float | None = None,
+    segments: str | os.PathLike[str] | None = None,
     threads: int = 0,
     progress: Progress | bool | None = None,
 ) -> Changed:
@@ -516,6 +522,20 @@ def surface(
     smooth : int, default 0
         Number of passes of smoothing before, which keep the volume (Taubin 1995) and leave rims, borders of
         patches and creases in place. `distance` then holds from the smoothed surface.
+    tubes : float or str, optional
+        `surface` is centre lines of wires (line cells), which become one closed surface of round tubes of
+        this radius, or of the radii in the point or cell array of this name. `distance` is then a fifteenth
+        of the smallest radius by default. With `repair`, segments that are not finite or have no length are
+        left out.
+    sides : int, optional
+        With `tubes`: number of sides of each tube, 3 to 360. By default as many as `size` and `distance`
+        require, at least 8.
+    join : float, optional
+        With `tubes`: wires whose gap is at most this, or that overlap by no more, are joined by material
+        between them; 0 adds none. Default: a tenth of the smaller radius.
+    segments : path, optional
+        With `tubes`: `surface` is a text file of positions, three numbers a row, and this one has the
+        segments: two numbers of positions a row, counted from 1.
     threads : int, default 0
         Number of threads; 0 uses all cores. The result does not depend on it.
     progress : callable or True, optional
@@ -526,20 +546,24 @@ def surface(
     Returns
     -------
     Changed
-        The new surface with its history and report; ``complete`` is False if the surface is farther away than
+        The new surface with its history (None for `tubes`) and report; ``complete`` is False if the surface is farther away than
         allowed, or smoothing made triangles cross.
 
     Raises
     ------
     InputError
-        If there is no surface, or a coordinate is not finite.
+        If there is no surface or line, or a coordinate is not finite.
     """
+    if tubes is None and any(option is not None for option in (sides, join, segments)):
+        raise OptionsError("`sides`, `join` and `segments` need `tubes`: give the radius of the wires")
+    given = as_mesh(surface) if segments is None else Mesh._of(_motet.read_segments(os.fspath(surface), os.fspath(segments)))
     native = _motet.surface(
-        as_mesh(surface), size=size, distance=distance, feature_angle=feature_angle, growth=growth, size_array=size_array,
+        given, size=size, distance=distance, feature_angle=feature_angle, growth=growth, size_array=size_array,
         clip=[np.asarray(cut, dtype=float).ravel().tolist() for cut in clip], repair=repair,
-        merge=merge, hole_edges=hole_edges, smooth=smooth, threads=threads, progress=progress,
+        merge=merge, hole_edges=hole_edges, smooth=smooth, tubes=tubes, sides=sides, join=join, threads=threads, progress=progress,
     )  # fmt: skip
-    return _changed(native)
+    parts, history, reported, not_reached = native
+    return Changed(Mesh._of(parts), None if history is None else History(history), report(reported), not_reached)
 
 
 @checked

@@ -163,6 +163,49 @@ def stent(
 
 
 @checked
+def braid(
+    radius: float = 2.0,
+    *,
+    length: float = 10.0,
+    wires: int = 24,
+    pitch: float = 10.0,
+    wire_radius: float = 0.05,
+    gap: float = 0.0,
+    over: int = 1,
+    steps: int = 8,
+) -> Mesh:
+    """Create the centre lines of a braided stent along z, starting at z = 0, such as a flow diverter.
+
+    ``motet.surface(braid, tubes="radius")`` turns them into one closed surface.
+
+    Parameters
+    ----------
+    radius : float, default 2.0
+        Mean radius: where wires cross, one is farther out and the other farther in.
+    length : float, default 10.0
+        Length along z.
+    wires : int, default 24
+        Number of wires, half of them winding each way.
+    pitch : float, default 10.0
+        Length along z of one turn of a wire.
+    wire_radius : float, default 0.05
+        Radius of the wires, which is also the point array ``radius``.
+    gap : float, default 0.0
+        Gap between wires where they cross; at 0 they touch, below 0 they overlap.
+    over : int, default 1
+        How many wires each wire passes over before it passes under as many: 1 or 2.
+    steps : int, default 8
+        Number of segments of a wire from one crossing to the next.
+
+    Returns
+    -------
+    Mesh
+        A polyline for each wire, with the point array ``radius`` and the cell array ``wire``.
+    """
+    return Mesh._of(_motet.braid(radius, length, wires, pitch, wire_radius, gap, over, steps))
+
+
+@checked
 def coil(
     centre: ArrayLike = (0.0, 0.0, 0.0),
     *,

@@ -112,3 +112,64 @@ fn a_flipped_triangle_is_turned_with_repair() {
         (&2.into(), true)
     );
 }
+
+#[test]
+fn wires_become_one_closed_surface() {
+    let folder = Folder::new();
+    let points = vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.05], [0.2, 1.0, 0.05], [f64::NAN; 3]];
+    let mut cells = Cells::new();
+    [[0, 1], [2, 3]].into_iter().for_each(|ends| cells.push(CellKind::LINE, ends.map(VertexId::new)));
+    let mut lines = Mesh::new(points[..4].to_vec(), cells.clone());
+    lines.set_point_field(Field::scalars("r", vec![0.1; 4]));
+    folder.mesh("lines.vtp", &lines);
+    let words = ["surface", "lines.vtp", "-o", "wires.stl", "--tubes"];
+    let call = folder.motet(words.iter().chain(&["0.1", "--json"])).assert().success();
+    let report: Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    let wires = &report["wires"];
+    assert_eq!((&wires["chains"], &wires["bodies"], &wires["sides"]), (&2.into(), &1.into(), &8.into()));
+    assert_eq!((&report["after"]["crossings"], &report["after"]["open_edges"]), (&0.into(), &0.into()));
+    assert_eq!(report["allowed"].as_f64().unwrap(), 0.1 / 15.0);
+    let text = stdout(&folder.motet(words.iter().chain(&["r", "--sides", "10"])).assert().success());
+    for part in ["2 wires of 2 segments", "as tubes of 10 sides", "in 1 body"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    // A point that is not finite is named, and left out on request.
+    cells.push(CellKind::LINE, [3, 4].map(VertexId::new));
+    folder.mesh("nan.vtk", &Mesh::new(points, cells));
+    let words = ["surface", "nan.vtk", "-o", "nan.stl", "--tubes", "0.1"];
+    let text = stderr(&folder.motet(words).assert().code(3));
+    assert!(text.contains("point 4") && text.contains("repair"), "{text}");
+    let call = folder.motet(words.iter().chain(&["--repair"])).assert().success();
+    assert!(stderr(&call).contains("1 segments that are not finite"), "{}", stderr(&call));
+}
+
+#[test]
+fn wires_come_from_texts_and_from_parameters() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("positions.txt"), "0 0 0\n1 0 0\n2 0 1\n").unwrap();
+    std::fs::write(folder.path("pairs.txt"), "1 2\n2 3\n").unwrap();
+    let words = ["surface", "positions.txt", "--segments", "pairs.txt", "-o", "wire.stl", "--tubes", "0.1"];
+    let text = stdout(&folder.motet(words).assert().success());
+    assert!(text.contains("1 wire of 2 segments"), "{text}");
+    let stent = ["surface", "-o", "stent.stl", "--stent", "radius=0.6,length=1,wires=4,pitch=3,wire=0.05"];
+    let text = stdout(&folder.motet(stent).assert().success());
+    assert!(text.contains("4 wires") && text.contains("joined by material"), "{text}");
+    let coil = ["surface", "-o", "coil.stl", "--coil", "turns=1,wire=0.05"];
+    let text = stdout(&folder.motet(coil).assert().success());
+    assert!(text.contains("1 wire of 48 segments"), "{text}");
+    std::fs::write(folder.path("pairs.txt"), "1 2\n2 4\n").unwrap();
+    for (words, code, part) in [
+        (&words[..], 3, "line 2"),
+        (&["surface", "-o", "a.stl"], 2, "required"),
+        (&["surface", "-o", "a.stl", "--stent", "radius=x"], 2, "not a number"),
+        (&["surface", "-o", "a.stl", "--stent", "wire=1,wire=2"], 2, "twice"),
+        (&["surface", "-o", "a.stl", "--stent", "radiuss=1"], 2, "radius"),
+        (&["surface", "-o", "a.stl", "--stent", "wires=3"], 2, "even number"),
+        (&["surface", "-o", "a.stl", "--coil", "turns=-1"], 2, "turns"),
+        (&["surface", "positions.txt", "--segments", "pairs.txt", "-o", "a.stl"], 2, "--tubes"),
+    ] {
+        let call = folder.motet(words).assert().code(code);
+        assert!(stderr(&call).contains(part), "{words:?}: {}", stderr(&call));
+        assert!(!folder.path("a.stl").exists());
+    }
+}

@@ -44,6 +44,7 @@ mod reading;
 mod registry;
 mod replace;
 mod scalar;
+mod segments;
 mod select;
 mod series;
 mod simvascular;
@@ -66,6 +67,7 @@ pub use output::Output;
 pub use reading::{is_same_file, read_as};
 pub use registry::{can_write, formats, read, read_noted, read_on, write, write_on};
 pub use replace::{can_have_folder, remove_drafts, replace, replace_all, settle, sync};
+pub use segments::read_segments;
 pub use series::{
     SeriesWriter, can_be_series, can_write_series, file_of, is_series, parse_series, read_series,
     write_series,

@@ -63,10 +63,13 @@ impl Default for Adapting {
 ///
 /// # Errors
 /// When the distance is not a length, or the angle not in [0, 180].
+///
+/// `held`: for each point, whether it stays; empty if none has to.
 pub(super) fn adapt(
     surfaces: &Surfaces,
     sizes: Option<&Sizes>,
     adapting: &Adapting,
+    held: &[bool],
     threads: &Threads,
 ) -> Result<(Surfaces, Option<Sizes>, Adapted)> {
     let distance = adapting.allowed(surfaces);
@@ -99,6 +102,7 @@ pub(super) fn adapt(
         distance,
         feature_angle: adapting.feature_angle,
         growth: grading.growth,
+        held: held.to_vec(),
     };
     let adapted = surface::adapt(&surfaces.points, &sheet.triangles, &labels, &options, threads)?;
     let [to_given, from_given] = surface::distances(

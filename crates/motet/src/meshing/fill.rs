@@ -200,7 +200,8 @@ pub fn fill(
     options.sizes.as_ref().map_or(Ok(()), |sizes| sizes.check(surfaces))?;
     options.improve.as_ref().map_or(Ok(()), remesh::Options::check)?;
     if options.dividing == Dividing::Adapt {
-        let (adapted, sizes, report) = adapt(surfaces, options.sizes.as_ref(), &options.adapting, threads)?;
+        let (adapted, sizes, report) =
+            adapt(surfaces, options.sizes.as_ref(), &options.adapting, &[], threads)?;
         let preflight = adapted.preflight(threads);
         let options = Options { dividing: Dividing::Never, sizes, ..options.clone() };
         let mut filled = fill(&adapted, &preflight, &options, threads)?;

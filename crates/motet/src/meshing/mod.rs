@@ -8,6 +8,7 @@
 //! | divide | `divide` | a surface far coarser than the size inside is divided within its own planes |
 //! | adapt | `adapt`, [`crate::surface`] | or surfaces get even triangles within a distance, if requested |
 //! | surfaces alone | [`even`] | open or closed: even triangles, arrays carried; no tets |
+//! | wires | [`tubes`] | centre lines with radii become one closed surface of round tubes |
 //! | layers | [`layers`] | thin prisms on walls, if requested; the following steps fill the core that they leave |
 //! | sizes | `sizes`, `size_field` | the same everywhere, or growing from the surface |
 //! | points | `interior`; `graded`, `octree`, `shadow` | a lattice inside, slightly away from the surface; or one of nested cubes |
@@ -34,6 +35,7 @@ mod sheet;
 mod size_field;
 mod sizes;
 mod surfaces;
+pub mod tubes;
 pub mod wall;
 mod words;
 

@@ -15,3 +15,4 @@ pub(crate) use growing_boxes::GrowingBoxes;
 pub use locate::{Located, Locator, OUTSIDE};
 pub use nearest::{Closest, NearestTriangle};
 pub use winding::WindingNumber;
+pub(crate) use winding::winding_of_triangle;

@@ -104,6 +104,12 @@ impl Group {
     }
 }
 
+/// How often one triangle goes around `p`, in parts of a whole turn: what it adds to the winding number of a
+/// surface.
+pub(crate) fn winding_of_triangle(triangle: [Point; 3], p: Point) -> f64 {
+    solid_angle(triangle, p) / (4.0 * PI)
+}
+
 fn longest_axis(triangles: &[[Point; 3]]) -> usize {
     let extent = |axis: usize| {
         let along = || triangles.as_flattened().iter().map(|p| p[axis]);

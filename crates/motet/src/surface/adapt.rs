@@ -109,6 +109,9 @@ impl Work<'_> {
         is_settled: bool,
     ) {
         for v in 0..self.sheet.points.len() {
+            if self.is_held(VertexId::new(v)) {
+                continue;
+            }
             if let Some(&t) = self.sheet.star(VertexId::new(v)).first() {
                 let requested = sizes(self, self.sheet.label(t), self.sheet.points[v]);
                 self.sizes[v] = if is_settled { self.sizes[v].min(requested) } else { requested };
@@ -194,7 +197,8 @@ impl Work<'_> {
 
     /// Edges whose lengths over their sizes are wanted, from the least of these ratios to the greatest.
     fn edges_where(&self, is_wanted: impl Fn(f64) -> bool) -> Vec<(f64, [VertexId; 2])> {
-        let edges = self.sheet.edges().into_iter().map(|edge| (self.ratio(edge), edge));
+        let edges = self.sheet.edges().into_iter().filter(|edge| !self.is_held_edge(*edge));
+        let edges = edges.map(|edge| (self.ratio(edge), edge));
         let mut edges: Vec<_> = edges.filter(|x| is_wanted(x.0)).collect();
         edges.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         edges
@@ -248,6 +252,9 @@ impl Work<'_> {
     fn flip_once(&mut self, limit: f64) -> usize {
         let mut n = 0;
         for edge in self.sheet.edges() {
+            if self.is_held_edge(edge) {
+                continue;
+            }
             let longest = limit * self.size(edge);
             let admits = |sheet: &Sheet, change: &Change| {
                 let [before, after] = cosines(sheet, change);
@@ -333,7 +340,9 @@ impl Work<'_> {
     /// Triangles with an angle whose cosine is above a limit, the narrowest first.
     fn narrow(&self, limit: f64) -> Vec<u32> {
         let of = |t| (largest_cosine(self.sheet.corners(t)), t);
-        let mut narrow: Vec<(f64, u32)> = self.sheet.existing().map(of).filter(|x| x.0 > limit).collect();
+        let is_held = |t: &u32| self.sheet.triangle(*t).iter().all(|v| self.is_held(*v));
+        let free = self.sheet.existing().filter(|t| !is_held(t));
+        let mut narrow: Vec<(f64, u32)> = free.map(of).filter(|x| x.0 > limit).collect();
         narrow.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
         narrow.into_iter().map(|(_, t)| t).collect()
     }

@@ -27,6 +27,8 @@ pub(super) enum Kind {
 pub(super) struct Features {
     pub(super) lines: Lines,
     pub(super) kinds: Vec<Kind>,
+    /// Whether a vertex stays, for the first vertices; the others do not have to.
+    pub(super) held: Vec<bool>,
 }
 
 impl Features {
@@ -41,18 +43,23 @@ impl Features {
                 lines.insert(edge, Line { places: Vec::new(), is_crease: !is_border });
             }
         }
-        let mut features = Self { lines, kinds: vec![Kind::Free; sheet.points.len()] };
+        let mut features = Self { lines, kinds: vec![Kind::Free; sheet.points.len()], held: Vec::new() };
         (0..sheet.points.len()).for_each(|v| features.classify(sheet, VertexId::new(v)));
         features
     }
 
     fn classify(&mut self, sheet: &Sheet, v: VertexId) {
         self.kinds[v.index()] = match self.line_ends(sheet, v)[..] {
-            _ if !is_one_fan(sheet, v) => Kind::Corner,
+            _ if self.is_held(v) || !is_one_fan(sheet, v) => Kind::Corner,
             [] => Kind::Free,
             [a, b] if is_straight(sheet, [a, v, b]) => Kind::OnLine,
             _ => Kind::Corner,
         };
+    }
+
+    /// Whether a vertex has to stay.
+    pub(super) fn is_held(&self, v: VertexId) -> bool {
+        self.held.get(v.index()) == Some(&true)
     }
 
     /// Gives up the creases at a vertex. Returns whether there were any.

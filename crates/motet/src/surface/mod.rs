@@ -5,6 +5,7 @@
 //! | features | `features` | borders of labels, rims, creases and corners stay where they are |
 //! | passes | `adapt` | long edges split, short ones collapsed, edges flipped, vertices moved |
 //! | changes | `work`, `sheet` | proposed, checked, made |
+//! | parts | `parts` | of a surface that stays for the most part, only the rest is worked on |
 //! | distance | `original`, `cover` | both ways, for each change |
 //! | crossings | `near` | none is made |
 //! | smoothing | `smooth` | noise removed before, if requested |
@@ -16,6 +17,7 @@ mod features;
 mod lines;
 mod near;
 mod original;
+mod parts;
 mod places;
 mod sheet;
 mod smooth;
@@ -44,6 +46,9 @@ pub struct Options {
     pub feature_angle: f64,
     /// How much sizes may grow per unit of distance.
     pub growth: f64,
+    /// For each point of the surface, whether it stays; edges between two points that stay are kept. Empty if
+    /// none has to.
+    pub held: Vec<bool>,
 }
 
 impl Options {
@@ -69,6 +74,10 @@ impl Options {
         }
         if self.sizes.len() != 1 && self.sizes.len() != n_points {
             return Err(Error::options(format!("{} sizes for {n_points} points", self.sizes.len())));
+        }
+        if !self.held.is_empty() && self.held.len() != n_points {
+            let what = format!("{} marks of points that stay for {n_points} points", self.held.len());
+            return Err(Error::options(what));
         }
         Ok(())
     }
@@ -120,11 +129,29 @@ pub fn adapt(
         );
         return Err(Error::options(what).remedy("give a larger size"));
     }
+    match options.held.contains(&true) {
+        true => parts::adapt(points, triangles, labels, options, threads),
+        false => adapt_whole(points, triangles, labels, options, threads),
+    }
+}
+
+/// Makes a checked surface even, all of it at once.
+fn adapt_whole(
+    points: &[Point],
+    triangles: &[[VertexId; 3]],
+    labels: &[u32],
+    options: &Options,
+    threads: &Threads,
+) -> Result<Adapted> {
+    let of_points = |v: usize| options.sizes[if options.sizes.len() == 1 { 0 } else { v }];
+    let at_points: Vec<f64> = (0..points.len()).map(of_points).collect();
+    let expected = expected(points, triangles, &at_points);
     let max_triangles = MANY.max(MAX_OVER_EXPECTED * (triangles.len() + expected as usize));
     let original = Original::new(points, triangles, labels, SHARE * options.distance, threads);
     let sheet = Sheet::new(points.to_vec(), triangles.to_vec(), labels.to_vec());
     let features = Features::of(&sheet, options.feature_angle, original.distance);
     let mut work = Work::new(sheet, features, original, at_points.clone(), max_triangles, threads);
+    work.hold(&options.held);
     let is_uniform = options.sizes.len() == 1;
     let sizes = |work: &Work<'_>, label: u32, p: Point| match is_uniform {
         true => options.sizes[0],

@@ -60,6 +60,25 @@ impl<'a> Work<'a> {
         Self { cover, near, sheet, features, original, sizes, threads, max_triangles, is_active }
     }
 
+    /// Keeps vertices where they are, and edges between them.
+    pub(super) fn hold(&mut self, held: &[bool]) {
+        self.features.held = held.to_vec();
+        for v in (0..held.len()).filter(|&v| held[v]) {
+            self.features.kinds[v] = Kind::Corner;
+            self.is_active[v] = false;
+        }
+    }
+
+    /// Whether a vertex stays.
+    pub(super) fn is_held(&self, v: VertexId) -> bool {
+        self.features.is_held(v)
+    }
+
+    /// Whether an edge stays, since both of its ends do.
+    pub(super) fn is_held_edge(&self, edge: [VertexId; 2]) -> bool {
+        edge.iter().all(|v| self.is_held(*v))
+    }
+
     /// The length requested of an edge.
     pub(super) fn size(&self, [u, v]: [VertexId; 2]) -> f64 {
         0.5 * (self.sizes[u.index()] + self.sizes[v.index()])
@@ -200,7 +219,7 @@ impl<'a> Work<'a> {
 
     /// Flips an edge, if `admits` the change.
     pub(super) fn flip(&mut self, edge: [VertexId; 2], admits: impl Fn(&Sheet, &Change) -> bool) -> bool {
-        if self.features.is_line(edge) {
+        if self.features.is_line(edge) || self.is_held_edge(edge) {
             return false;
         }
         let Some(change) = self.sheet.flip(edge) else { return false };

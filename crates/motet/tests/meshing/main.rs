@@ -7,5 +7,6 @@ mod adapt;
 mod divide;
 mod layers;
 mod sizes_and_regions;
+mod tubes;
 mod voids;
 mod wall;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use motet::meshing::even::{self, Measured};
+use motet::meshing::tubes;
 use serde::Serialize;
 
 use super::args::SurfaceArgs;
@@ -15,13 +16,15 @@ use crate::words;
 #[derive(Debug, Serialize)]
 pub(super) struct Report<'a> {
     #[serde(serialize_with = "words::paths")]
-    input: PathBuf,
+    input: Option<PathBuf>,
     #[serde(serialize_with = "words::paths")]
     output: PathBuf,
     /// Whether the surface is as near as requested.
     complete: bool,
     #[serde(flatten)]
     report: &'a even::Report,
+    /// The wires, if the input was wires.
+    wires: Option<&'a tubes::Report>,
     seconds: Seconds,
 }
 
@@ -34,12 +37,18 @@ struct Seconds {
 
 impl<'a> Report<'a> {
     /// Seconds: for reading, for writing, and in total.
-    pub(super) fn new(args: &SurfaceArgs, report: &'a even::Report, [read, write, total]: [f64; 3]) -> Self {
+    pub(super) fn new(
+        args: &SurfaceArgs,
+        report: &'a even::Report,
+        wires: Option<&'a tubes::Report>,
+        [read, write, total]: [f64; 3],
+    ) -> Self {
         Self {
             input: args.input.clone(),
             output: args.output.clone(),
             complete: report.not_reached().is_none(),
             report,
+            wires,
             seconds: Seconds { read, write, total },
         }
     }
@@ -63,6 +72,9 @@ impl<'a> Report<'a> {
                 count(cut.divided)
             ));
         }
+        if let Some(wires) = self.wires {
+            print_wires(wires, console);
+        }
         if !repairs.is_empty() {
             console.print(format_args!("{} (--json lists them)", counted(repairs.len(), "repair")));
         }
@@ -85,6 +97,31 @@ impl<'a> Report<'a> {
         ));
         console.print(format_args!("all {}", seconds(self.seconds.total)));
     }
+}
+
+fn print_wires(wires: &tubes::Report, console: &Console) {
+    let [least, largest] = wires.radii;
+    let radius =
+        if least == largest { short(least) } else { format!("{} to {}", short(least), short(largest)) };
+    console.print(format_args!(
+        "{} of {}, {} long, of radius {radius}, as tubes of {} sides",
+        counted(wires.chains, "wire"),
+        counted(wires.segments, "segment"),
+        short(wires.length),
+        wires.sides
+    ));
+    console.print(format_args!(
+        "{} and {} joined by balls; {} joined by material between wires",
+        counted(wires.branches, "branch point"),
+        counted(wires.sharp_bends, "sharp bend"),
+        counted(wires.bridges, "place"),
+    ));
+    console.print(format_args!(
+        "the wires have a volume of {}, each for itself; united {}, in {}",
+        short(wires.wire_volume),
+        short(wires.volume),
+        if wires.bodies == 1 { "1 body".into() } else { format!("{} bodies", count(wires.bodies)) }
+    ));
 }
 
 fn counted_passes(n: usize) -> String {

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{LARGEST, add};
-use crate::mesh::Mesh;
 use crate::mesh::shapes::{check_count, wire};
+use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 /// A helix around a line along z. All lengths are in one unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,13 +35,38 @@ impl Coil {
         (0..=n).map(place).collect()
     }
 
+    /// The centre line as a polyline, with the point array `radius`, which holds that of the wire.
+    ///
+    /// # Errors
+    /// If a number is not finite or `turns` is negative, and if there would be more points than a shape may
+    /// have.
+    pub fn lines(&self, steps: usize) -> Result<Mesh> {
+        self.check()?;
+        check_count(self.turns * steps as f64 + 1.0)?;
+        let line = self.line(steps);
+        let mut cells = Cells::new();
+        cells.push(CellKind::POLY_LINE, (0..line.len()).map(VertexId::new));
+        let radii = vec![self.wire_radius; line.len()];
+        let mut mesh = Mesh::new(line, cells);
+        mesh.set_point_field(Field::scalars("radius", radii));
+        Ok(mesh)
+    }
+
     /// The closed surface, as the patch `wire`, with `steps` segments per turn and `around` sides.
     ///
     /// # Errors
     /// The errors of [`wire`]; also if a number is not finite or `turns` is negative, and if the coil would
     /// have more points than a shape may have.
     pub fn mesh(&self, steps: usize, around: usize) -> Result<Mesh> {
-        let n_points = (self.turns * steps as f64 + 1.0) * (around as f64 + 1.0);
+        self.check()?;
+        check_count((self.turns * steps as f64 + 1.0) * (around as f64 + 1.0))?;
+        let line = self.line(steps);
+        let segments: Vec<[VertexId; 2]> =
+            (1..line.len()).map(|i| [VertexId::new(i - 1), VertexId::new(i)]).collect();
+        wire(&line, &segments, self.wire_radius, around)
+    }
+
+    fn check(&self) -> Result<()> {
         let sizes = [
             self.radius,
             self.pitch,
@@ -58,10 +83,6 @@ impl Coil {
             ))
             .remedy("give finite numbers, and 0 turns or more"));
         }
-        check_count(n_points)?;
-        let line = self.line(steps);
-        let segments: Vec<[VertexId; 2]> =
-            (1..line.len()).map(|i| [VertexId::new(i - 1), VertexId::new(i)]).collect();
-        wire(&line, &segments, self.wire_radius, around)
+        Ok(())
     }
 }

@@ -55,7 +55,7 @@ fn tangent(points: &[Point], closed: bool, i: usize) -> Point {
 }
 
 /// A unit vector perpendicular to another.
-fn any_across(along: Point) -> Point {
+pub(super) fn any_across(along: Point) -> Point {
     let least = (0..3).min_by(|&i, &j| along[i].abs().total_cmp(&along[j].abs())).unwrap_or(0);
     let mut axis = [0.0; 3];
     axis[least] = 1.0;
@@ -64,13 +64,13 @@ fn any_across(along: Point) -> Point {
 }
 
 /// `v` reflected in the plane perpendicular to `normal`; unchanged if `normal` is zero.
-fn reflected(v: Point, normal: Point) -> Point {
+pub(super) fn reflected(v: Point, normal: Point) -> Point {
     let squared = dot(normal, normal);
     if squared == 0.0 { v } else { sub(v, scale(normal, 2.0 * dot(normal, v) / squared)) }
 }
 
 /// The angle from one direction to another, about `along`.
-fn turn(from: Point, to: Point, along: Point) -> f64 {
+pub(super) fn turn(from: Point, to: Point, along: Point) -> f64 {
     dot(cross(from, to), along).atan2(dot(from, to))
 }
 

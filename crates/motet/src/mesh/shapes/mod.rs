@@ -10,6 +10,7 @@
 //! | [`quadratic`] | quadratic tets, from any of the tet shapes | unchanged |
 //! | [`Stent`] | triangles, the same at every radius | `stent` |
 //! | [`Coil`] | triangles, a wire wound around a line | `wire` |
+//! | [`Braid`] | polylines, the wires of a braided stent | |
 //! | [`wire`] | triangles, round tubes along line segments | `wire` |
 //! | [`Flap`] | triangles, a vessel and a sheet inside it | `wall` `inlet` `outlet` `flap` |
 //! | [`ThickTube`] | triangles, a vessel and its wall | `lumen_inlet` `lumen_outlet` `interface` `outer` `wall_inlet` `wall_outlet` |
@@ -26,6 +27,7 @@ mod aneurysm;
 mod ball;
 mod bifurcation;
 mod boxes;
+mod braid;
 mod coil;
 mod cubed_sphere;
 mod even_out;
@@ -38,6 +40,7 @@ mod quadratic;
 mod sleeve;
 mod split;
 mod stent;
+mod sweep;
 mod thick_tube;
 mod tube;
 mod wire;
@@ -46,6 +49,7 @@ pub use aneurysm::Aneurysm;
 pub use ball::ball;
 pub use bifurcation::Bifurcation;
 pub use boxes::box_grid;
+pub use braid::Braid;
 pub use coil::Coil;
 pub use cubed_sphere::sphere_in_box;
 pub use flap::Flap;
@@ -54,6 +58,7 @@ pub use mixed::mixed;
 pub use quadratic::quadratic;
 pub use split::to_tets;
 pub use stent::Stent;
+pub(crate) use sweep::{Soup, Wire, add_ball, corner_radius};
 pub use thick_tube::ThickTube;
 pub use tube::{TubeOptions, WallCells, tube};
 pub use wire::{Chain, chains, wire};

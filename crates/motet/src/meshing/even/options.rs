@@ -20,4 +20,7 @@ pub struct Options {
     /// How many passes of smoothing come before: vertices move, but those of rims, borders of patches and
     /// creases. Distances are then measured from the smoothed surface. Default: 0.
     pub smooth: usize,
+    /// For each point of the mesh, whether it stays where it is; edges between two such points stay as well.
+    /// Empty if none has to. Default: empty.
+    pub held: Vec<bool>,
 }

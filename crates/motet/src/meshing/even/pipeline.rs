@@ -75,7 +75,11 @@ fn even(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<Changed<Rep
         0 => None,
         passes => Some(smooth(&mut surfaces, passes, &options.adapting, threads)?),
     };
-    let (new, _, adapted) = adapt(&surfaces, sizes.as_ref(), &options.adapting, threads)?;
+    let mut held = options.held.clone();
+    if !held.is_empty() {
+        held.resize(surfaces.points.len(), false);
+    }
+    let (new, _, adapted) = adapt(&surfaces, sizes.as_ref(), &options.adapting, &held, threads)?;
     let history =
         history(&Given { mesh, given: &given, repaired: &repaired, surfaces: &surfaces }, &new, threads)?;
     let after = Measured::of(&new.points, &new.triangles, threads);

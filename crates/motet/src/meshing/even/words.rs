@@ -67,6 +67,7 @@ impl SurfaceWords {
             adapting: Adapting { distance: self.distance, feature_angle: self.feature_angle },
             repairs,
             smooth: self.smooth,
+            held: Vec::new(),
         })
     }
 }
