@@ -524,7 +524,7 @@ def surface(
         patches and creases in place. `distance` then holds from the smoothed surface.
     tubes : float or str, optional
         `surface` is centre lines of wires (line cells), which become one closed surface of round tubes of
-        this radius, or of the radii in the point or cell array of this name. `distance` is then a fifteenth
+        this radius, or of the radii in the point or cell array of this name. `distance` is then an eighth
         of the smallest radius by default. With `repair`, segments that are not finite or have no length are
         left out.
     sides : int, optional

@@ -128,7 +128,7 @@ fn wires_become_one_closed_surface() {
     let wires = &report["wires"];
     assert_eq!((&wires["chains"], &wires["bodies"], &wires["sides"]), (&2.into(), &1.into(), &8.into()));
     assert_eq!((&report["after"]["crossings"], &report["after"]["open_edges"]), (&0.into(), &0.into()));
-    assert_eq!(report["allowed"].as_f64().unwrap(), 0.1 / 15.0);
+    assert_eq!(report["allowed"].as_f64().unwrap(), 0.1 / 8.0);
     let text = stdout(&folder.motet(words.iter().chain(&["r", "--sides", "10"])).assert().success());
     for part in ["2 wires of 2 segments", "as tubes of 10 sides", "in 1 body"] {
         assert!(text.contains(part), "{part}: {text}");

@@ -23,6 +23,13 @@ pub(super) struct Extension {
     patches: Vec<i32>,
 }
 
+/// The triangles of an extension, facing as the surface does, with their patches, and its last row.
+pub(super) struct Rows {
+    pub(super) triangles: Vec<[VertexId; 3]>,
+    pub(super) patches: Vec<i32>,
+    pub(super) last: Vec<VertexId>,
+}
+
 /// The middle of a rim and the unit normal of its plane.
 #[derive(Clone, Copy)]
 pub(super) struct RimFrame {
@@ -42,7 +49,7 @@ impl Extension {
         let next = rim.iter().cycle().skip(1);
         let edge = rim.iter().zip(next).map(|(p, q)| distance(*p, *q)).sum::<f64>() / rim.len() as f64;
         let n_rows = (length / edge).round().max(1.0);
-        if !(n_rows <= MAX_ROWS as f64) {
+        if n_rows.is_nan() || n_rows > MAX_ROWS as f64 {
             return Err(Error::options(format!(
                 "an extension of length {length} has {n_rows} rows of triangles; at most {MAX_ROWS} are allowed"
             ))
@@ -51,17 +58,11 @@ impl Extension {
         Ok(Self { length, n_rows: n_rows as usize, patches })
     }
 
-    /// Adds the points of the rows, and returns the triangles with their patches, facing as the surface does,
-    /// and the last row.
+    /// Adds the points of the rows, and returns the triangles.
     ///
     /// # Errors
     /// When the rim is not nearer to its plane than the extension is long.
-    pub(super) fn build(
-        &self,
-        points: &mut Vec<Point>,
-        rim: &[VertexId],
-        frame: RimFrame,
-    ) -> Result<(Vec<[VertexId; 3]>, Vec<i32>, Vec<VertexId>)> {
+    pub(super) fn build(&self, points: &mut Vec<Point>, rim: &[VertexId], frame: RimFrame) -> Result<Rows> {
         let corners: Vec<Point> = rim.iter().map(|v| points[v.index()]).collect();
         let highest = corners.iter().map(|&p| dot(sub(p, frame.middle), frame.normal)).fold(0.0, f64::max);
         if highest >= self.length {
@@ -89,7 +90,7 @@ impl Extension {
             }
             row = next;
         }
-        Ok((triangles, patches, row))
+        Ok(Rows { triangles, patches, last: row })
     }
 
     /// The place above a vertex of the rim, at a share of the length; `on_circle` is its place in the last
@@ -119,12 +120,13 @@ fn circle(corners: &[Point], RimFrame { middle, normal }: RimFrame) -> Vec<Point
     let x = flat.iter().copied().find_map(unit).unwrap_or([1.0, 0.0, 0.0]);
     let y = cross(normal, x);
     let around: f64 = (0..flat.len()).map(|i| norm(sub(next(i), flat[i]))).sum();
-    let mut angles = Vec::with_capacity(flat.len());
     let mut along = 0.0;
-    for i in 0..flat.len() {
-        angles.push(TAU * along / around);
+    let angle = |i: usize| {
+        let angle = TAU * along / around;
         along += norm(sub(next(i), flat[i]));
-    }
+        angle
+    };
+    let angles: Vec<f64> = (0..flat.len()).map(angle).collect();
     // The turn that brings them nearest: the angle of the sum of all places turned back by their own angles.
     let (mut cosine, mut sine) = (0.0, 0.0);
     for (p, angle) in flat.iter().zip(&angles) {

@@ -271,12 +271,12 @@ impl Caps {
             if let Some(extension) = &rim.extension {
                 let (middle, area) = self.area_of(rim, &frame.points)?;
                 let at = RimFrame { middle, normal: unit(area).unwrap_or_default() };
-                let (rows, of_rows, last) = extension.build(&mut points, &rim.vertices, at)?;
+                let rows = extension.build(&mut points, &rim.vertices, at)?;
                 let first = triangles.len();
-                triangles.extend(rows);
-                patches.extend(of_rows);
+                triangles.extend(rows.triangles);
+                patches.extend(rows.patches);
                 extended.push((first..triangles.len(), rim));
-                end = last;
+                end = rows.last;
             }
             triangles.extend(disc_of_rings(&mut points, &end, rim.n_rings));
             patches.resize(triangles.len(), rim.label);

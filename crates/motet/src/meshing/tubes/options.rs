@@ -14,7 +14,7 @@ pub const MOST_SIDES: usize = 360;
 
 /// The allowed distance of surfaces from round tubes, over the smallest radius, if the caller does not
 /// choose.
-const DISTANCE_OVER_RADIUS: f64 = 1.0 / 15.0;
+const DISTANCE_OVER_RADIUS: f64 = 1.0 / 8.0;
 
 /// Wires nearer than this times the smaller radius are joined, if the caller does not choose.
 const JOIN_OVER_RADIUS: f64 = 0.1;
@@ -42,7 +42,7 @@ pub struct Options {
     pub join: Option<f64>,
     /// The length of edges that the surface gets later; `None`: not known. Default: `None`.
     pub size: Option<f64>,
-    /// How far sections may be from round ones; `None`: a fifteenth of the smallest radius. Default: `None`.
+    /// How far sections may be from round ones; `None`: an eighth of the smallest radius. Default: `None`.
     pub distance: Option<f64>,
     /// Whether segments with a point or a radius that is not finite, and those without length, are left out,
     /// and points at the same place joined. Default: no; such segments are errors.
