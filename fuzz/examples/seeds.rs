@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         }
     }
-    for (target, text) in [("pvd", PVD), ("dolfin", DOLFIN), ("tetgen", TETGEN), ("opencarp", OPENCARP)] {
+    for (target, text) in [("pvd", PVD), ("dolfin", DOLFIN), ("tetgen", TETGEN), ("opencarp", OPENCARP), ("glb", GLTF)] {
         let folder = corpus.join(target);
         fs::create_dir_all(&folder)?;
         fs::write(folder.join("two"), text)?;
@@ -102,6 +102,9 @@ const TETGEN: &str = "5 3 1 1\n0 0 0 0 2 -1\n1 1 0 0 2 -1\n2 0 1 0 2 -1\n3 0 0 1
 
 /// The .pts, .elem and .lon files, separated by zero bytes.
 const OPENCARP: &str = "5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n\02\nTt 0 1 2 3 7\nPy 0 1 2 3 4\n\02\n1 0 0 0 1 0\n0 0 1 0.5 0 0\n";
+
+/// A glTF scene with its buffer inside: a tetrahedron twice, scaled and moved.
+const GLTF: &str = r#"{"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"scale":[2,2,2],"children":[1]},{"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,0,0,1],"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":4}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5121,"count":12,"type":"SCALAR"}],"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12,"byteStride":1}],"buffers":[{"byteLength":60,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAIBAAEDAAMCAQID"}]}"#;
 
 /// A Fluent file in HDF5, which motet does not write: two tets in a zone each.
 fn cas_h5(is_compressed: bool) -> Result<Vec<u8>, hdf5_pure::Error> {

@@ -74,9 +74,7 @@ const FOREIGN: &[ForeignFormat] = &[
     },
     ForeignFormat {
         name: "a surface of a 3D scene",
-        extensions: &[
-            ".3mf", ".glb", ".gltf", ".dae", ".fbx", ".usd", ".usdz", ".x3d", ".wrl", ".3ds", ".amf",
-        ],
+        extensions: &[".3mf", ".dae", ".fbx", ".usd", ".usdz", ".x3d", ".wrl", ".3ds", ".amf"],
         remedy: TRIMESH,
     },
     ForeignFormat {

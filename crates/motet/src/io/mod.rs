@@ -13,6 +13,7 @@ mod fluent;
 mod foreign;
 mod format;
 mod ghosts;
+mod gltf;
 mod gzip;
 mod hdf;
 #[cfg(test)]

@@ -7,8 +7,8 @@ use crate::io::format::{Format, Notes, Write, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{can_have_folder, replace_all, replace_folder, replace_with};
 use crate::io::{
-    abaqus, cdb, cgns, dolfin, exodus, fluent, foreign, legacy, med, medit, msh, nastran, netgen, obj, off,
-    opencarp, ply, polymesh, simvascular, stl, su2, tetgen, unv, vtkhdf, vtkxml, xdmf,
+    abaqus, cdb, cgns, dolfin, exodus, fluent, foreign, gltf, legacy, med, medit, msh, nastran, netgen, obj,
+    off, opencarp, ply, polymesh, simvascular, stl, su2, tetgen, unv, vtkhdf, vtkxml, xdmf,
 };
 use crate::mesh::Mesh;
 
@@ -29,6 +29,7 @@ const FORMATS: &[Format] = &[
     obj::FORMAT,
     ply::FORMAT,
     off::FORMAT,
+    gltf::FORMAT,
     medit::MESH,
     medit::MESHB,
     medit::SOL,
