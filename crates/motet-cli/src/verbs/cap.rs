@@ -47,7 +47,7 @@ pub(crate) struct CapArgs {
     flatten: bool,
     /// Name the ends by size instead: `inlet` the largest, or the one nearest to a place; the others
     /// `outlet_1`, `outlet_2`, ..., by falling size, or `outlet` if there is only one
-    #[arg(long, value_name = "largest|X,Y,Z", value_parser = inlet)]
+    #[arg(long, value_name = "largest|X,Y,Z", value_parser = inlet, allow_hyphen_values = true)]
     inlet: Option<Inlet>,
     /// Continue the vessel beyond each open end, or the one that its cap names, by a straight tube of this
     /// length; its cross-section becomes a circle of the same area; may be repeated
