@@ -16,7 +16,11 @@ def test_conversion_and_back_preserves_a_mesh(shape):
     mesh.point_data["x"] = mesh.points[:, 0].copy()
     mesh.cell_data["eas"] = mesh.quality()
     same(mesh, motet.Mesh.from_pyvista(mesh.to_pyvista()))
-    same(mesh, motet.Mesh.from_meshio(mesh.to_meshio()))
+    if shape is shapes.braid:  # meshio has no polylines
+        with pytest.raises(motet.InputError, match="poly_line cannot be converted to meshio"):
+            mesh.to_meshio()
+    else:
+        same(mesh, motet.Mesh.from_meshio(mesh.to_meshio()))
 
 
 def test_volumes_agree_with_vtk():

@@ -30,6 +30,11 @@ def near():
     return [(shapes.ball(1, 1), 0.1)]
 
 
+def open_vessel():
+    whole = shapes.aneurysm()
+    return motet.Mesh(whole.points, whole.triangles[whole.cell_data["patch"] == 1])
+
+
 def moved(**options):
     return lambda value: motet.move(shapes.box((2, 2, 2)), translate={"xmax": (0.1, 0.0, 0.0)}, **{name: make(value) for name, make in options.items()})
 
@@ -76,6 +81,7 @@ OPTIONS = {
     "surface.merge": (lambda x: motet.surface(shapes.aneurysm(), repair=True, merge=x), LENGTH),
     "surface.hole_edges": (lambda x: motet.surface(shapes.aneurysm(), repair=True, hole_edges=x), COUNT),
     "surface.smooth": (lambda x: motet.surface(shapes.aneurysm(), smooth=x), COUNT),
+    "cap.extend": (lambda x: motet.cap(open_vessel(), extend=x), LENGTH),
     "wall.thickness": (lambda x: motet.wall(shapes.tube(), thickness=x), LENGTH),
     "wall.of_radius": (lambda x: motet.wall(shapes.tube(), of_radius=x), LENGTH),
     "wall.layers": (lambda x: motet.wall(shapes.tube(), thickness=0.1, layers=x), (*COUNT, 0)),

@@ -72,8 +72,12 @@ def cap(surfaces: Any, *, inlet: Any = None, extend: float | Mapping[str, float]
 
 def _closed(frames: Iterable[Any], inlet: Any, extend: float | Mapping[str, float] | None) -> list[Mesh]:
     if inlet is not None:
-        inlet = (None,) if isinstance(inlet, str) and inlet == "largest" else (point(inlet, "inlet"),)
-    lengths = [] if extend is None else list(extend.items()) if isinstance(extend, Mapping) else [(None, extend)]
+        inlet = (None,) if isinstance(inlet, str) and inlet == "largest" else (point(inlet),)
+    lengths: list[tuple[str | None, float]] = []
+    if isinstance(extend, Mapping):
+        lengths.extend(extend.items())
+    elif extend is not None:
+        lengths.append((None, extend))
     caps, first, closed = None, None, []
     for given in frames:
         if isinstance(given, np.ndarray):

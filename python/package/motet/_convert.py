@@ -56,6 +56,9 @@ def to_trimesh(mesh: Mesh) -> Any:
     )
 
 
+UNKNOWN_TO_MESHIO = ("polyhedron", "poly_line", "poly_vertex", "triangle_strip")
+
+
 def to_meshio(mesh: Mesh) -> Any:
     import meshio
 
@@ -69,7 +72,7 @@ def to_meshio(mesh: Mesh) -> Any:
         if first == last:
             continue
         kind = NAMES.get(int(mesh.kinds[first]))
-        if kind in (None, "polyhedron"):
+        if kind is None or kind in UNKNOWN_TO_MESHIO:
             raise InputError(f"cells of kind {kind or mesh.kinds[first]} cannot be converted to meshio; use save")
         rows = mesh.connectivity[mesh.offsets[first] : mesh.offsets[last]].reshape(last - first, -1)
         blocks.append((kind, rows.astype(np.int64)))

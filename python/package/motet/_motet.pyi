@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 __all__ = [
     "Caps", "Contact", "bodies", "cell_kinds", "command", "formats", "is_series", "labels", "name_fields", "names_of_fields", "quality", "read", "read_segments", "summary", "write", "SeriesWriter", "read_nodal", "read_series", "write_nodal", "History", "implant", "mesh", "Mover", "PointMover", "choose",
     "interface_vertices", "mesh_velocity", "patch_vertices", "prescribed", "MovingMesh", "Criterion", "Refinement", "refined", "remesh", "aneurysm", "ball", "box_grid", "braid", "coil", "mixed",
-    "sphere_in_box", "stent", "surface", "tube", "View", "defaults", "__version__",
+    "sphere_in_box", "stent", "surface", "tube", "View", "wall", "defaults", "__version__",
 ]  # fmt: skip
 __version__: str
 

@@ -2,6 +2,7 @@
 
 use super::super::layers::Stack;
 use crate::base::{Error, Result};
+use crate::geometry::vector::LARGEST;
 
 /// How thick a wall is.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,11 +51,17 @@ impl Options {
             Thickness::OfRadius(part) => (part, "the thickness as a part of the radius"),
             Thickness::AtPoints(_) => (1.0, ""),
         };
-        if !(value > 0.0 && value.is_finite()) {
+        if !(value > 0.0 && value <= LARGEST) {
             return Err(Error::options(format!("{what} must be a number above 0; got {value}")));
         }
         let first = Stack { count: self.layers, first: 1.0, growth: self.growth };
         first.check()?;
+        if self.growth > LARGEST {
+            return Err(Error::options(format!(
+                "the growth of layers must be at most 1e60; got {}",
+                self.growth
+            )));
+        }
         let stack = Stack { first: 1.0 / first.thickness(), ..first };
         stack.check().map(|()| stack)
     }

@@ -6,6 +6,7 @@ use super::lumen::Lumen;
 use super::options::{Options, Thickness};
 use super::report::Report;
 use crate::base::{Error, Result, Threads};
+use crate::geometry::vector::LARGEST;
 use crate::mesh::Mesh;
 use crate::mesh::history::Changed;
 
@@ -47,7 +48,7 @@ fn thickness(lumen: &Lumen, n_points: usize, of: &Thickness, threads: &Threads) 
         }
     };
     let corners = lumen.surfaces.triangles.iter().zip(&lumen.on).filter(|(_, on)| **on).flat_map(|(t, _)| t);
-    let is_wrong = |t: f64| !(t >= 0.0 && t.is_finite());
+    let is_wrong = |t: f64| !(0.0..=LARGEST).contains(&t);
     match corners.copied().find(|v| is_wrong(thickness[v.index()])) {
         None => Ok(thickness),
         Some(v) => Err(Error::input(format!(
