@@ -1,4 +1,14 @@
-//! What a verb reached.
+//! What a verb reached, and how long it took.
+
+use serde::Serialize;
+
+/// The seconds that a verb took: for reading, for writing, and in total.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Seconds {
+    pub(crate) read: f64,
+    pub(crate) write: f64,
+    pub(crate) total: f64,
+}
 
 /// The outcome of a verb that did not fail.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use super::layout::{Layout, Pieces};
 use super::options::Inside;
 use super::owner::{Owner, Patch};
 use crate::base::VertexId;
-use crate::mesh::{Field, Labels, Mesh};
+use crate::mesh::{Labels, Mesh};
 
 /// What follows the name of the device in the name of its contact patch.
 const CONTACT: &str = "-contact";
@@ -88,13 +88,7 @@ impl Names {
 pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, layout: &Layout, names: &Names) {
     let Pieces { devices, gap, draft, .. } = *pieces;
     let [of_tets, of_triangles] = &names.arrays;
-    let n = mesh.cells.len();
-    let read = |mesh: &Mesh, array: &str| -> Vec<i64> {
-        let known = mesh.cell_field(array).and_then(|field| field.values.to_i64());
-        known.unwrap_or_else(|| vec![0; n])
-    };
-    let (mut regions, mut patches) = (read(mesh, of_tets), read(mesh, of_triangles));
-    let is_one = of_tets == of_triangles;
+    let (mut regions, mut patches) = (mesh.label_numbers(of_tets), mesh.label_numbers(of_triangles));
     if let Some(own) = names.host {
         for (cell, _) in mesh.cells.tets() {
             regions[cell.index()] = own.into();
@@ -112,15 +106,7 @@ pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, layout: &Layout, names: &N
     for (i, region) in draft.owners.iter().map(|owner| names.region(*owner)).chain(own).enumerate() {
         (regions[first + i], patches[first + i]) = (region.into(), 0);
     }
-    let as_i32 = |ids: Vec<i64>| -> Vec<i32> { ids.into_iter().map(|id| id as i32).collect() };
-    if is_one {
-        let both = regions.iter().zip(&patches).zip(mesh.cells.kinds());
-        let both = both.map(|((&r, &p), kind)| if kind.dim() == Some(2) { p } else { r }).collect();
-        mesh.set_cell_field(Field::scalars(of_tets, as_i32(both)));
-    } else {
-        mesh.set_cell_field(Field::scalars(of_tets, as_i32(regions)));
-        mesh.set_cell_field(Field::scalars(of_triangles, as_i32(patches)));
-    }
+    mesh.set_labels(&names.arrays, regions, patches);
     for (k, name) in devices.names.iter().enumerate() {
         mesh.label_names.patches.insert(names.patches[k], name.clone());
         if let Some(patch) = names.contacts[k] {

@@ -176,6 +176,29 @@ impl Mesh {
         words.iter().map(|word| self.find_patch(word)).collect()
     }
 
+    /// Writes the region of each volume cell and the patch of each surface cell into the arrays of these
+    /// names, which may be one array for both.
+    pub(crate) fn set_labels(&mut self, arrays: &[String; 2], regions: Vec<i64>, patches: Vec<i64>) {
+        let field = |name: &str, ids: Vec<i64>| {
+            Field::scalars(name, ids.into_iter().map(|id| id as i32).collect::<Vec<_>>())
+        };
+        let [of_regions, of_patches] = arrays;
+        if of_regions == of_patches {
+            let both = regions.into_iter().zip(patches).zip(self.cells.kinds());
+            let both = both.map(|((r, p), kind)| if kind.dim() == Some(2) { p } else { r }).collect();
+            self.set_cell_field(field(of_regions, both));
+        } else {
+            self.set_cell_field(field(of_regions, regions));
+            self.set_cell_field(field(of_patches, patches));
+        }
+    }
+
+    /// The labels in an array of cells as whole numbers; 0 for each cell where there is no such array.
+    pub(crate) fn label_numbers(&self, array: &str) -> Vec<i64> {
+        let known = self.cell_field(array).and_then(|field| field.values.to_i64());
+        known.unwrap_or_else(|| vec![0; self.cells.len()])
+    }
+
     fn labels_of(&self, dim: usize, arrays: &[&str], names: &BTreeMap<i32, String>) -> Option<Labels> {
         let on_dim: Vec<bool> = self.cells.kinds().iter().map(|k| k.dim() == Some(dim)).collect();
         arrays.iter().find_map(|array| {

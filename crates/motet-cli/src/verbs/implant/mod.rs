@@ -18,7 +18,7 @@ use self::report::Report;
 use crate::arrays::Written;
 use crate::common::Common;
 use crate::console::Console;
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, Seconds};
 use crate::outputs;
 use crate::table::seconds;
 use crate::words::stem;
@@ -48,7 +48,8 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
     let outcome = Outcome::of(report.not_reached());
-    Report::new(args, report, quality, [read, write, begin.elapsed().as_secs_f64()]).print(&outcome, console);
+    let seconds = Seconds { read, write, total: begin.elapsed().as_secs_f64() };
+    Report::new(args, report, quality, seconds).print(&outcome, console);
     Ok(outcome)
 }
 

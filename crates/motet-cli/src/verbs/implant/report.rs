@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::args::ImplantArgs;
 use crate::console::Console;
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, Seconds};
 use crate::quality;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
@@ -42,23 +42,16 @@ pub(super) struct Report {
     seconds: Seconds,
 }
 
-#[derive(Debug, Serialize)]
-struct Seconds {
-    read: f64,
-    write: f64,
-    total: f64,
-}
-
 /// How many of the remaining bad tets are listed without `--verbose`.
 const N_LISTED: usize = 10;
 
 impl Report {
-    /// `quality`: of the host and of the new mesh; seconds: for reading, for writing, and in total.
+    /// `quality`: of the host and of the new mesh.
     pub(super) fn new(
         args: &ImplantArgs,
         report: implant::Report,
         quality: [Option<Qualities>; 2],
-        [read, write, total]: [f64; 3],
+        seconds: Seconds,
     ) -> Self {
         Self {
             host: args.host.clone(),
@@ -71,7 +64,7 @@ impl Report {
             unforced: report.n_unforced(),
             quality,
             report,
-            seconds: Seconds { read, write, total },
+            seconds,
         }
     }
 

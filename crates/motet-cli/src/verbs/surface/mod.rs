@@ -19,7 +19,7 @@ pub(crate) use args::SurfaceArgs;
 use self::report::Report;
 use crate::common::Common;
 use crate::console::Console;
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, Seconds};
 use crate::outputs;
 use crate::table::seconds;
 
@@ -58,8 +58,8 @@ pub(crate) fn run(args: &SurfaceArgs, common: &Common, console: &Console) -> mot
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
     let outcome = Outcome::of(report.not_reached());
-    Report::new(args, &report, wires.as_ref(), [seconds_read, write, begin.elapsed().as_secs_f64()])
-        .print(&outcome, console);
+    let seconds = Seconds { read: seconds_read, write, total: begin.elapsed().as_secs_f64() };
+    Report::new(args, &report, wires.as_ref(), seconds).print(&outcome, console);
     Ok(outcome)
 }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::args::SurfaceArgs;
 use crate::console::Console;
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, Seconds};
 use crate::table::{Table, count, counted, seconds, short};
 use crate::words;
 
@@ -28,20 +28,12 @@ pub(super) struct Report<'a> {
     seconds: Seconds,
 }
 
-#[derive(Debug, Serialize)]
-struct Seconds {
-    read: f64,
-    write: f64,
-    total: f64,
-}
-
 impl<'a> Report<'a> {
-    /// Seconds: for reading, for writing, and in total.
     pub(super) fn new(
         args: &SurfaceArgs,
         report: &'a even::Report,
         wires: Option<&'a tubes::Report>,
-        [read, write, total]: [f64; 3],
+        seconds: Seconds,
     ) -> Self {
         Self {
             input: args.input.clone(),
@@ -49,7 +41,7 @@ impl<'a> Report<'a> {
             complete: report.not_reached().is_none(),
             report,
             wires,
-            seconds: Seconds { read, write, total },
+            seconds,
         }
     }
 

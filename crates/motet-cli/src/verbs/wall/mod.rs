@@ -14,7 +14,7 @@ pub(crate) use args::WallArgs;
 use self::report::Report;
 use crate::common::Common;
 use crate::console::Console;
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, Seconds};
 use crate::outputs;
 use crate::table::seconds;
 
@@ -38,6 +38,7 @@ pub(crate) fn run(args: &WallArgs, common: &Common, console: &Console) -> motet:
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
     let outcome = Outcome::of(report.not_reached());
-    Report::new(args, &report, [read, write, begin.elapsed().as_secs_f64()]).print(&outcome, console);
+    let seconds = Seconds { read, write, total: begin.elapsed().as_secs_f64() };
+    Report::new(args, &report, seconds).print(&outcome, console);
     Ok(outcome)
 }

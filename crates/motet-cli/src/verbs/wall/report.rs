@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::args::WallArgs;
 use crate::console::Console;
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, Seconds};
 use crate::table::{count, seconds, short};
 use crate::words::{self, shown};
 
@@ -25,22 +25,14 @@ pub(super) struct Report<'a> {
     seconds: Seconds,
 }
 
-#[derive(Debug, Serialize)]
-struct Seconds {
-    read: f64,
-    write: f64,
-    total: f64,
-}
-
 impl<'a> Report<'a> {
-    /// Seconds: for reading, for writing, and in total.
-    pub(super) fn new(args: &WallArgs, report: &'a wall::Report, [read, write, total]: [f64; 3]) -> Self {
+    pub(super) fn new(args: &WallArgs, report: &'a wall::Report, seconds: Seconds) -> Self {
         Self {
             input: args.input.clone(),
             output: args.output.clone(),
             complete: report.not_reached().is_none(),
             report,
-            seconds: Seconds { read, write, total },
+            seconds,
         }
     }
 

@@ -5,6 +5,7 @@
 //! their edges.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use serde::Serialize;
 
@@ -29,9 +30,9 @@ pub enum Cut {
     },
     /// All that lies inside a sphere.
     Sphere {
-        /// Its centre.
+        /// The centre of the sphere, in the unit of the mesh.
         centre: Point,
-        /// Its radius, above 0.
+        /// The radius of the sphere, above 0.
         radius: f64,
     },
 }
@@ -76,7 +77,7 @@ impl Cut {
         };
         match is_valid {
             true => Ok(()),
-            false => Err(Error::options(format!("{self:?} is no plane and no sphere"))
+            false => Err(Error::options(format!("{self} cannot cut anything"))
                 .remedy("give finite numbers, a normal that is not zero, a radius above 0")),
         }
     }
@@ -101,6 +102,20 @@ impl Cut {
             }
         };
         if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 }
+    }
+}
+
+impl fmt::Display for Cut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = |p: Point| p.map(|x| x.to_string()).join(", ");
+        match *self {
+            Self::Plane { at, normal } => {
+                write!(f, "the plane through {} with normal {}", place(at), place(normal))
+            }
+            Self::Sphere { centre, radius } => {
+                write!(f, "the sphere of radius {radius} around {}", place(centre))
+            }
+        }
     }
 }
 
@@ -158,7 +173,7 @@ impl Sheet {
             is_divided = self.nearest_line(&is_divided, &beyond, at, is_in);
         }
         if !is_divided.contains(&true) {
-            return Err(Error::input("the cut does not meet the surface").at(format!("{cut:?}")));
+            return Err(Error::input("the cut does not meet the surface").at(cut.to_string()));
         }
         let is_removed = self.cut_off(cut, &is_divided, &beyond, is_in)?;
         let divided = is_divided.iter().filter(|divided| **divided).count();
@@ -251,7 +266,7 @@ impl Sheet {
         match separates && kept {
             true => Ok(is_removed),
             false => Err(Error::input("the cut does not separate a part of the surface from the rest")
-                .at(format!("{cut:?}"))
+                .at(cut.to_string())
                 .remedy("cut where the vessel is one tube, with the normal towards the end to be removed")),
         }
     }

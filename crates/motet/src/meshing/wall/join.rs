@@ -25,7 +25,7 @@ impl Added {
         self.labels.push(label);
     }
 
-    /// The same cells, wedges, pyramids and quads divided.
+    /// These cells with wedges, pyramids and quads divided into tets and triangles.
     fn split(self, points: &[Point]) -> Self {
         let rows = Field::scalars("row", (0..self.cells.len() as i64).collect::<Vec<_>>());
         let whole = Mesh { cell_data: vec![rows], ..Mesh::new(points.to_vec(), self.cells) };

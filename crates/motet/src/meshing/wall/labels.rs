@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::super::layers::EndFacet;
 use super::lumen::Lumen;
-use crate::mesh::{Field, Labels, Mesh, unused_name};
+use crate::mesh::{Labels, Mesh, unused_name};
 
 /// The name of the region inside, where it has none.
 const INSIDE: &str = "fluid";
@@ -86,13 +86,8 @@ impl WallLabels {
 
     /// Writes labels and names: `new` has the label of each cell after the first `n_base`.
     pub(super) fn write(&self, mesh: &mut Mesh, lumen: &Lumen, n_base: usize, new: &[i32]) {
-        let read = |mesh: &Mesh, array: &str| -> Vec<i64> {
-            let known = mesh.cell_field(array).and_then(|field| field.values.to_i64());
-            known.unwrap_or_else(|| vec![0; mesh.cells.len()])
-        };
         let dims: Vec<Option<usize>> = mesh.cells.kinds().iter().map(|kind| kind.dim()).collect();
-        let mut is_used = [true, false];
-        let mut both = self.arrays.each_ref().map(|array| read(mesh, array));
+        let mut both = self.arrays.each_ref().map(|array| mesh.label_numbers(array));
         if let Some(inside) = self.inside {
             (0..n_base).filter(|&i| dims[i] == Some(3)).for_each(|i| both[0][i] = inside.into());
             mesh.label_names.regions.insert(inside, INSIDE.into());
@@ -107,19 +102,8 @@ impl WallLabels {
             both[own][i] = label.into();
             both[1 - own][i] = 0;
         }
-        is_used[1] = both[1].iter().any(|&label| label != 0);
         let [regions, patches] = both;
-        let as_i32 = |ids: Vec<i64>| -> Vec<i32> { ids.into_iter().map(|id| id as i32).collect() };
-        if self.arrays[0] == self.arrays[1] {
-            let of = |i: usize| if dims[i] == Some(3) { regions[i] } else { patches[i] };
-            let joined = (0..dims.len()).map(of).collect();
-            mesh.set_cell_field(Field::scalars(self.arrays[0].as_str(), as_i32(joined)));
-        } else {
-            mesh.set_cell_field(Field::scalars(self.arrays[0].as_str(), as_i32(regions)));
-            if is_used[1] {
-                mesh.set_cell_field(Field::scalars(self.arrays[1].as_str(), as_i32(patches)));
-            }
-        }
+        mesh.set_labels(&self.arrays, regions, patches);
         mesh.label_names.regions.insert(self.region, self.region_name.clone());
         let used: Vec<i32> = mesh.patches().map_or_else(Vec::new, |patches| patches.used());
         let names = self.patch_names.iter().filter(|(patch, _)| used.contains(patch));

@@ -7,7 +7,7 @@ use crate::geometry::vector::LARGEST;
 /// How thick a wall is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Thickness {
-    /// The same everywhere, in the unit of the mesh.
+    /// One thickness everywhere, in the unit of the mesh.
     Uniform(f64),
     /// One value for each point of the mesh, in its unit; those of points that are not on the wall are not
     /// used.

@@ -12,7 +12,7 @@ use crate::mesh::Spread;
 pub struct Report {
     /// The number of the wall's region.
     pub region: i32,
-    /// Its name.
+    /// The name of the wall's region.
     pub name: String,
     /// The name of the patch on the outer side.
     pub outer: String,
