@@ -14,7 +14,7 @@ from tets import boundary, dihedrals, eas, volumes
 
 SIZE, DISTANCE = 0.02, 0.001  # of the largest extent
 PLACES = 20_000  # where the distance of each surface is measured, besides its vertices
-EXTENSIONS = {".stl", ".obj", ".ply", ".vtp", ".vtk", ".off"}
+EXTENSIONS = {".stl", ".obj", ".ply", ".vtp", ".vtk", ".off", ".glb"}
 ADAPT = ["--repair", "--surface", "adapt"]
 # Name in the table: options of `motet mesh`, with numbers as fractions of the extent; or keyword of rivals/mesh_python.py.
 KEPT = {"motet": [], "motet --repair": ["--repair"], "TetGen -pY": "tetgen-keep"}

@@ -270,7 +270,7 @@ impl Work<'_> {
     /// Moves each vertex towards the centroid of its triangles, weighted so that sizes are followed.
     fn smooth(&mut self) {
         for v in (0..self.sheet.points.len()).map(VertexId::new) {
-            if self.sheet.star(v).is_empty() || !std::mem::take(&mut self.is_active[v.index()]) {
+            if self.sheet.star(v).is_empty() || !self.changes.is_due(&mut self.moved, v.index(), &[v]) {
                 continue;
             }
             let admits = |sheet: &Sheet, change: &Change| {
@@ -323,8 +323,9 @@ impl Work<'_> {
     /// Makes narrow triangles wider: edges flipped or collapsed, vertices moved, whatever their sizes; where
     /// that does not help, without the creases there.
     fn widen_all(&mut self) {
+        let mut tried = Vec::new();
         for pass in 0..WIDENINGS {
-            let n = self.narrow(NARROW).into_iter().filter(|&t| self.widen(t)).count();
+            let n = self.narrow(NARROW).into_iter().filter(|&t| self.widen(t, &mut tried)).count();
             if n == 0 || pass + 1 == WIDENINGS {
                 let at_creases = self.narrow(POOR);
                 let vertices: Vec<VertexId> =
@@ -347,9 +348,13 @@ impl Work<'_> {
         narrow.into_iter().map(|(_, t)| t).collect()
     }
 
-    /// Makes a triangle wider, if it is still narrow. Returns whether it changed.
-    fn widen(&mut self, t: u32) -> bool {
-        if !self.sheet.exists(t) || largest_cosine(self.sheet.corners(t)) <= NARROW {
+    /// Makes a triangle wider, if it is still narrow and something changed around it since that was tried.
+    /// Returns whether it changed.
+    fn widen(&mut self, t: u32, tried: &mut Vec<usize>) -> bool {
+        if !self.sheet.exists(t)
+            || largest_cosine(self.sheet.corners(t)) <= NARROW
+            || !self.changes.is_due(tried, t as usize, &self.sheet.triangle(t))
+        {
             return false;
         }
         let admits = |sheet: &Sheet, change: &Change| {

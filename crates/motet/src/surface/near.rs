@@ -24,8 +24,8 @@ impl Near {
     }
 
     /// Whether the new triangles of a change meet each other or any triangle that stays, other than in the
-    /// vertices and edges that they share. A change that is `in_place` leaves the surface where it is up to
-    /// rounding, and can only meet what is that near; what it crossed before does not count.
+    /// vertices and edges that they share; what the removed ones met does not count. A change that is
+    /// `in_place` leaves the surface where it is up to rounding, and can only meet what is that near.
     pub(super) fn crosses(&mut self, sheet: &mut Sheet, change: &Change, in_place: bool) -> bool {
         let old: Vec<[Point; 3]> = change.removed.iter().map(|&t| sheet.corners(t)).collect();
         let Some((v, place)) = change.placed else { return self.is_met(sheet, change, &old, in_place) };
@@ -69,7 +69,7 @@ impl Near {
             change.added.iter().any(|(t, _)| is_near(t))
                 && !is_far(corners(&other))
                 && change.added.iter().any(|(t, _)| is_near(t) && meet(&sheet.points, *t, other))
-                && !(in_place && met_before(other))
+                && !met_before(other)
         };
         if self.found.iter().any(|t| !change.removed.contains(t) && meets_any(*t)) {
             return true;

@@ -41,8 +41,38 @@ pub(super) struct Work<'a> {
     pub(super) sizes: Vec<f64>,
     pub(super) threads: &'a Threads,
     pub(super) max_triangles: usize,
-    /// Whether something around a vertex changed since it was last moved.
-    pub(super) is_active: Vec<bool>,
+    pub(super) changes: Changes,
+    /// When each vertex was last moved, as [`Changes::is_due`] counts.
+    pub(super) moved: Vec<usize>,
+}
+
+/// The number of changes that were made, and of the last one at each vertex.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Changes {
+    n: usize,
+    last: Vec<usize>,
+}
+
+impl Changes {
+    fn at(&mut self, change: &Change) {
+        self.n += 1;
+        for v in change.added.iter().flat_map(|(t, _)| *t) {
+            if v.index() >= self.last.len() {
+                self.last.resize(v.index() + 1, 0);
+            }
+            self.last[v.index()] = self.n;
+        }
+    }
+
+    /// Whether a thing with these vertices has not been `tried` yet, or something changed at them since. The
+    /// table says for each thing how many changes were made when it was last tried, plus one.
+    pub(super) fn is_due(&self, tried: &mut Vec<usize>, id: usize, vertices: &[VertexId]) -> bool {
+        if id >= tried.len() {
+            tried.resize(id + 1, 0);
+        }
+        let before = std::mem::replace(&mut tried[id], self.n + 1);
+        vertices.iter().any(|v| self.last.get(v.index()).is_none_or(|last| *last >= before))
+    }
 }
 
 impl<'a> Work<'a> {
@@ -56,8 +86,9 @@ impl<'a> Work<'a> {
     ) -> Self {
         let cover = Cover::new(&sheet, original.distance);
         let near = Near::new(&sheet);
-        let is_active = vec![true; sheet.points.len()];
-        Self { cover, near, sheet, features, original, sizes, threads, max_triangles, is_active }
+        let changes = Changes { n: 0, last: vec![0; sheet.points.len()] };
+        let moved = Vec::new();
+        Self { cover, near, sheet, features, original, sizes, threads, max_triangles, changes, moved }
     }
 
     /// Keeps vertices where they are, and edges between them.
@@ -65,7 +96,6 @@ impl<'a> Work<'a> {
         self.features.held = held.to_vec();
         for v in (0..held.len()).filter(|&v| held[v]) {
             self.features.kinds[v] = Kind::Corner;
-            self.is_active[v] = false;
         }
     }
 
@@ -327,10 +357,7 @@ impl<'a> Work<'a> {
         let ids = self.sheet.commit(change);
         self.near.add(&self.sheet, &ids);
         self.cover.commit(change, moves, &ids);
-        self.is_active.resize(self.sheet.points.len(), true);
-        for v in change.added.iter().flat_map(|(t, _)| *t) {
-            self.is_active[v.index()] = true;
-        }
+        self.changes.at(change);
     }
 }
 

@@ -390,8 +390,8 @@ fn neither_threads_nor_the_order_of_normals_matter() {
     assert_eq!(outward.count(), 0);
 }
 
-/// Two planes of needles that cross each other. Edges across the crossing are split although their parts cross
-/// the other plane as they did.
+/// Two planes of needles that cross each other. Triangles at the crossing are changed like others, although they
+/// cross the other plane as those before them did.
 #[test]
 fn sheets_that_cross_get_even_triangles_too() {
     let sheet = |upright: bool| {
@@ -410,6 +410,6 @@ fn sheets_that_cross_get_even_triangles_too() {
     assert_eq!(report.not_reached(), None);
     assert!(report.before.crossings > 0 && report.after.crossings > 0);
     assert!((report.after.area - 32.0).abs() < 1e-9, "{report:?}");
-    // Only triangles at the crossing cannot be changed freely.
-    assert!(report.after.angles.median > 45.0 && report.after.triangles < 4000, "{report:?}");
+    assert!(report.after.angles.worst > 25.0 && report.after.angles.median > 45.0, "{report:?}");
+    assert!(report.after.triangles < 2500, "{report:?}");
 }
