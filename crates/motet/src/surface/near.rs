@@ -27,14 +27,13 @@ impl Near {
     /// vertices and edges that they share; what the removed ones met does not count. A change that is
     /// `in_place` leaves the surface where it is up to rounding, and can only meet what is that near.
     pub(super) fn crosses(&mut self, sheet: &mut Sheet, change: &Change, in_place: bool) -> bool {
-        let old: Vec<[Point; 3]> = change.removed.iter().map(|&t| sheet.corners(t)).collect();
-        let Some((v, place)) = change.placed else { return self.is_met(sheet, change, &old, in_place) };
+        let Some((v, place)) = change.placed else { return self.is_met(sheet, change, None, in_place) };
         let is_new = v.index() == sheet.points.len();
         if is_new {
             sheet.points.push(place);
         }
         let before = std::mem::replace(&mut sheet.points[v.index()], place);
-        let met = self.is_met(sheet, change, &old, in_place);
+        let met = self.is_met(sheet, change, Some((v, before)), in_place);
         match is_new {
             true => drop(sheet.points.pop()),
             false => sheet.points[v.index()] = before,
@@ -42,13 +41,24 @@ impl Near {
         met
     }
 
-    /// Whether the new triangles meet others or each other; `old` are the corners of the removed ones.
-    fn is_met(&mut self, sheet: &Sheet, change: &Change, old: &[[Point; 3]], in_place: bool) -> bool {
+    /// Whether the new triangles meet others or each other; the placed vertex is where it will be, and was
+    /// `before`.
+    fn is_met(
+        &mut self,
+        sheet: &Sheet,
+        change: &Change,
+        before: Option<(VertexId, Point)>,
+        in_place: bool,
+    ) -> bool {
         let corners = |t: &[VertexId; 3]| t.map(|v| sheet.points[v.index()]);
         let mut vertices: Vec<VertexId> = change.added.iter().flat_map(|(t, _)| *t).collect();
         vertices.sort_unstable();
         vertices.dedup();
         let bounds = bounding_box(vertices.iter().map(|v| sheet.points[v.index()]));
+        let old = |v: VertexId| match before {
+            Some((placed, place)) if placed == v => place,
+            _ => sheet.points[v.index()],
+        };
         self.found.clear();
         self.boxes.touching(bounds, &mut self.found);
         let is_far = |other: [Point; 3]| {
@@ -58,10 +68,9 @@ impl Near {
                 triangle_triangle::meet(*t, other)
                     || triangle_triangle::closest_below(*t, other, reach * reach).is_some()
             };
-            in_place && !old.iter().any(is_near)
+            in_place && !change.removed.iter().any(|&t| is_near(&sheet.triangle(t).map(old)))
         };
-        let met_before =
-            |other| change.removed.iter().any(|&t| meet(&sheet.points, sheet.triangle(t), other));
+        let met_before = |other| change.removed.iter().any(|&t| meet_at(old, sheet.triangle(t), other));
         let meets_any = |t: u32| {
             let other = sheet.triangle(t);
             let of_other = bounding_box(corners(&other));
@@ -91,4 +100,14 @@ impl Near {
     pub(super) fn add(&mut self, sheet: &Sheet, ids: &[u32]) {
         ids.iter().for_each(|&t| self.boxes.add(t, bounding_box(sheet.corners(t))));
     }
+}
+
+/// Whether two triangles meet, with vertices at these places.
+fn meet_at(place: impl Fn(VertexId) -> Point, s: [VertexId; 3], t: [VertexId; 3]) -> bool {
+    let mut vertices = [s, t].concat();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let points: Vec<Point> = vertices.iter().map(|v| place(*v)).collect();
+    let own = |t: [VertexId; 3]| t.map(|v| VertexId::new(vertices.partition_point(|w| *w < v)));
+    meet(&points, own(s), own(t))
 }

@@ -413,3 +413,25 @@ fn sheets_that_cross_get_even_triangles_too() {
     assert!(report.after.angles.worst > 25.0 && report.after.angles.median > 45.0, "{report:?}");
     assert!(report.after.triangles < 2500, "{report:?}");
 }
+
+/// Two wavy sheets of needles that are nearer to each other than each may stray: neither comes through the other.
+#[test]
+fn sheets_nearer_than_the_distance_do_not_cross() {
+    let wave = |x: f64, y: f64| 0.2 * (2.0 * x).sin() * (1.5 * y).cos();
+    let sheet = |up: f64| {
+        grid([40, 10], false, move |u, v| {
+            let (x, y) = (4.0 * u + 0.1 * up, 4.0 * v + 7.0 * up);
+            [x, y, wave(x, y) + up]
+        })
+    };
+    let [below, above] = [0.0, 0.01].map(|up| surface(&sheet(up)));
+    let n = below.points.len();
+    let moved = above.triangles.iter().map(|t| t.map(|v| v.index() + n));
+    let all = below.triangles.iter().map(|t| t.map(VertexId::index)).chain(moved);
+    let both = triangles([below.points, above.points].concat(), all.collect::<Vec<_>>());
+    let made = even(&both, &options(0.2, 0.05));
+    let report = &made.report;
+    assert_eq!(report.not_reached(), None);
+    assert_eq!((report.before.crossings, report.after.crossings), (0, 0), "{report:?}");
+    assert!(report.after.triangles != report.before.triangles);
+}
