@@ -34,6 +34,7 @@ pub(crate) struct Request {
     keep_prisms: bool,
     repair: bool,
     cut: bool,
+    unite: bool,
     voids: bool,
     merge: f64,
     hole_edges: usize,
@@ -131,7 +132,7 @@ type SurfaceParts<'py> = (Bound<'py, PyDict>, Option<History>, Bound<'py, PyAny>
 
 /// Returns the new surface, its history, the report, and why the requested result was not reached.
 #[pyfunction]
-#[pyo3(signature = (surface, *, size, distance, feature_angle, growth, size_array, clip, repair, merge, hole_edges, smooth, tubes, sides, join, threads, progress))]
+#[pyo3(signature = (surface, *, size, distance, feature_angle, growth, size_array, clip, repair, unite, merge, hole_edges, smooth, tubes, sides, join, threads, progress))]
 #[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
 pub(crate) fn surface<'py>(
     py: Python<'py>,
@@ -143,6 +144,7 @@ pub(crate) fn surface<'py>(
     size_array: Option<String>,
     clip: Vec<Vec<f64>>,
     repair: bool,
+    unite: bool,
     merge: f64,
     hole_edges: usize,
     smooth: usize,
@@ -161,6 +163,7 @@ pub(crate) fn surface<'py>(
         size_array,
         clip,
         repair,
+        unite,
         hole_edges,
         merge,
         smooth,
@@ -235,6 +238,7 @@ impl Request {
             keep_prisms: self.keep_prisms,
             repair: self.repair,
             cut: self.cut,
+            unite: self.unite,
             hole_edges: self.hole_edges,
             merge: self.merge,
             ..MeshingWords::default()

@@ -321,6 +321,7 @@ module motet
     integer(c_int32_t) :: cut = 0
     integer(c_int32_t) :: voids = 0
     type(c_ptr) :: watched_by = c_null_ptr
+    integer(c_int32_t) :: unite = 0
   end type
 
   ! Options of filling, which makes tets inside closed surfaces.
@@ -351,6 +352,8 @@ module motet
     integer(c_int32_t) :: voids = 0
     ! tells the progress and stops the call; default NULL: nobody
     type(watch), pointer :: watched_by => null()
+    ! 1: bodies that cross, touch or lie on each other become one, without what lies inside; default 0
+    integer(c_int32_t) :: unite = 0
   end type
 
   ! Options of a refinement. As C has them.
@@ -1784,6 +1787,7 @@ contains
     given%cut = options%cut
     given%voids = options%voids
     if (associated(options%watched_by)) given%watched_by = options%watched_by%handle
+    given%unite = options%unite
   end subroutine
 
   subroutine give_refinement_options(options, given, kept)

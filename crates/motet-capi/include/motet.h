@@ -473,6 +473,8 @@ typedef struct motet_fill_options {
     int32_t cut;             /* 1: surfaces that cross are divided along their intersection; default 0 */
     int32_t voids;           /* 1: spaces inside closed surfaces that are turned inward stay empty; default 0 */
     motet_watch *watched_by; /* tells the progress and stops the call; default NULL: nobody */
+    int32_t unite;           /* 1: bodies that cross, touch or lie on each other become one, without what lies
+                              * inside; default 0 */
 } motet_fill_options;
 
 /* Sets all members to their defaults; `size` is sizeof(motet_fill_options). */

@@ -1012,6 +1012,8 @@ struct fill_options {
     bool voids = false;
     /// tells the progress and stops the call
     watch *watched_by = nullptr;
+    /// bodies that cross, touch or lie on each other become one, without what lies inside
+    bool unite = false;
 };
 
 /// Options of a refinement.
@@ -1081,6 +1083,7 @@ inline motet_fill_options given(const fill_options &options, lists &)
     c.cut = options.cut;
     c.voids = options.voids;
     c.watched_by = handle_of(options.watched_by);
+    c.unite = options.unite;
     return c;
 }
 

@@ -270,6 +270,7 @@ versioned! {
         cut: i32 = 0,
         voids: i32 = 0,
         watched_by: *mut MotetWatch = std::ptr::null_mut(),
+        unite: i32 = 0,
     }
 }
 
@@ -286,6 +287,7 @@ impl MotetFillOptions {
             keep_prisms: self.keep_prisms != 0,
             repair: self.repair != 0,
             cut: self.cut != 0,
+            unite: self.unite != 0,
             ..MeshingWords::default()
         })
     }

@@ -27,6 +27,8 @@ pub(crate) struct AdaptArgs<W: Words> {
     pub(crate) repair: bool,
     #[arg(long, help = help::effect::<W>("merge"), value_name = "DISTANCE", requires = "repair")]
     pub(crate) merge: Option<f64>,
+    #[arg(long, help = help::effect::<W>("unite"))]
+    pub(crate) unite: bool,
     #[arg(skip)]
     words: PhantomData<W>,
 }

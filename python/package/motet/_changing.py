@@ -350,6 +350,7 @@ class _Filling:
     keep_prisms: bool
     repair: bool
     cut: bool
+    unite: bool
     voids: bool
     merge: float
     hole_edges: int
@@ -375,6 +376,7 @@ def mesh(
     merge: float = 0.0,
     hole_edges: int = 32,
     cut: bool = False,
+    unite: bool = False,
     voids: bool = False,
     threads: int = 0,
     progress: Progress | bool | None = None,
@@ -430,6 +432,9 @@ def mesh(
         With `repair`: close holes of at most this many edges.
     cut : bool, default False
         Whether to divide surfaces where they cross or touch; each space between them becomes a region.
+    unite : bool, default False
+        Whether bodies that cross, touch or lie on each other become one, without what lies inside; voids, which
+        face inward, stay. Not with `cut`.
     voids : bool, default False
         Whether to leave empty what is enclosed by closed surfaces that are turned inward.
     threads : int, default 0
@@ -455,7 +460,8 @@ def mesh(
         size=size, surface=surface, distance=distance, feature_angle=feature_angle, growth=growth, size_array=size_array,
         seeds=[(point(place), name) for name, place in (seeds or {}).items()], holes=[point(place) for place in holes], min_eas=min_eas,
         layers=list(layers.items()) if isinstance(layers, Mapping) else [] if layers is None else [(None, layers)],
-        keep_prisms=keep_prisms, repair=repair, cut=cut, voids=voids, merge=merge, hole_edges=hole_edges,
+        keep_prisms=keep_prisms, repair=repair, cut=cut, unite=unite, voids=voids, merge=merge,
+        hole_edges=hole_edges,
     )  # fmt: skip
     parts, reported, not_reached = _motet.mesh(given, request, threads, progress)
     return Changed(Mesh._of(parts), None, report(reported), not_reached)
@@ -472,6 +478,7 @@ def surface(
     size_array: str | None = None,
     clip: Sequence[ArrayLike] = (),
     repair: bool = False,
+    unite: bool = False,
     merge: float = 0.0,
     hole_edges: int = 0,
     smooth: int = 0,
@@ -515,6 +522,9 @@ def surface(
     repair : bool, default False
         Whether to repair the surface first: vertices on edges (T-junctions), overlapping faces, duplicates,
         orientation, and points closer than `merge`.
+    unite : bool, default False
+        Whether bodies that cross, touch or lie on each other become one, without what lies inside; voids, which
+        face inward, stay. The surface has to be closed.
     merge : float, default 0.0
         With `repair`: merge points closer than this, in units of the surface.
     hole_edges : int, default 0
@@ -559,7 +569,7 @@ def surface(
     given = as_mesh(surface) if segments is None else Mesh._of(_motet.read_segments(os.fspath(surface), os.fspath(segments)))
     native = _motet.surface(
         given, size=size, distance=distance, feature_angle=feature_angle, growth=growth, size_array=size_array,
-        clip=[np.asarray(cut, dtype=float).ravel().tolist() for cut in clip], repair=repair,
+        clip=[np.asarray(cut, dtype=float).ravel().tolist() for cut in clip], repair=repair, unite=unite,
         merge=merge, hole_edges=hole_edges, smooth=smooth, tubes=tubes, sides=sides, join=join, threads=threads, progress=progress,
     )  # fmt: skip
     parts, history, reported, not_reached = native

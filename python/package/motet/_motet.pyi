@@ -90,6 +90,7 @@ def surface(
     size_array: str | None,
     clip: list[list[float]],
     repair: bool,
+    unite: bool,
     merge: float,
     hole_edges: int,
     smooth: int,

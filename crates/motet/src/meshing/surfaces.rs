@@ -73,6 +73,11 @@ impl Surfaces {
             return;
         }
         self.keep_firsts(|this, t| (part_of[this.surface_of[t] as usize], this.surface_of[t]));
+        self.merge(&part_of);
+    }
+
+    /// Makes each surface part of another, or of itself; `part_of` names the first of each.
+    fn merge(&mut self, part_of: &[u32]) {
         let is_first = |s: &usize| part_of[*s] as usize == *s;
         let firsts: Vec<usize> = (0..part_of.len()).filter(is_first).collect();
         let new = |s: u32| firsts.partition_point(|&first| first < part_of[s as usize] as usize);
@@ -167,11 +172,14 @@ impl Surfaces {
         preflight::preflight(&self.points, &self.triangles, &self.surface_of, &self.roles, threads)
     }
 
-    /// Makes the requested repairs, and reports what was done.
+    /// Makes the requested repairs, and reports what was done. Surfaces that are united are one afterwards.
     ///
     /// # Errors
     /// When the options are invalid, such as a negative distance.
     pub fn repair(&mut self, repairs: &Repairs, threads: &Threads) -> Result<Repaired> {
+        if repairs.unite {
+            self.merge_boundaries();
+        }
         let done = preflight::repair(
             &self.points,
             &self.triangles,
@@ -186,6 +194,15 @@ impl Surfaces {
         self.surface_of = done.surface_of.clone();
         self.join();
         Ok(done)
+    }
+
+    /// Makes all boundaries one surface.
+    fn merge_boundaries(&mut self) {
+        let is_boundary = |s: usize| self.roles[s] == Role::Boundary;
+        let Some(first) = (0..self.roles.len()).find(|&s| is_boundary(s)) else { return };
+        let part_of: Vec<u32> =
+            (0..self.roles.len()).map(|s| if is_boundary(s) { first } else { s } as u32).collect();
+        self.merge(&part_of);
     }
 
     /// Removes points that no triangle uses: these may even lie on triangles.

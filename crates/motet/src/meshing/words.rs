@@ -62,6 +62,9 @@ words! {
         /// Surfaces that cross are divided along the lines where they do, and those that touch: each space
         /// between them is a region. Alone, or with `repair`.
         cut: bool = false,
+        /// Bodies that cross, touch or lie on each other become one, all surfaces together: what lies inside
+        /// is left out, except voids, which face inward. Alone, or with `repair`; not with `cut`.
+        unite: bool = false,
         /// With `repair`, holes of at most this many edges are closed.
         hole_edges: usize = 32,
         /// With `repair`, points nearer than this are merged, in the unit of the surface.
@@ -102,7 +105,9 @@ impl MeshingWords {
             true => Repairs::all(self.merge, self.hole_edges),
             false => Repairs::default(),
         };
-        (self.repair || self.cut).then_some(Repairs { cut: self.cut, keep_inward: self.voids, ..repairs })
+        let is_any = self.repair || self.cut || self.unite;
+        let (cut, unite, keep_inward) = (self.cut, self.unite, self.voids);
+        is_any.then_some(Repairs { cut, unite, keep_inward, ..repairs })
     }
 
     /// The requested layers; `None` where there are none.

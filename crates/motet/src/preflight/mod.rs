@@ -44,6 +44,7 @@ mod search;
 mod sides;
 mod single;
 mod surfaces;
+pub(crate) mod union;
 
 pub(crate) use crossing::meet;
 pub use crossing::{crossings, own_crossings};

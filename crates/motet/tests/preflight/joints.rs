@@ -18,12 +18,13 @@ const IMPRINT: Repairs = Repairs {
     orient: false,
     keep_inward: false,
     close_holes: None,
+    unite: false,
 };
 
 const CUT: Repairs = Repairs { cut: true, ..IMPRINT };
 
 /// Points and triangles.
-type Soup = (Vec<Point>, Vec<[VertexId; 3]>);
+pub(super) type Soup = (Vec<Point>, Vec<[VertexId; 3]>);
 
 fn mesh((points, triangles): &Soup) -> Mesh {
     let cells = Cells::uniform(CellKind::TRIANGLE, triangles.as_flattened().to_vec()).unwrap();
@@ -31,18 +32,18 @@ fn mesh((points, triangles): &Soup) -> Mesh {
 }
 
 /// The surface of a box of cubes, `n` along each axis.
-fn box_of(n: [usize; 3], bounds: [Point; 2]) -> Soup {
+pub(super) fn box_of(n: [usize; 3], bounds: [Point; 2]) -> Soup {
     let surface = Surface::boundary_of(&box_grid(n, bounds));
     (surface.points, surface.triangles)
 }
 
 /// A rectangle of two triangles.
-fn sheet(corner: Point, u: Point, v: Point) -> Soup {
+pub(super) fn sheet(corner: Point, u: Point, v: Point) -> Soup {
     let points = vec![corner, add(corner, u), add(add(corner, u), v), add(corner, v)];
     (points, [[0, 1, 2], [0, 2, 3]].map(|t| t.map(VertexId)).to_vec())
 }
 
-fn together(soups: &[Soup]) -> Soup {
+pub(super) fn together(soups: &[Soup]) -> Soup {
     let mut all: Soup = Default::default();
     for (points, triangles) in soups {
         let first = all.0.len();
@@ -69,14 +70,14 @@ fn rounded(case: usize, p: Point) -> Point {
     }
 }
 
-const CASES: usize = 6;
+pub(super) const CASES: usize = 6;
 
-fn moved(case: usize, (points, triangles): &Soup) -> Soup {
+pub(super) fn moved(case: usize, (points, triangles): &Soup) -> Soup {
     (points.iter().map(|&p| rounded(case, p)).collect(), triangles.clone())
 }
 
 /// The permitted error of coordinates, and the length of a unit.
-fn scale_of(case: usize) -> (f64, f64) {
+pub(super) fn scale_of(case: usize) -> (f64, f64) {
     match case {
         2 => (1e-11, 1.0),
         3 | 4 => (1e-5, 1.0),
@@ -85,7 +86,7 @@ fn scale_of(case: usize) -> (f64, f64) {
     }
 }
 
-fn repaired(soups: &[(&Soup, Role)], repairs: &Repairs) -> (Surfaces, Repaired) {
+pub(super) fn repaired(soups: &[(&Soup, Role)], repairs: &Repairs) -> (Surfaces, Repaired) {
     let meshes: Vec<(Mesh, Role)> = soups.iter().map(|(soup, role)| (mesh(soup), *role)).collect();
     let named: Vec<_> = meshes.iter().map(|(mesh, role)| (mesh, *role, "")).collect();
     let mut surfaces = Surfaces::new(&named).unwrap();
@@ -98,7 +99,7 @@ fn total_area(surfaces: &Surfaces) -> f64 {
 }
 
 /// The volumes of the regions, ascending.
-fn volumes(surfaces: &Surfaces) -> Vec<f64> {
+pub(super) fn volumes(surfaces: &Surfaces) -> Vec<f64> {
     let threads = Threads::single();
     let report = surfaces.preflight(&threads);
     assert!(report.is_fit(), "{report}");
@@ -109,7 +110,7 @@ fn volumes(surfaces: &Surfaces) -> Vec<f64> {
     volumes
 }
 
-fn assert_volumes(case: usize, surfaces: &Surfaces, expected: &[f64]) {
+pub(super) fn assert_volumes(case: usize, surfaces: &Surfaces, expected: &[f64]) {
     let (off, unit) = scale_of(case);
     let volumes = volumes(surfaces);
     assert_eq!(volumes.len(), expected.len(), "case {case}: {volumes:?}");

@@ -7,3 +7,4 @@ mod faults;
 mod joints;
 mod oracle;
 mod repair;
+mod union;

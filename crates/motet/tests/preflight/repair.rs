@@ -22,6 +22,7 @@ const ALL: Repairs = Repairs {
     drop_duplicates: true,
     orient: true,
     close_holes: Some(12),
+    unite: false,
 };
 
 fn ids<const N: usize>(triangles: [[u32; 3]; N]) -> Triangles {

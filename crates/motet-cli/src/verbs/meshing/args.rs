@@ -43,6 +43,8 @@ Examples:
   Two bodies that overlap, as three regions; faults that cross each other:
     motet mesh bodies.stl -o bodies.vtu --cut
     motet mesh box.stl --membrane fault1.stl --membrane fault2.stl -o box.vtu --cut
+  The same bodies as one, without what lies inside:
+    motet mesh bodies.stl -o body.vtu --unite
   The defects of a surface, to look at:
     motet mesh scan.stl -o scan.vtu --culprits wrong.vtp
 
@@ -81,7 +83,7 @@ pub(crate) struct MeshArgs {
     pub(crate) layers_on: Vec<String>,
     #[arg(long, help = help::effect::<MeshingWords>("keep_prisms"), requires = "layers")]
     pub(crate) keep_prisms: bool,
-    #[arg(long, help = help::effect::<MeshingWords>("cut"))]
+    #[arg(long, help = help::effect::<MeshingWords>("cut"), conflicts_with = "unite")]
     pub(crate) cut: bool,
     #[arg(long, help = help::effect::<MeshingWords>("hole_edges"), value_name = "N",
         default_value_t = MeshingWords::default().hole_edges, requires = "repair")]
@@ -115,6 +117,7 @@ impl MeshArgs {
             keep_prisms: self.keep_prisms,
             repair: self.adapting.repair,
             cut: self.cut,
+            unite: self.adapting.unite,
             hole_edges: self.hole_edges,
             merge: self.adapting.merge.unwrap_or(usual.merge),
             delaunay: self.delaunay,

@@ -106,7 +106,7 @@ impl SurfaceArgs {
 
     /// What the call requests.
     pub(super) fn words(&self) -> SurfaceWords {
-        let AdaptArgs { size, distance, feature_angle, growth, repair, .. } = self.adapting;
+        let AdaptArgs { size, distance, feature_angle, growth, repair, unite, .. } = self.adapting;
         SurfaceWords {
             size,
             distance,
@@ -115,6 +115,7 @@ impl SurfaceArgs {
             size_array: self.adapting.size_array.clone(),
             clip: self.clip.clone(),
             repair,
+            unite,
             hole_edges: self.hole_edges,
             merge: self.adapting.merge.unwrap_or(SurfaceWords::default().merge),
             smooth: self.smooth,

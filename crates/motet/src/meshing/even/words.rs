@@ -33,6 +33,9 @@ words! {
         /// on each other are divided alike, duplicates are dropped, triangles are turned to face one side,
         /// outward where the surface is closed. Holes stay, unless `hole_edges` is given.
         repair: bool = false,
+        /// Bodies that cross, touch or lie on each other become one: what lies inside is left out, except
+        /// voids, which face inward. The surface has to be closed. Alone, or with `repair`.
+        unite: bool = false,
         /// With `repair`, holes of at most this many edges are closed.
         hole_edges: usize = 0,
         /// With `repair`, points nearer than this are merged, in the unit of the surface.
@@ -65,7 +68,7 @@ impl SurfaceWords {
             cuts: self.clip.iter().map(|numbers| Cut::of_numbers(numbers)).collect::<Result<_>>()?,
             sizes: Sizes::of(largest, false, self.growth, at_points),
             adapting: Adapting { distance: self.distance, feature_angle: self.feature_angle },
-            repairs,
+            repairs: Repairs { unite: self.unite, ..repairs },
             smooth: self.smooth,
             held: Vec::new(),
         })

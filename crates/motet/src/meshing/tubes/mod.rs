@@ -5,14 +5,12 @@
 //! | lines | `centre_lines` | segments of line cells, with radii; what is not finite or has no length is named |
 //! | parts | `parts` | a tube along each chain, mitred at bends; chains end at sharp bends and branches, where a ball joins them |
 //! | near wires | `bridges` | wires that nearly touch are joined by balls and tubes between them |
-//! | clusters | `clusters` | triangles divided where they meet (`preflight::cut`), each crossing by itself |
-//! | union | `union` | the pieces inside others left out |
+//! | union | `union` | divided where they meet, and the pieces inside others left out (`preflight::union`) |
 //! | all | `pipeline`, `report` | retried with sections turned otherwise where dividing fails |
 //! | words | `words` | options as callers write them |
 
 mod bridges;
 mod centre_lines;
-mod clusters;
 mod options;
 mod parts;
 mod pipeline;

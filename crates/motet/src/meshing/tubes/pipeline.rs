@@ -9,11 +9,12 @@ use super::centre_lines::CentreLines;
 use super::options::Options;
 use super::parts::{Ball, Parts};
 use super::report::{EvenReport, EvenTubes, Report, Tubes};
-use super::union::{Failure, United, branching_edges, pinched_vertices, union};
+use super::union::{United, branching_edges, pinched_vertices, union};
 use crate::base::{DisjointSets, Error, Result, Threads, splitmix64};
 use crate::mesh::history::Changed;
 use crate::mesh::shapes::{Soup, Wire, add_ball, check_count};
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh, Surface};
+use crate::preflight::union::Failure;
 
 /// How often parts are turned otherwise where uniting them fails.
 const ATTEMPTS: usize = 6;

@@ -8,6 +8,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::Repairs;
 use super::report::{Repair, RepairKind};
 use super::work::{Origin, Piece, Work};
 use crate::base::{DisjointSets, Point, Threads, VertexId, same_orientation, sorted_ids};
@@ -29,9 +30,27 @@ pub(super) struct DividedSurfaces {
     pub(super) pieces: Vec<Piece>,
 }
 
-/// Divides triangles that touch or overlap and, if `crossings`, those that cross. `None` if nothing has to be
-/// divided, or if dividing fails, which is reported.
-pub(super) fn divide(work: &mut Work, crossings: bool, threads: &Threads) -> Option<DividedSurfaces> {
+impl DividedSurfaces {
+    /// The work with these points and pieces in place of those before; continues what is known of vertices
+    /// and new points.
+    pub(super) fn replace<'a>(
+        &'a self,
+        work: Work<'a>,
+        vertex_to_kept: &mut Vec<VertexId>,
+        origins: &mut Vec<Origin>,
+    ) -> Work<'a> {
+        let n_before = work.points.len();
+        vertex_to_kept.iter_mut().for_each(|v| *v = self.vertex_to_kept[v.index()]);
+        vertex_to_kept.extend((n_before..self.points.len()).map(VertexId::new));
+        origins.extend(&self.origins);
+        Work { points: &self.points, pieces: self.pieces.clone(), ..work }
+    }
+}
+
+/// Divides triangles that touch or overlap and, with `cut` or `unite`, those that cross. `None` if nothing
+/// has to be divided, or if dividing fails, which is reported; what is to be united is divided once more
+/// later.
+pub(super) fn divide(work: &mut Work, repairs: &Repairs, threads: &Threads) -> Option<DividedSurfaces> {
     let lists = work.lists();
     let shapes = shapes(&lists.surfaces(work), threads);
     let sound: Vec<u32> =
@@ -45,9 +64,15 @@ pub(super) fn divide(work: &mut Work, crossings: bool, threads: &Threads) -> Opt
     let near = 2.0 * rounding::of(&used);
     let parts = Parts::new(work.points, &triangles, near, threads);
     let admits = |p: u32, q: u32| p != q || parts.is_faulty[p as usize];
-    let rule = Rule { group_of: &parts.part_of, admits: &admits, near, crossings };
-    let Some(cut) = Cut::new(work.points, &triangles, &rule, threads) else {
-        work.record(RepairKind::LeftMeeting, Vec::new(), Vec::new());
+    let cut = |crossings: bool| {
+        let rule = Rule { group_of: &parts.part_of, admits: &admits, near, crossings };
+        Cut::new(work.points, &triangles, &rule, threads)
+    };
+    let made = cut(repairs.cut || repairs.unite).or_else(|| repairs.unite.then(|| cut(false)).flatten());
+    let Some(cut) = made else {
+        if !repairs.unite {
+            work.record(RepairKind::LeftMeeting, Vec::new(), Vec::new());
+        }
         return None;
     };
     let is_changed = cut.pieces.len() != triangles.len()
@@ -62,7 +87,7 @@ pub(super) fn divide(work: &mut Work, crossings: bool, threads: &Threads) -> Opt
         origins,
         vertex_to_kept: cut.vertex_to_kept,
     };
-    let has_duplicates = drop_duplicate_pieces(work, &mut divided);
+    let has_duplicates = !repairs.unite && drop_duplicate_pieces(work, &mut divided);
     (is_changed || has_duplicates).then_some(divided)
 }
 

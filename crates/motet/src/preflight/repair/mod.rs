@@ -7,6 +7,7 @@ mod holes;
 mod merge;
 mod orient;
 mod report;
+mod unite;
 mod work;
 
 use serde::{Deserialize, Serialize};
@@ -48,11 +49,16 @@ pub struct Repairs {
     /// Holes of boundaries with a rim of at most this many edges are filled without new points; none with a
     /// rim of more than 1000 is. Neighbours have to face the same side.
     pub close_holes: Option<usize>,
+    /// The parts of each boundary become one, where they cross, touch or lie on each other: what lies inside
+    /// is left out. This includes `imprint`. Closed parts that face inward stay so where they lie inside
+    /// others: they bound voids. Where triangles cannot be divided otherwise, points are shifted by a tiny
+    /// length, which is reported.
+    pub unite: bool,
 }
 
 impl Repairs {
-    /// All repairs except `cut`: points nearer than `merge` are merged, holes of at most `hole_edges` edges
-    /// are filled.
+    /// All repairs except `cut` and `unite`: points nearer than `merge` are merged, holes of at most
+    /// `hole_edges` edges are filled.
     pub fn all(merge: f64, hole_edges: usize) -> Self {
         Self {
             merge: Some(merge),
@@ -63,6 +69,7 @@ impl Repairs {
             orient: true,
             keep_inward: false,
             close_holes: Some(hole_edges),
+            unite: false,
         }
     }
 }
@@ -85,7 +92,7 @@ pub fn repair(
     threads: &Threads,
 ) -> Result<Repaired> {
     let mut work = Work::new(&Surfaces::new(points, triangles, surface_of, roles));
-    let vertex_to_kept = match repairs.merge {
+    let mut vertex_to_kept = match repairs.merge {
         Some(distance) if !(0.0..=LARGEST).contains(&distance) => {
             return Err(Error::options(format!("the merge distance cannot be {distance}"))
                 .remedy("give a distance of 0 or more"));
@@ -96,33 +103,48 @@ pub fn repair(
     if repairs.drop_degenerate {
         degenerate::drop_all(&mut work, threads);
     }
-    let is_dividing = repairs.imprint || repairs.cut;
-    let Some(divided) = is_dividing.then(|| divide::divide(&mut work, repairs.cut, threads)).flatten() else {
-        finish(&mut work, repairs, threads);
-        return Ok(work.finish(vertex_to_kept, Vec::new()));
-    };
-    let kept = vertex_to_kept.iter().map(|v| divided.vertex_to_kept[v.index()]);
-    let vertex_to_kept = kept.chain((points.len()..divided.points.len()).map(VertexId::new)).collect();
-    let mut work = Work { points: &divided.points, pieces: divided.pieces, ..work };
-    if repairs.drop_degenerate {
-        degenerate::drop_all(&mut work, threads);
+    // Where bodies meet, it is not known any more which triangles are one body.
+    if repairs.orient && repairs.unite {
+        orient::orient(&mut work, repairs);
+    }
+    let mut origins = Vec::new();
+    let is_dividing = repairs.imprint || repairs.cut || repairs.unite;
+    let divided = is_dividing.then(|| divide::divide(&mut work, repairs, threads)).flatten();
+    if let Some(divided) = &divided {
+        work = divided.replace(work, &mut vertex_to_kept, &mut origins);
+        if repairs.drop_degenerate {
+            degenerate::drop_all(&mut work, threads);
+        }
     }
     finish(&mut work, repairs, threads);
-    Ok(work.finish(vertex_to_kept, divided.origins))
+    let united = repairs.unite.then(|| unite::unite(&mut work, triangles, threads)).flatten();
+    if let Some(united) = &united {
+        work = united.replace(work, &mut vertex_to_kept, &mut origins);
+        degenerate::drop_all(&mut work, threads);
+    }
+    // What could not be united is repaired like the rest.
+    if repairs.unite && repairs.drop_duplicates {
+        work.drop_duplicates();
+    }
+    if repairs.unite && repairs.orient && united.is_none() {
+        orient::orient(&mut work, repairs);
+    }
+    Ok(work.finish(vertex_to_kept, origins))
 }
 
 /// The repairs that follow once triangles share what they have in common.
 fn finish(work: &mut Work, repairs: &Repairs, threads: &Threads) {
-    if repairs.drop_duplicates {
+    // For the union, winding numbers have to be those of whole bodies.
+    if repairs.drop_duplicates && !repairs.unite {
         work.drop_duplicates();
     }
-    if repairs.orient {
-        orient::orient(work, repairs.keep_inward);
+    if repairs.orient && !repairs.unite {
+        orient::orient(work, repairs);
     }
     if let Some(longest) = repairs.close_holes {
         holes::close(work, longest, threads);
         if repairs.orient {
-            orient::orient(work, repairs.keep_inward);
+            orient::orient(work, repairs);
         }
     }
 }

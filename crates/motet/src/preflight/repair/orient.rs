@@ -1,12 +1,15 @@
 //! Reverses triangles so that neighbours face the same side, and closed parts outward.
 
+use super::Repairs;
 use super::report::RepairKind;
 use super::work::Work;
-use crate::base::Csr;
+use crate::base::{Csr, VertexId};
+use crate::geometry::triangle::centroid;
 use crate::preflight::parts::Parts;
 use crate::preflight::sides::{Side, edges};
+use crate::spatial::WindingNumber;
 
-pub(super) fn orient(work: &mut Work, keep_inward: bool) {
+pub(super) fn orient(work: &mut Work, repairs: &Repairs) {
     let lists = work.lists();
     let sides = work.sides(&lists);
     let parts = Parts::new(work.pieces.len(), &sides);
@@ -20,16 +23,25 @@ pub(super) fn orient(work: &mut Work, keep_inward: bool) {
             }
         }
     }
-    if !keep_inward {
-        orient_outward(work);
+    if !repairs.keep_inward {
+        orient_outward(work, repairs.unite);
     }
 }
 
-fn orient_outward(work: &mut Work) {
+/// Turns closed parts outward; with `keep_voids` only those that do not lie inside the rest.
+fn orient_outward(work: &mut Work, keep_voids: bool) {
     let lists = work.lists();
     let sides = work.sides(&lists);
     let inward = Parts::new(work.pieces.len(), &sides).inward(&lists.surfaces(work));
-    inward.into_iter().flatten().for_each(|t| work.reverse(t));
+    let is_void = |part: &Vec<u32>| {
+        let of = |t: u32| work.pieces[t as usize].vertices;
+        let rest = (0..work.pieces.len() as u32).filter(|t| part.binary_search(t).is_err());
+        let rest: Vec<[VertexId; 3]> = rest.map(of).collect();
+        let at = centroid(of(part[0]).map(|v| work.points[v.index()]));
+        WindingNumber::new(work.points, &rest).at(at) > 0.5
+    };
+    let turned: Vec<Vec<u32>> = inward.into_iter().filter(|part| !keep_voids || !is_void(part)).collect();
+    turned.into_iter().flatten().for_each(|t| work.reverse(t));
 }
 
 /// Which triangles have to be reversed, found by going from neighbour to neighbour.

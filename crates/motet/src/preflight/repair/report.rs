@@ -20,6 +20,12 @@ pub enum RepairKind {
     CutCrossing,
     /// Of triangles that face each other one was kept, as the wall between two bodies.
     KeptWall,
+    /// A triangle inside the union of bodies was left out.
+    DroppedInside,
+    /// A triangle that met others was divided, and what is inside the union of bodies left out.
+    United,
+    /// A vertex was shifted by a tiny length, since triangles that meet there could not be divided otherwise.
+    ShiftedVertex,
     /// Triangles that meet were left as they were: their pieces would still meet in more than they share.
     LeftMeeting,
     /// A triangle that named a vertex twice was removed.

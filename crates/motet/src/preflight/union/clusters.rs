@@ -1,30 +1,31 @@
-//! Triangles divided where they meet, cluster by cluster: what happens at one crossing of wires does not
-//! depend on any other.
+//! Triangles divided where they meet, cluster by cluster: what happens at one crossing does not depend on any
+//! other.
 
 use std::collections::BTreeMap;
 
 use crate::base::{Csr, DisjointSets, Point, Threads, VertexId, splitmix64};
 use crate::geometry::vector::add;
-use crate::mesh::shapes::Soup;
+use crate::preflight::crossing::own_crossings;
 use crate::preflight::cut::{Cut, Rule};
-use crate::preflight::own_crossings;
 
 /// How often the points of a cluster are shifted by chance where dividing it fails.
-const ATTEMPTS: u64 = 8;
+const ATTEMPTS: u64 = 4;
 
 /// By how much they are shifted, over the distance of points that are one place.
 const SHIFT: f64 = 300.0;
 
-/// A soup of which triangles share what they have in common.
+/// Triangles that share what they have in common.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Divided {
-    /// The points of the soup, some of them shifted, then new ones.
+    /// The given points, some of them shifted, then new ones.
     pub(super) points: Vec<Point>,
-    /// The pieces, each with the triangle of the soup that it is or is part of.
+    /// The pieces, each with the given triangle that it is or is part of.
     pub(super) pieces: Vec<([VertexId; 3], u32)>,
-    /// Whether each triangle of the soup belongs to such a cluster.
+    /// The vertex that each given point has become.
+    pub(super) vertex_to_kept: Vec<VertexId>,
+    /// Whether each given triangle belongs to a cluster of triangles that met.
     pub(super) is_cut: Vec<bool>,
-    /// The number of clusters of triangles that met.
+    /// The number of these clusters.
     pub(super) clusters: usize,
     /// How many of them were divided only after their points had been shifted.
     pub(super) shifted: usize,
@@ -34,7 +35,7 @@ pub(super) struct Divided {
 /// triangles at these corners.
 struct Cluster {
     triangles: Vec<u32>,
-    /// The vertices of the soup, in rising order, and whether each is a corner of a triangle that crosses.
+    /// Their vertices, in rising order, and whether each is a corner of a triangle that crosses.
     vertices: Vec<VertexId>,
     is_inner: Vec<bool>,
 }
@@ -43,15 +44,20 @@ struct Cluster {
 ///
 /// # Errors
 /// A place where dividing failed.
-pub(super) fn divide(soup: &Soup, near: f64, threads: &Threads) -> Result<Divided, Point> {
-    let clusters = clusters(soup, threads);
-    let cuts = threads.map(clusters.len(), |k| clusters[k].cut(soup, near));
-    let mut divided = Divided { points: soup.points.clone(), clusters: clusters.len(), ..Divided::default() };
-    let mut kept: Vec<VertexId> = (0..soup.points.len()).map(VertexId::new).collect();
-    let mut is_cut = vec![false; soup.triangles.len()];
+pub(super) fn divide(
+    points: &[Point],
+    triangles: &[[VertexId; 3]],
+    near: f64,
+    threads: &Threads,
+) -> Result<Divided, Point> {
+    let clusters = clusters(points, triangles, threads);
+    let cuts = threads.map(clusters.len(), |k| clusters[k].cut(points, triangles, near));
+    let mut divided = Divided { points: points.to_vec(), clusters: clusters.len(), ..Divided::default() };
+    let mut kept: Vec<VertexId> = (0..points.len()).map(VertexId::new).collect();
+    let mut is_cut = vec![false; triangles.len()];
     for (cluster, cut) in clusters.iter().zip(cuts) {
         let Some((cut, attempt)) = cut else {
-            return Err(soup.points[cluster.vertices[0].index()]);
+            return Err(points[cluster.vertices[0].index()]);
         };
         divided.shifted += usize::from(attempt > 0);
         let (n_given, first) = (cluster.vertices.len(), divided.points.len());
@@ -73,24 +79,22 @@ pub(super) fn divide(soup: &Soup, near: f64, threads: &Threads) -> Result<Divide
             cut.pieces.iter().map(|(t, origin)| (t.map(global), cluster.triangles[*origin as usize]));
         divided.pieces.extend(pieces);
     }
-    for (t, triangle) in (0u32..).zip(&soup.triangles).filter(|(t, _)| !is_cut[*t as usize]) {
+    for (t, triangle) in (0u32..).zip(triangles).filter(|(t, _)| !is_cut[*t as usize]) {
         let [a, b, c] = triangle.map(|v| kept[v.index()]);
         if a != b && b != c && c != a {
             divided.pieces.push(([a, b, c], t));
         }
     }
-    divided.is_cut = is_cut;
-    Ok(divided)
+    Ok(Divided { is_cut, vertex_to_kept: kept, ..divided })
 }
 
-fn clusters(soup: &Soup, threads: &Threads) -> Vec<Cluster> {
-    let triangles = &soup.triangles;
-    let pairs = own_crossings(&soup.points, triangles, threads);
-    let mut is_inner = vec![false; soup.points.len()];
+fn clusters(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Vec<Cluster> {
+    let pairs = own_crossings(points, triangles, threads);
+    let mut is_inner = vec![false; points.len()];
     for t in pairs.as_flattened() {
         triangles[*t as usize].iter().for_each(|v| is_inner[v.index()] = true);
     }
-    let at = Csr::from_pairs(soup.points.len(), || {
+    let at = Csr::from_pairs(points.len(), || {
         let is_inner = &is_inner;
         (0u32..).zip(triangles).flat_map(move |(t, corners)| {
             corners.iter().filter(|v| is_inner[v.index()]).map(move |v| (v.index(), t))
@@ -120,11 +124,11 @@ fn clusters(soup: &Soup, threads: &Threads) -> Vec<Cluster> {
 
 impl Cluster {
     /// The pieces of the cluster, in its own numbers, and the number of the attempt. `None` if all fail.
-    fn cut(&self, soup: &Soup, near: f64) -> Option<(Cut, u64)> {
+    fn cut(&self, points: &[Point], triangles: &[[VertexId; 3]], near: f64) -> Option<(Cut, u64)> {
         let id = |v: VertexId| VertexId::new(self.vertices.partition_point(|w| *w < v));
         let triangles: Vec<[VertexId; 3]> =
-            self.triangles.iter().map(|&t| soup.triangles[t as usize].map(id)).collect();
-        let given: Vec<Point> = self.vertices.iter().map(|v| soup.points[v.index()]).collect();
+            self.triangles.iter().map(|&t| triangles[t as usize].map(id)).collect();
+        let given: Vec<Point> = self.vertices.iter().map(|v| points[v.index()]).collect();
         let group_of = vec![0; triangles.len()];
         let rule = Rule { group_of: &group_of, admits: &|_, _| true, near, crossings: true };
         (0..ATTEMPTS).find_map(|attempt| {
