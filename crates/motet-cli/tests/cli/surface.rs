@@ -5,7 +5,7 @@ use motet::Mesh;
 use motet::base::VertexId;
 use motet::io::read;
 use motet::mesh::shapes::box_grid;
-use motet::mesh::{CellKind, Cells, Field};
+use motet::mesh::{CellKind, Cells, Field, Surface};
 use serde_json::Value;
 
 /// A tube without ends, of radius 1 and length 4, with narrow triangles and a linear point array.
@@ -172,4 +172,48 @@ fn wires_come_from_texts_and_from_parameters() {
         assert!(stderr(&call).contains(part), "{words:?}: {}", stderr(&call));
         assert!(!folder.path("a.stl").exists());
     }
+}
+
+/// Two boxes that overlap, with a linear array.
+fn boxes() -> Mesh {
+    let boxes = [[[0.0; 3], [1.0; 3]], [[0.5, 0.25, 0.25], [2.0, 0.75, 0.75]]].map(|of| box_grid([3; 3], of));
+    let [a, b] = boxes.each_ref().map(Surface::boundary_of);
+    let (mut cells, n) = (Cells::new(), a.points.len());
+    a.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
+    b.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, t.map(|v| VertexId::new(n + v.index()))));
+    let mut mesh = Mesh::new([a.points, b.points].concat(), cells);
+    let along: Vec<f64> = mesh.points.iter().map(|p| p[0] + 2.0 * p[1]).collect();
+    mesh.set_point_field(Field::scalars("along", along));
+    mesh
+}
+
+#[test]
+fn bodies_that_overlap_become_one() {
+    let folder = Folder::new();
+    folder.mesh("boxes.vtp", &boxes());
+    let words = ["boxes.vtp", "--unite", "--size", "0.2", "--json"];
+    let call = folder.motet(["surface", "-o", "one.vtp"].iter().chain(&words)).assert().success();
+    let report: Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    assert!(report["before"]["crossings"].as_u64().unwrap() > 0, "{report}");
+    assert_eq!(report["after"]["crossings"], 0);
+    let volume = report["after"]["volume"].as_f64().unwrap();
+    assert!((volume - 1.25).abs() < 1e-9, "{volume}");
+    let made = read(folder.path("one.vtp")).unwrap();
+    let along = made.point_field("along").unwrap().values.to_f64().unwrap();
+    assert!(along.iter().zip(&made.points).all(|(x, p)| (x - p[0] - 2.0 * p[1]).abs() < 1e-9));
+    let call =
+        folder.motet(["mesh", "-o", "one.vtu", "--surface", "adapt"].iter().chain(&words)).assert().success();
+    let report: Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    let bodies = report["filled"]["bodies"].as_array().unwrap();
+    assert!(bodies.len() == 1 && (bodies[0]["volume"].as_f64().unwrap() - 1.25).abs() < 1e-9, "{report}");
+    let both = ["mesh", "boxes.vtp", "-o", "no.vtu", "--unite", "--cut"];
+    assert!(stderr(&folder.motet(both).assert().code(2)).contains("--cut"));
+}
+
+#[test]
+fn what_is_open_is_not_united() {
+    let folder = Folder::new();
+    folder.mesh("tube.vtp", &tube());
+    let call = folder.motet(["surface", "tube.vtp", "-o", "even.vtp", "--unite"]).assert().code(4);
+    assert!(stderr(&call).contains("could not be united"), "{}", stderr(&call));
 }

@@ -36,7 +36,7 @@ fn mixed(number: u64) -> u64 {
 }
 
 fn is_left(done: &Repaired) -> bool {
-    done.count(RepairKind::LeftMeeting) > 0
+    done.count(RepairKind::LeftApart) > 0
 }
 
 #[test]

@@ -136,6 +136,7 @@ impl<'a> Report<'a> {
                 RepairKind::ShiftedVertex,
                 "vertices were shifted by a tiny length, so that triangles could be divided there",
             ),
+            (RepairKind::LeftApart, "surface whose bodies cannot be united: it is left unchanged"),
             (RepairKind::KeptWall, "walls between bodies, on which each body has a triangle: one is kept"),
             (
                 RepairKind::LeftMeeting,

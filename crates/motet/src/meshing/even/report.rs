@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::clip::Clipped;
 use super::measured::Measured;
 use crate::base::reasons;
-use crate::preflight::Repair;
+use crate::preflight::{Repair, RepairKind};
 
 /// What became of a surface that was made even.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -64,6 +64,11 @@ impl Report {
         };
         // Where triangles crossed before, their number says nothing: smaller ones cross in more pairs.
         let is_crossed = before.crossings == 0 && after.crossings > 0;
-        reasons([is_far.then(far), is_crossed.then(crosses)])
+        let is_apart = self.repairs.iter().any(|repair| repair.kind == RepairKind::LeftApart);
+        let apart = || {
+            "the bodies could not be united: the surface is open, or its triangles could not be divided"
+                .to_owned()
+        };
+        reasons([is_apart.then(apart), is_far.then(far), is_crossed.then(crosses)])
     }
 }

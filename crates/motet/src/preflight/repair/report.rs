@@ -26,6 +26,9 @@ pub enum RepairKind {
     United,
     /// A vertex was shifted by a tiny length, since triangles that meet there could not be divided otherwise.
     ShiftedVertex,
+    /// Bodies were left as they were: their union would be empty, open or not free of crossings, or their
+    /// triangles could not be divided.
+    LeftApart,
     /// Triangles that meet were left as they were: their pieces would still meet in more than they share.
     LeftMeeting,
     /// A triangle that named a vertex twice was removed.

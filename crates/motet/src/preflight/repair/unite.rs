@@ -37,7 +37,7 @@ pub(super) fn unite(work: &mut Work, given: &[[VertexId; 3]], threads: &Threads)
                     Failure::NotDivided(at) | Failure::Faulty(at) => Some(at),
                     Failure::Empty => None,
                 };
-                let kind = RepairKind::LeftMeeting;
+                let kind = RepairKind::LeftApart;
                 work.done.push(Repair { kind, triangles: Vec::new(), vertices: Vec::new(), at });
                 continue;
             }
