@@ -279,7 +279,7 @@ mod tests {
         let options = words.options(&ball(), None).unwrap();
         assert_eq!(format!("{options:?}"), format!("{:?}", Options::default()));
         assert!(words.repairs().is_none());
-        assert_eq!(MeshingWords::NAMES.len(), 18);
+        assert_eq!(MeshingWords::NAMES.len(), 19);
     }
 
     #[test]
