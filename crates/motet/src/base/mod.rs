@@ -1,5 +1,6 @@
 //! Floor 0: what every other module builds on.
 
+mod changes;
 mod csr;
 mod error;
 pub(crate) mod four;
@@ -19,6 +20,7 @@ mod watch;
 #[cfg(feature = "suite")]
 mod words;
 
+pub(crate) use changes::{Changes, entry};
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result, printable};
 pub use ids::{BodyId, CellId, Id, MaybeId, TetId, TriangleId, VertexId, rising_list};

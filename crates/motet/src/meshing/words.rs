@@ -80,8 +80,15 @@ impl MeshingWords {
     /// point of the surfaces.
     ///
     /// # Errors
-    /// When layers are out of range, requested twice for a patch, or for one that does not exist.
+    /// When both `cut` and `unite` are requested, or layers are out of range, requested twice for a patch, or
+    /// for one that does not exist.
     pub fn options(&self, surfaces: &Surfaces, at_points: Option<Vec<f64>>) -> Result<Options> {
+        if self.cut && self.unite {
+            return Err(Error::options(
+                "`cut` keeps what bodies have in common as regions, `unite` makes one of them",
+            )
+            .remedy("give one of the two"));
+        }
         let largest = match self.size {
             Some(EdgeLength::Length(h)) => Some(h),
             _ => None,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::features::{Kind, length};
 use super::sheet::{Change, Sheet, edges_of};
-use super::work::{Refusal, Work, cosines};
+use super::work::{Refusal, Work, cosines, is_due};
 use crate::base::{Error, Point, Result, VertexId, sorted_ids};
 use crate::geometry::triangle::{area, centroid, largest_cosine, longest_side};
 use crate::geometry::vector::{add, distance, scale};
@@ -270,7 +270,7 @@ impl Work<'_> {
     /// Moves each vertex towards the centroid of its triangles, weighted so that sizes are followed.
     fn smooth(&mut self) {
         for v in (0..self.sheet.points.len()).map(VertexId::new) {
-            if self.sheet.star(v).is_empty() || !self.changes.is_due(&mut self.moved, v.index(), &[v]) {
+            if self.sheet.star(v).is_empty() || !is_due(&self.changes, &mut self.moved, v.index(), &[v]) {
                 continue;
             }
             let admits = |sheet: &Sheet, change: &Change| {
@@ -350,10 +350,10 @@ impl Work<'_> {
 
     /// Makes a triangle wider, if it is still narrow and something changed around it since that was tried.
     /// Returns whether it changed.
-    fn widen(&mut self, t: u32, tried: &mut Vec<usize>) -> bool {
+    fn widen(&mut self, t: u32, tried: &mut Vec<u32>) -> bool {
         if !self.sheet.exists(t)
             || largest_cosine(self.sheet.corners(t)) <= NARROW
-            || !self.changes.is_due(tried, t as usize, &self.sheet.triangle(t))
+            || !is_due(&self.changes, tried, t as usize, &self.sheet.triangle(t))
         {
             return false;
         }

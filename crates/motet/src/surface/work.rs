@@ -6,7 +6,7 @@ use super::lines::Line;
 use super::near::Near;
 use super::original::Original;
 use super::sheet::{Change, Sheet, edges_of};
-use crate::base::{Point, Threads, VertexId, sorted_ids};
+use crate::base::{Changes, Point, Threads, VertexId, entry, sorted_ids};
 use crate::geometry::segment;
 use crate::geometry::triangle::{centroid, largest_cosine, longest_side};
 use crate::geometry::vector::{add, distance, scale};
@@ -42,37 +42,8 @@ pub(super) struct Work<'a> {
     pub(super) threads: &'a Threads,
     pub(super) max_triangles: usize,
     pub(super) changes: Changes,
-    /// When each vertex was last moved, as [`Changes::is_due`] counts.
-    pub(super) moved: Vec<usize>,
-}
-
-/// The number of changes that were made, and of the last one at each vertex.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Changes {
-    n: usize,
-    last: Vec<usize>,
-}
-
-impl Changes {
-    fn at(&mut self, change: &Change) {
-        self.n += 1;
-        for v in change.added.iter().flat_map(|(t, _)| *t) {
-            if v.index() >= self.last.len() {
-                self.last.resize(v.index() + 1, 0);
-            }
-            self.last[v.index()] = self.n;
-        }
-    }
-
-    /// Whether a thing with these vertices has not been `tried` yet, or something changed at them since. The
-    /// table says for each thing how many changes were made when it was last tried, plus one.
-    pub(super) fn is_due(&self, tried: &mut Vec<usize>, id: usize, vertices: &[VertexId]) -> bool {
-        if id >= tried.len() {
-            tried.resize(id + 1, 0);
-        }
-        let before = std::mem::replace(&mut tried[id], self.n + 1);
-        vertices.iter().any(|v| self.last.get(v.index()).is_none_or(|last| *last >= before))
-    }
+    /// When it was last tried to move each vertex; 0: never.
+    pub(super) moved: Vec<u32>,
 }
 
 impl<'a> Work<'a> {
@@ -86,7 +57,7 @@ impl<'a> Work<'a> {
     ) -> Self {
         let cover = Cover::new(&sheet, original.distance);
         let near = Near::new(&sheet);
-        let changes = Changes { n: 0, last: vec![0; sheet.points.len()] };
+        let changes = Changes::new();
         let moved = Vec::new();
         Self { cover, near, sheet, features, original, sizes, threads, max_triangles, changes, moved }
     }
@@ -357,7 +328,7 @@ impl<'a> Work<'a> {
         let ids = self.sheet.commit(change);
         self.near.add(&self.sheet, &ids);
         self.cover.commit(change, moves, &ids);
-        self.changes.at(change);
+        self.changes.record(change.added.iter().flat_map(|(t, _)| *t));
     }
 }
 
@@ -371,4 +342,11 @@ pub(super) fn cosines(sheet: &Sheet, change: &Change) -> [f64; 2] {
     let before = change.removed.iter().map(|&t| largest_cosine(sheet.corners(t))).fold(-1.0, f64::max);
     let after = sheet.corners_after(change).map(largest_cosine).fold(-1.0, f64::max);
     [before, after]
+}
+
+/// Whether a thing with these vertices was not tried yet, or something at them has changed since; it is being
+/// tried now.
+pub(super) fn is_due(changes: &Changes, tried: &mut Vec<u32>, id: usize, vertices: &[VertexId]) -> bool {
+    let time = std::mem::replace(entry(tried, id), changes.now());
+    !vertices.iter().all(|v| changes.none_since(*v, time))
 }

@@ -9,7 +9,7 @@ use motet::mesh::{CellKind, Cells, Mesh, Surface};
 use motet::meshing::{Options, Surfaces, fill};
 use motet::preflight::{FaultKind, RepairKind, Repaired, Repairs, Role};
 
-const IMPRINT: Repairs = Repairs {
+pub(super) const IMPRINT: Repairs = Repairs {
     merge: None,
     imprint: true,
     cut: false,

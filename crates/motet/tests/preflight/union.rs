@@ -6,33 +6,17 @@ use motet::mesh::shapes::ball;
 use motet::mesh::{Mesh, Surface};
 use motet::preflight::{FaultKind, RepairKind, Repaired, Repairs, Role, own_crossings};
 
+use crate::common::random::Random;
+
 use super::joints::{
-    CASES, Soup, assert_volumes, box_of, moved, repaired, scale_of, sheet, together, volumes,
+    CASES, IMPRINT, Soup, assert_volumes, box_of, moved, repaired, scale_of, sheet, together, volumes,
 };
 
-const UNITE: Repairs = Repairs {
-    merge: None,
-    imprint: false,
-    cut: false,
-    drop_degenerate: false,
-    drop_duplicates: false,
-    orient: false,
-    keep_inward: false,
-    close_holes: None,
-    unite: true,
-};
+const UNITE: Repairs = Repairs { unite: true, ..IMPRINT };
 
 /// Turned inside out.
 fn inward((points, triangles): Soup) -> Soup {
     (points, triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect())
-}
-
-/// A random number for each number (Steele, Lea, Flood 2014, *Fast splittable pseudorandom number generators*).
-fn mixed(number: u64) -> u64 {
-    let x = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
 }
 
 fn is_left(done: &Repaired) -> bool {
@@ -114,15 +98,13 @@ fn random_boxes_have_the_volume_of_the_cells_in_them() {
     let mut n_united = 0;
     for seed in 0..60 {
         let case = seed as usize % CASES;
-        let random = |k: u64| (mixed(mixed(seed) ^ k) % N as u64) as usize;
-        let boxes: Vec<[[usize; 2]; 3]> = (0..5)
-            .map(|b| {
-                [0, 1, 2].map(|axis| {
-                    let low = random(6 * b + 2 * axis);
-                    [low, low + 1 + random(6 * b + 2 * axis + 1) % (N - low)]
-                })
-            })
-            .collect();
+        let mut random = Random((seed + 1u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let mut below = |n: usize| (random.next() * n as f64) as usize;
+        let mut range = |_| {
+            let low = below(N);
+            [low, low + 1 + below(N - low)]
+        };
+        let boxes: Vec<[[usize; 2]; 3]> = (0..5).map(|_| [0, 1, 2].map(&mut range)).collect();
         let bodies: Vec<Soup> = boxes
             .iter()
             .map(|of| box_of([1, 2, 1], [0, 1].map(|end| [0, 1, 2].map(|axis| of[axis][end] as f64))))

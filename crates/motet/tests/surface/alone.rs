@@ -390,6 +390,14 @@ fn neither_threads_nor_the_order_of_normals_matter() {
     assert_eq!(outward.count(), 0);
 }
 
+/// Two surfaces as one mesh.
+fn together(a: Surface, b: Surface) -> Mesh {
+    let n = a.points.len();
+    let moved = b.triangles.iter().map(|t| t.map(|v| v.index() + n));
+    let all = a.triangles.iter().map(|t| t.map(VertexId::index)).chain(moved);
+    triangles([a.points, b.points].concat(), all.collect::<Vec<_>>())
+}
+
 /// Two planes of needles that cross each other. Triangles at the crossing are changed like others, although they
 /// cross the other plane as those before them did.
 #[test]
@@ -401,10 +409,7 @@ fn sheets_that_cross_get_even_triangles_too() {
         })
     };
     let [flat, upright] = [false, true].map(|upright| surface(&sheet(upright)));
-    let n = flat.points.len();
-    let moved = upright.triangles.iter().map(|t| t.map(|v| v.index() + n));
-    let all = flat.triangles.iter().map(|t| t.map(VertexId::index)).chain(moved);
-    let both = triangles([flat.points, upright.points].concat(), all.collect::<Vec<_>>());
+    let both = together(flat, upright);
     let made = even(&both, &options(0.2, 0.01));
     let report = &made.report;
     assert_eq!(report.not_reached(), None);
@@ -425,10 +430,7 @@ fn sheets_nearer_than_the_distance_do_not_cross() {
         })
     };
     let [below, above] = [0.0, 0.01].map(|up| surface(&sheet(up)));
-    let n = below.points.len();
-    let moved = above.triangles.iter().map(|t| t.map(|v| v.index() + n));
-    let all = below.triangles.iter().map(|t| t.map(VertexId::index)).chain(moved);
-    let both = triangles([below.points, above.points].concat(), all.collect::<Vec<_>>());
+    let both = together(below, above);
     let made = even(&both, &options(0.2, 0.05));
     let report = &made.report;
     assert_eq!(report.not_reached(), None);

@@ -127,7 +127,10 @@ impl<'a> Report<'a> {
             (RepairKind::TJunction, "vertices on edges (T-junctions): the edges are divided there"),
             (RepairKind::Imprinted, "pairs of triangles lie on each other: they are divided alike"),
             (RepairKind::CutCrossing, "pairs of triangles cross: they are divided along the crossings"),
-            (RepairKind::DroppedInside, "triangles lie inside other bodies: they are left out"),
+            (
+                RepairKind::DroppedInside,
+                "triangles or pieces of them lie inside other bodies: they are left out",
+            ),
             (
                 RepairKind::United,
                 "triangles meet other bodies: they are divided, and the part inside is left out",

@@ -20,7 +20,7 @@ pub enum RepairKind {
     CutCrossing,
     /// Of triangles that face each other one was kept, as the wall between two bodies.
     KeptWall,
-    /// A triangle inside the union of bodies was left out.
+    /// A triangle, or a piece of a divided one, inside the union of bodies was left out.
     DroppedInside,
     /// A triangle that met others was divided, and what is inside the union of bodies left out.
     United,

@@ -7,7 +7,7 @@ use crate::base::{Point, Threads, VertexId};
 use crate::geometry::{rounding, triangle};
 use crate::preflight::single::{Shape, shapes};
 use crate::preflight::surfaces::Role;
-use crate::preflight::union::{Failure, Union, unite as union};
+use crate::preflight::union::{Divided, Failure, unite as union};
 
 /// Points nearer than this times the rounding of coordinates are one place; tried in turn.
 const NEAR_OVER_ROUNDING: [f64; 2] = [1e-6, 2.0];
@@ -72,7 +72,7 @@ pub(super) fn unite(work: &mut Work, given: &[[VertexId; 3]], threads: &Threads)
 }
 
 /// The union of triangles, by the first distance of points that are one place for which there is one.
-fn united(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Result<Union, Failure> {
+fn united(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Result<Divided, Failure> {
     let used: Vec<Point> = triangles.as_flattened().iter().map(|v| points[v.index()]).collect();
     let rounding = rounding::of(&used);
     let mut failure = None;
@@ -86,7 +86,7 @@ fn united(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> R
 }
 
 /// Records the triangles that were left out, those that were divided, and the points that were shifted.
-fn record(work: &mut Work, own: &[usize], triangles: &[[VertexId; 3]], made: &Union, before: &[Point]) {
+fn record(work: &mut Work, own: &[usize], triangles: &[[VertexId; 3]], made: &Divided, before: &[Point]) {
     let mut remains = vec![false; triangles.len()];
     made.pieces.iter().for_each(|(_, origin)| remains[*origin as usize] = true);
     let mut is_whole = vec![false; triangles.len()];

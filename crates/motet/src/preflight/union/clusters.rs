@@ -16,19 +16,19 @@ const SHIFT: f64 = 300.0;
 
 /// Triangles that share what they have in common.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Divided {
+pub(crate) struct Divided {
     /// The given points, some of them shifted, then new ones.
-    pub(super) points: Vec<Point>,
+    pub(crate) points: Vec<Point>,
     /// The pieces, each with the given triangle that it is or is part of.
-    pub(super) pieces: Vec<([VertexId; 3], u32)>,
+    pub(crate) pieces: Vec<([VertexId; 3], u32)>,
     /// The vertex that each given point has become.
-    pub(super) vertex_to_kept: Vec<VertexId>,
+    pub(crate) vertex_to_kept: Vec<VertexId>,
     /// Whether each given triangle belongs to a cluster of triangles that met.
-    pub(super) is_cut: Vec<bool>,
+    pub(crate) is_cut: Vec<bool>,
     /// The number of these clusters.
-    pub(super) clusters: usize,
+    pub(crate) clusters: usize,
     /// How many of them were divided only after their points had been shifted.
-    pub(super) shifted: usize,
+    pub(crate) shifted: usize,
 }
 
 /// A cluster: triangles connected by crossings, or by the corners of triangles that cross others, with all

@@ -18,6 +18,7 @@ use crate::geometry::triangle::{area, centroid, longest_side};
 use crate::mesh::open_edges;
 use crate::preflight::crossing::own_crossings;
 use crate::spatial::{WindingNumber, winding_of_triangle};
+pub(crate) use clusters::Divided;
 
 /// Why surfaces were not united.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,23 +29,6 @@ pub(crate) enum Failure {
     Faulty(Point),
     /// Nothing is inside.
     Empty,
-}
-
-/// The union of surfaces.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Union {
-    /// The given points, some of them shifted, then new ones; also points that no piece uses.
-    pub(crate) points: Vec<Point>,
-    /// The pieces that remain, each with the given triangle that it is or is part of.
-    pub(crate) pieces: Vec<([VertexId; 3], u32)>,
-    /// The vertex that each given point has become.
-    pub(crate) vertex_to_kept: Vec<VertexId>,
-    /// Whether each given triangle met others, or has a corner of one that did.
-    pub(crate) is_cut: Vec<bool>,
-    /// The number of places where surfaces met.
-    pub(crate) clusters: usize,
-    /// How many of these could be divided only after points had been shifted by a tiny length.
-    pub(crate) shifted: usize,
 }
 
 /// A piece, or several on each other.
@@ -58,8 +42,8 @@ struct Sheet {
     origins: Vec<u32>,
 }
 
-/// The union of surfaces, given as triangles that face outward; voids face inward. Points nearer than `near`
-/// are one place.
+/// Divides surfaces where they meet, and keeps the pieces that bound their union. The triangles face outward,
+/// those of voids inward; points nearer than `near` are one place.
 ///
 /// # Errors
 /// When dividing fails, or the result would be empty, open or not free of crossings.
@@ -68,7 +52,7 @@ pub(crate) fn unite(
     triangles: &[[VertexId; 3]],
     near: f64,
     threads: &Threads,
-) -> Result<Union, Failure> {
+) -> Result<Divided, Failure> {
     let divided = clusters::divide(points, triangles, near, threads).map_err(Failure::NotDivided)?;
     let sheets = sheets(&divided.pieces);
     // The given points come first, some of them shifted.
@@ -88,14 +72,7 @@ pub(crate) fn unite(
         let corners = made[pair[0] as usize].map(|v| divided.points[v.index()]);
         return Err(Failure::Faulty(centroid(corners)));
     }
-    Ok(Union {
-        points: divided.points,
-        pieces,
-        vertex_to_kept: divided.vertex_to_kept,
-        is_cut: divided.is_cut,
-        clusters: divided.clusters,
-        shifted: divided.shifted,
-    })
+    Ok(Divided { pieces, ..divided })
 }
 
 /// The sheets that pieces form, in the order of the pieces. Those of which as many face either side bound

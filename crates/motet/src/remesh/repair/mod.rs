@@ -17,7 +17,7 @@ pub(super) use density::Density;
 pub(super) use improve::Aim;
 pub(super) use sizing::Sizing;
 
-use crate::base::{Result, TetId, Threads, VertexId};
+use crate::base::{Changes, Result, TetId, Threads, VertexId};
 use crate::kernel::{Change, Complex, Shell, Star};
 use crate::remesh::input_mesh::{InputMesh, Pose};
 use crate::remesh::left::{forced, is_forced};
@@ -27,7 +27,7 @@ use crate::remesh::repair::score::{Score, worth_more_bad};
 use crate::remesh::repair::search::{Search, Toolbox, Tools};
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
 use crate::remesh::repair::trial::Found;
-use crate::remesh::repair::tried::{Changes, Tried};
+use crate::remesh::repair::tried::Tried;
 use crate::remesh::report::{Counts, Operation, State};
 use crate::remesh::sizes::SizesIn;
 use crate::remesh::surface::{Crease, Surface};
@@ -446,7 +446,7 @@ impl<'a> Repair<'a> {
         input.note_removed(complex, &change.cavity);
         complex.commit(checked, inserted);
         operations.add(of);
-        changes.inserted(complex, inserted);
+        changes.record(inserted.iter().flat_map(|&t| complex.vertices(t)));
         if let Some(sizing) = sizing {
             sizing.field.learn(complex, input, inserted.iter().copied());
         }

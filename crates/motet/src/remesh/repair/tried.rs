@@ -1,42 +1,8 @@
 //! Operations that failed and whose surroundings have not changed since: they would fail again.
 
-use crate::base::{TetId, VertexId, sorted_ids};
+use crate::base::{Changes, TetId, VertexId, entry, sorted_ids};
 use crate::geometry::tet::EDGES;
 use crate::kernel::Complex;
-
-/// When the tets of each vertex were last changed, by a clock that advances with each change.
-#[derive(Debug)]
-pub(super) struct Changes {
-    now: u32,
-    /// Time of the last change at each vertex; 0: never.
-    of_vertex: Vec<u32>,
-}
-
-impl Changes {
-    /// A clock that starts now. Every change must be reported to it that is made while a record of failed
-    /// operations is in use.
-    pub(super) fn new() -> Self {
-        Self { now: 1, of_vertex: Vec::new() }
-    }
-
-    /// The current time.
-    pub(super) fn now(&self) -> u32 {
-        self.now
-    }
-
-    /// Whether no tet of a vertex has changed since `time`; false if `time` is 0.
-    pub(super) fn none_since(&self, vertex: VertexId, time: u32) -> bool {
-        time > 0 && self.of_vertex.get(vertex.index()).is_none_or(|&changed| changed < time)
-    }
-
-    /// Records that tets were inserted.
-    pub(super) fn inserted(&mut self, complex: &Complex, tets: &[TetId]) {
-        for v in tets.iter().flat_map(|&t| complex.vertices(t)) {
-            *entry(&mut self.of_vertex, v.index()) = self.now;
-        }
-        self.now += 1;
-    }
-}
 
 /// The bad tets whose repair failed.
 ///
@@ -70,7 +36,7 @@ impl Tried {
     /// Records that the repair of a tet failed.
     pub(super) fn note_failure(&mut self, changes: &Changes, tet: TetId, target: f64) {
         if target == self.target {
-            *entry(&mut self.failed, tet.index()) = changes.now;
+            *entry(&mut self.failed, tet.index()) = changes.now();
         }
     }
 }
@@ -116,30 +82,22 @@ impl Settled {
         for &tet in tets {
             let places = sorted_ids(ends.map(|v| complex.place(tet, v)));
             if let Some(edge) = EDGES.iter().position(|edge| *edge == places) {
-                entry(&mut self.of_tet, tet.index())[edge] = changes.now;
+                entry(&mut self.of_tet, tet.index())[edge] = changes.now();
             }
         }
     }
 
     /// Records that the removal of a facet failed.
     pub(super) fn settle_facet(&mut self, changes: &Changes, tet: TetId, facet: usize) {
-        entry(&mut self.of_tet, tet.index())[EDGES.len() + facet] = changes.now;
+        entry(&mut self.of_tet, tet.index())[EDGES.len() + facet] = changes.now();
     }
 
     /// Records that a vertex could not be moved.
     pub(super) fn settle_vertex(&mut self, changes: &Changes, vertex: VertexId) {
-        *entry(&mut self.of_vertex, vertex.index()) = changes.now;
+        *entry(&mut self.of_vertex, vertex.index()) = changes.now();
     }
 
     fn time(&self, tet: TetId, place: usize) -> u32 {
         self.of_tet.get(tet.index()).map_or(0, |times| times[place])
     }
-}
-
-/// The entry at an index; the list grows if it is shorter.
-fn entry<T: Clone + Default>(times: &mut Vec<T>, i: usize) -> &mut T {
-    if times.len() <= i {
-        times.resize(i + 1, T::default());
-    }
-    &mut times[i]
 }
