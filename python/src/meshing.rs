@@ -35,6 +35,7 @@ pub(crate) struct Request {
     repair: bool,
     cut: bool,
     unite: bool,
+    wrap: Option<f64>,
     voids: bool,
     merge: f64,
     hole_edges: usize,
@@ -132,7 +133,7 @@ type SurfaceParts<'py> = (Bound<'py, PyDict>, Option<History>, Bound<'py, PyAny>
 
 /// Returns the new surface, its history, the report, and why the requested result was not reached.
 #[pyfunction]
-#[pyo3(signature = (surface, *, size, distance, feature_angle, growth, size_array, clip, repair, unite, merge, hole_edges, smooth, tubes, sides, join, threads, progress))]
+#[pyo3(signature = (surface, *, size, distance, feature_angle, growth, size_array, clip, repair, unite, wrap, merge, hole_edges, smooth, tubes, sides, join, threads, progress))]
 #[allow(clippy::too_many_arguments, reason = "Python passes keyword arguments one by one")]
 pub(crate) fn surface<'py>(
     py: Python<'py>,
@@ -145,6 +146,7 @@ pub(crate) fn surface<'py>(
     clip: Vec<Vec<f64>>,
     repair: bool,
     unite: bool,
+    wrap: Option<f64>,
     merge: f64,
     hole_edges: usize,
     smooth: usize,
@@ -164,6 +166,7 @@ pub(crate) fn surface<'py>(
         clip,
         repair,
         unite,
+        wrap,
         hole_edges,
         merge,
         smooth,
@@ -239,6 +242,7 @@ impl Request {
             repair: self.repair,
             cut: self.cut,
             unite: self.unite,
+            wrap: self.wrap,
             hole_edges: self.hole_edges,
             merge: self.merge,
             ..MeshingWords::default()

@@ -322,6 +322,7 @@ module motet
     integer(c_int32_t) :: voids = 0
     type(c_ptr) :: watched_by = c_null_ptr
     integer(c_int32_t) :: unite = 0
+    real(c_double) :: wrap = 0
   end type
 
   ! Options of filling, which makes tets inside closed surfaces.
@@ -354,6 +355,9 @@ module motet
     type(watch), pointer :: watched_by => null()
     ! 1: bodies that cross, touch or lie on each other become one, without what lies inside; default 0
     integer(c_int32_t) :: unite = 0
+    ! the surfaces are replaced by a closed one within this distance, around what they enclose: they may be open,
+    ! torn and cross; default 0: they are not
+    real(c_double) :: wrap = 0
   end type
 
   ! Options of a refinement. As C has them.
@@ -1788,6 +1792,7 @@ contains
     given%voids = options%voids
     if (associated(options%watched_by)) given%watched_by = options%watched_by%handle
     given%unite = options%unite
+    given%wrap = options%wrap
   end subroutine
 
   subroutine give_refinement_options(options, given, kept)

@@ -475,6 +475,8 @@ typedef struct motet_fill_options {
     motet_watch *watched_by; /* tells the progress and stops the call; default NULL: nobody */
     int32_t unite;           /* 1: bodies that cross, touch or lie on each other become one, without what lies
                               * inside; default 0 */
+    double wrap;             /* the surfaces are replaced by a closed one within this distance, around what they
+                              * enclose: they may be open, torn and cross; default 0: they are not */
 } motet_fill_options;
 
 /* Sets all members to their defaults; `size` is sizeof(motet_fill_options). */

@@ -1014,6 +1014,8 @@ struct fill_options {
     watch *watched_by = nullptr;
     /// bodies that cross, touch or lie on each other become one, without what lies inside
     bool unite = false;
+    /// the surfaces are replaced by a closed one within this distance, around what they enclose; 0: they are not
+    double wrap = 0;
 };
 
 /// Options of a refinement.
@@ -1084,6 +1086,7 @@ inline motet_fill_options given(const fill_options &options, lists &)
     c.voids = options.voids;
     c.watched_by = handle_of(options.watched_by);
     c.unite = options.unite;
+    c.wrap = options.wrap;
     return c;
 }
 

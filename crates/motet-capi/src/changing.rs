@@ -271,6 +271,7 @@ versioned! {
         voids: i32 = 0,
         watched_by: *mut MotetWatch = std::ptr::null_mut(),
         unite: i32 = 0,
+        wrap: f64 = 0.0,
     }
 }
 
@@ -288,6 +289,7 @@ impl MotetFillOptions {
             repair: self.repair != 0,
             cut: self.cut != 0,
             unite: self.unite != 0,
+            wrap: optional(self.wrap),
             ..MeshingWords::default()
         })
     }

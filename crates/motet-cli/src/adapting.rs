@@ -29,6 +29,9 @@ pub(crate) struct AdaptArgs<W: Words> {
     pub(crate) merge: Option<f64>,
     #[arg(long, help = help::effect::<W>("unite"))]
     pub(crate) unite: bool,
+    #[arg(long, help = help::effect::<W>("wrap"), value_name = "DISTANCE", value_parser = positive,
+        conflicts_with = "unite")]
+    pub(crate) wrap: Option<f64>,
     #[arg(skip)]
     words: PhantomData<W>,
 }

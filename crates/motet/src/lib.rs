@@ -9,17 +9,17 @@
 //! | [`io`] | 3 | one file per format, their registry, time series |
 //! | [`spatial`] | 3 | searching: which tet contains a point, which facet is nearest |
 //! | [`kernel`] | 4 | tets that can be changed: cavity, check, commit, undo |
-//! | [`preflight`] | 4 | what stops closed surfaces from being meshed: found exactly, all of it |
 //! | [`ops`] | 5 | operations that propose a change: split, collapse, swap, smooth, insert |
-//! | [`surface`] | 5 | triangle surfaces made even, within a distance of what they were |
-//! | [`delaunay`] | 6 | the exact Delaunay triangulation of any point set, and the constrained one of surfaces |
+//! | [`delaunay`] | 5 | the exact Delaunay triangulation of any point set, and the constrained one of surfaces |
+//! | [`preflight`] | 6 | what stops closed surfaces from being meshed: found exactly, all of it |
 //! | [`refine`] | 6 | tets divided over many generations without loss of shape, and merged again |
 //! | [`remesh`] | 6 | bad tets, and only those, found, classified and repaired |
+//! | [`surface`] | 7 | triangle surfaces made even, within a distance of what they were |
 //! | [`motion`] | 7 | boundary displacement in, volume mesh out |
-//! | [`meshing`] | 7 | closed surfaces in, volume mesh out |
 //! | [`contact`] | 7 | how far apart surfaces are, where, and when they will touch |
-//! | [`implant`] | 8 | devices put into a mesh, one conforming mesh out |
-//! | [`moving`] | 9 | the loop: moved, repaired, refined, watched, carried, step after step |
+//! | [`meshing`] | 8 | closed surfaces in, volume mesh out |
+//! | [`implant`] | 9 | devices put into a mesh, one conforming mesh out |
+//! | [`moving`] | 10 | the loop: moved, repaired, refined, watched, carried, step after step |
 //!
 //! A module imports only from lower floors; `tests/layers.rs` enforces this.
 //!

@@ -16,17 +16,17 @@ const FLOORS: &[(&str, u32)] = &[
     ("io", 3),
     ("spatial", 3),
     ("kernel", 4),
-    ("preflight", 4),
     ("ops", 5),
-    ("surface", 5),
-    ("delaunay", 6),
+    ("delaunay", 5),
+    ("preflight", 6),
     ("refine", 6),
     ("remesh", 6),
+    ("surface", 7),
     ("motion", 7),
-    ("meshing", 7),
     ("contact", 7),
-    ("implant", 8),
-    ("moving", 9),
+    ("meshing", 8),
+    ("implant", 9),
+    ("moving", 10),
 ];
 
 /// Macros that are exported, which the language puts at the crate root, and the modules that define them.

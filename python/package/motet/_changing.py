@@ -351,6 +351,7 @@ class _Filling:
     repair: bool
     cut: bool
     unite: bool
+    wrap: float | None
     voids: bool
     merge: float
     hole_edges: int
@@ -377,6 +378,7 @@ def mesh(
     hole_edges: int = 32,
     cut: bool = False,
     unite: bool = False,
+    wrap: float | None = None,
     voids: bool = False,
     threads: int = 0,
     progress: Progress | bool | None = None,
@@ -435,6 +437,10 @@ def mesh(
     unite : bool, default False
         Whether bodies that cross, touch or lie on each other become one, without what lies inside; voids, which
         face inward, stay. Not with `cut`.
+    wrap : float, optional
+        Replace the surfaces by a closed one within this distance around what they enclose, as winding numbers
+        tell: they may be open, torn, double, and cross. Walls and gaps thinner than the distance may be lost.
+        Not with `cut` or `unite`.
     voids : bool, default False
         Whether to leave empty what is enclosed by closed surfaces that are turned inward.
     threads : int, default 0
@@ -460,7 +466,7 @@ def mesh(
         size=size, surface=surface, distance=distance, feature_angle=feature_angle, growth=growth, size_array=size_array,
         seeds=[(point(place), name) for name, place in (seeds or {}).items()], holes=[point(place) for place in holes], min_eas=min_eas,
         layers=list(layers.items()) if isinstance(layers, Mapping) else [] if layers is None else [(None, layers)],
-        keep_prisms=keep_prisms, repair=repair, cut=cut, unite=unite, voids=voids, merge=merge,
+        keep_prisms=keep_prisms, repair=repair, cut=cut, unite=unite, wrap=wrap, voids=voids, merge=merge,
         hole_edges=hole_edges,
     )  # fmt: skip
     parts, reported, not_reached = _motet.mesh(given, request, threads, progress)
@@ -479,6 +485,7 @@ def surface(
     clip: Sequence[ArrayLike] = (),
     repair: bool = False,
     unite: bool = False,
+    wrap: float | None = None,
     merge: float = 0.0,
     hole_edges: int = 0,
     smooth: int = 0,
@@ -525,6 +532,10 @@ def surface(
     unite : bool, default False
         Whether bodies that cross, touch or lie on each other become one, without what lies inside; voids, which
         face inward, stay. The surface has to be closed.
+    wrap : float, optional
+        Replace the surface by a closed one within this distance around what it encloses, as winding numbers
+        tell: it may be open, torn, double, and cross itself. Walls and gaps thinner than the distance may be
+        lost. Not with `unite`.
     merge : float, default 0.0
         With `repair`: merge points closer than this, in units of the surface.
     hole_edges : int, default 0
@@ -569,7 +580,7 @@ def surface(
     given = as_mesh(surface) if segments is None else Mesh._of(_motet.read_segments(os.fspath(surface), os.fspath(segments)))
     native = _motet.surface(
         given, size=size, distance=distance, feature_angle=feature_angle, growth=growth, size_array=size_array,
-        clip=[np.asarray(cut, dtype=float).ravel().tolist() for cut in clip], repair=repair, unite=unite,
+        clip=[np.asarray(cut, dtype=float).ravel().tolist() for cut in clip], repair=repair, unite=unite, wrap=wrap,
         merge=merge, hole_edges=hole_edges, smooth=smooth, tubes=tubes, sides=sides, join=join, threads=threads, progress=progress,
     )  # fmt: skip
     parts, history, reported, not_reached = native

@@ -91,6 +91,7 @@ def surface(
     clip: list[list[float]],
     repair: bool,
     unite: bool,
+    wrap: float | None,
     merge: float,
     hole_edges: int,
     smooth: int,

@@ -176,10 +176,15 @@ fn wires_come_from_texts_and_from_parameters() {
 
 /// Two boxes that overlap, with a linear array.
 fn boxes() -> Mesh {
+    boxes_without(0)
+}
+
+/// The boxes without the first triangles.
+fn boxes_without(n_missing: usize) -> Mesh {
     let boxes = [[[0.0; 3], [1.0; 3]], [[0.5, 0.25, 0.25], [2.0, 0.75, 0.75]]].map(|of| box_grid([3; 3], of));
     let [a, b] = boxes.each_ref().map(Surface::boundary_of);
     let (mut cells, n) = (Cells::new(), a.points.len());
-    a.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
+    a.triangles[n_missing..].iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
     b.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, t.map(|v| VertexId::new(n + v.index()))));
     let mut mesh = Mesh::new([a.points, b.points].concat(), cells);
     let along: Vec<f64> = mesh.points.iter().map(|p| p[0] + 2.0 * p[1]).collect();
@@ -208,6 +213,33 @@ fn bodies_that_overlap_become_one() {
     assert!(bodies.len() == 1 && (bodies[0]["volume"].as_f64().unwrap() - 1.25).abs() < 1e-9, "{report}");
     let both = ["mesh", "boxes.vtp", "-o", "no.vtu", "--unite", "--cut"];
     assert!(stderr(&folder.motet(both).assert().code(2)).contains("--cut"));
+}
+
+/// Open, crossing, and cut to pieces: a box without a side through another.
+#[test]
+fn what_is_torn_is_wrapped() {
+    let folder = Folder::new();
+    folder.mesh("torn.vtp", &boxes_without(2));
+    let refused = folder.motet(["mesh", "torn.vtp", "-o", "no.vtu"]).assert().code(3);
+    assert!(stderr(&refused).contains("--wrap"), "{}", stderr(&refused));
+    let words = ["torn.vtp", "--wrap", "0.01", "--repair", "--size", "0.2", "--json"];
+    let call = folder.motet(["surface", "-o", "one.vtp"].iter().chain(&words)).assert().success();
+    let report: Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    assert_eq!((report["after"]["crossings"].as_u64(), report["after"]["rims"].as_u64()), (Some(0), Some(0)));
+    let volume = report["after"]["volume"].as_f64().unwrap();
+    assert!((volume - 1.25).abs() < 0.05, "{volume}");
+    let made = read(folder.path("one.vtp")).unwrap();
+    let along = made.point_field("along").unwrap().values.to_f64().unwrap();
+    // Those in the hole take the value of its rim.
+    let is_right = |(x, p): &(&f64, &[f64; 3])| (*x - p[0] - 2.0 * p[1]).abs() < 0.05;
+    assert!(along.iter().zip(&made.points).filter(is_right).count() * 10 > along.len() * 9);
+    let call =
+        folder.motet(["mesh", "-o", "one.vtu", "--surface", "adapt"].iter().chain(&words)).assert().success();
+    let report: Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    let bodies = report["filled"]["bodies"].as_array().unwrap();
+    assert!(bodies.len() == 1 && (bodies[0]["volume"].as_f64().unwrap() - 1.25).abs() < 0.05, "{report}");
+    let both = ["mesh", "torn.vtp", "-o", "no.vtu", "--unite", "--wrap", "0.1"];
+    assert!(stderr(&folder.motet(both).assert().code(2)).contains("--wrap"));
 }
 
 #[test]

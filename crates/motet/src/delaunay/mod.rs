@@ -1,4 +1,4 @@
-//! Floor 6: the exact Delaunay triangulation of any set of points in space.
+//! Floor 5: the exact Delaunay triangulation of any set of points in space.
 //!
 //! Points are inserted one by one: the tets whose circumsphere contains the new point are removed, and the
 //! cavity is filled with tets that join the point to the facets around it (Bowyer 1981; Watson 1981). What

@@ -1,4 +1,4 @@
-//! Floor 8: devices put into a mesh, one conforming mesh out.
+//! Floor 9: devices put into a mesh, one conforming mesh out.
 //!
 //! | step | file | how |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! Floor 7: closed surfaces in, volume mesh out.
+//! Floor 8: closed surfaces in, volume mesh out.
 //!
 //! | step | file | what it does |
 //! |---|---|---|

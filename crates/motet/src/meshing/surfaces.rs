@@ -172,12 +172,13 @@ impl Surfaces {
         preflight::preflight(&self.points, &self.triangles, &self.surface_of, &self.roles, threads)
     }
 
-    /// Makes the requested repairs, and reports what was done. Surfaces that are united are one afterwards.
+    /// Makes the requested repairs, and reports what was done. Surfaces that are united or wrapped are one
+    /// afterwards.
     ///
     /// # Errors
     /// When the options are invalid, such as a negative distance.
     pub fn repair(&mut self, repairs: &Repairs, threads: &Threads) -> Result<Repaired> {
-        if repairs.unite {
+        if repairs.unite || repairs.wrap.is_some() {
             self.merge_boundaries();
         }
         let done = preflight::repair(

@@ -65,6 +65,10 @@ words! {
         /// Bodies that cross, touch or lie on each other become one, all surfaces together: what lies inside
         /// is left out, except voids, which face inward. Alone, or with `repair`; not with `cut`.
         unite: bool = false,
+        /// The surfaces are replaced by a closed one within this distance, in their unit, around what they
+        /// enclose, as winding numbers tell: they may be open, torn, double, and cross. Walls and gaps
+        /// thinner than the distance may be lost. Not with `cut` or `unite`.
+        wrap: Option<f64> = None,
         /// With `repair`, holes of at most this many edges are closed.
         hole_edges: usize = 32,
         /// With `repair`, points nearer than this are merged, in the unit of the surface.
@@ -80,14 +84,19 @@ impl MeshingWords {
     /// point of the surfaces.
     ///
     /// # Errors
-    /// When both `cut` and `unite` are requested, or layers are out of range, requested twice for a patch, or
-    /// for one that does not exist.
+    /// When more than one of `cut`, `unite` and `wrap` is requested, or layers are out of range, requested
+    /// twice for a patch, or for one that does not exist.
     pub fn options(&self, surfaces: &Surfaces, at_points: Option<Vec<f64>>) -> Result<Options> {
-        if self.cut && self.unite {
+        if [self.cut, self.unite, self.wrap.is_some()]
+            .into_iter()
+            .filter(|is_requested| *is_requested)
+            .count()
+            > 1
+        {
             return Err(Error::options(
-                "`cut` keeps what bodies have in common as regions, `unite` makes one of them",
+                "`cut` keeps what bodies have in common as regions, `unite` makes one of them, `wrap` a new surface",
             )
-            .remedy("give one of the two"));
+            .remedy("give one of them"));
         }
         let largest = match self.size {
             Some(EdgeLength::Length(h)) => Some(h),
@@ -112,9 +121,9 @@ impl MeshingWords {
             true => Repairs::all(self.merge, self.hole_edges),
             false => Repairs::default(),
         };
-        let is_any = self.repair || self.cut || self.unite;
-        let (cut, unite, keep_inward) = (self.cut, self.unite, self.voids);
-        is_any.then_some(Repairs { cut, unite, keep_inward, ..repairs })
+        let is_any = self.repair || self.cut || self.unite || self.wrap.is_some();
+        let (cut, unite, wrap, keep_inward) = (self.cut, self.unite, self.wrap, self.voids);
+        is_any.then_some(Repairs { cut, unite, wrap, keep_inward, ..repairs })
     }
 
     /// The requested layers; `None` where there are none.
@@ -286,7 +295,7 @@ mod tests {
         let options = words.options(&ball(), None).unwrap();
         assert_eq!(format!("{options:?}"), format!("{:?}", Options::default()));
         assert!(words.repairs().is_none());
-        assert_eq!(MeshingWords::NAMES.len(), 19);
+        assert_eq!(MeshingWords::NAMES.len(), 20);
     }
 
     #[test]

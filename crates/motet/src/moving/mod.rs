@@ -1,4 +1,4 @@
-//! Floor 9: the loop. A mesh moves with its walls, step after step, and keeps its quality.
+//! Floor 10: the loop. A mesh moves with its walls, step after step, and keeps its quality.
 //!
 //! | file | what it does |
 //! |---|---|

@@ -52,10 +52,12 @@ fault_kinds! {
         "request that duplicates be removed";
     Crossing = "crossing", "triangles meet in more than the vertices and edges that they share",
         "`--repair` divides edges at vertices on them and faces that overlap, \
-         `--cut` also triangles that cross; or move the surfaces apart";
+         `--cut` also triangles that cross, `--unite` makes one of bodies that cross, \
+         `--wrap` a new surface around all; or move the surfaces apart";
     OpenEdge = "open_edge", "the surface ends at the edge",
         "`motet cap SURFACE -o CLOSED` closes open ends, \
-         `--repair` small holes (`--hole-edges`); give a surface that may be open as a `--membrane`";
+         `--repair` small holes (`--hole-edges`), `--wrap` makes a new surface without holes; \
+         give a surface that may be open as a `--membrane`";
     NonManifoldEdge = "non_manifold_edge", "more than two triangles of one surface meet at the edge",
         "remove the triangles that do not belong there, or give inner walls as a surface of their own";
     NonManifoldVertex = "non_manifold_vertex", "the surface touches itself at the vertex",

@@ -1,4 +1,4 @@
-//! Floor 4: everything that prevents closed surfaces from being meshed, found exactly.
+//! Floor 6: everything that prevents closed surfaces from being meshed, found exactly.
 //!
 //! | checked | faults |
 //! |---|---|
@@ -45,6 +45,7 @@ mod sides;
 mod single;
 mod surfaces;
 pub(crate) mod union;
+pub(crate) mod wrap;
 
 pub(crate) use crossing::meet;
 pub use crossing::{crossings, own_crossings};

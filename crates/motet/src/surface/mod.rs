@@ -1,4 +1,4 @@
-//! Floor 5: triangle surfaces made even, within a distance of what they were.
+//! Floor 7: triangle surfaces made even, within a distance of what they were.
 //!
 //! | step | file | what it does |
 //! |---|---|---|

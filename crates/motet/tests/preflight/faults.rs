@@ -75,7 +75,9 @@ fn any_coordinate() -> impl Strategy<Value = f64> {
 fn any_repairs() -> impl Strategy<Value = Repairs> {
     let distances = [None, Some(0.0), Some(1e-9), Some(1.0), Some(1e50)];
     let merge = prop::sample::select(distances.to_vec());
-    (merge, any::<[bool; 7]>(), prop::option::of(0usize..8)).prop_map(|(merge, flags, close_holes)| Repairs {
+    let wraps = prop::sample::select(vec![None, None, None, None, Some(0.5), Some(1e9)]);
+    let repairs = (merge, any::<[bool; 7]>(), prop::option::of(0usize..8), wraps);
+    repairs.prop_map(|(merge, flags, close_holes, wrap)| Repairs {
         merge,
         drop_degenerate: flags[0],
         drop_duplicates: flags[1],
@@ -85,6 +87,7 @@ fn any_repairs() -> impl Strategy<Value = Repairs> {
         keep_inward: flags[5],
         close_holes,
         unite: flags[6],
+        wrap,
     })
 }
 

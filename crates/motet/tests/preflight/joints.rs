@@ -19,6 +19,7 @@ pub(super) const IMPRINT: Repairs = Repairs {
     keep_inward: false,
     close_holes: None,
     unite: false,
+    wrap: None,
 };
 
 const CUT: Repairs = Repairs { cut: true, ..IMPRINT };

@@ -8,3 +8,4 @@ mod joints;
 mod oracle;
 mod repair;
 mod union;
+mod wrap;

@@ -23,6 +23,7 @@ const ALL: Repairs = Repairs {
     orient: true,
     close_holes: Some(12),
     unite: false,
+    wrap: None,
 };
 
 fn ids<const N: usize>(triangles: [[u32; 3]; N]) -> Triangles {

@@ -83,7 +83,7 @@ pub(crate) struct MeshArgs {
     pub(crate) layers_on: Vec<String>,
     #[arg(long, help = help::effect::<MeshingWords>("keep_prisms"), requires = "layers")]
     pub(crate) keep_prisms: bool,
-    #[arg(long, help = help::effect::<MeshingWords>("cut"), conflicts_with = "unite")]
+    #[arg(long, help = help::effect::<MeshingWords>("cut"), conflicts_with_all = ["unite", "wrap"])]
     pub(crate) cut: bool,
     #[arg(long, help = help::effect::<MeshingWords>("hole_edges"), value_name = "N",
         default_value_t = MeshingWords::default().hole_edges, requires = "repair")]
@@ -118,6 +118,7 @@ impl MeshArgs {
             repair: self.adapting.repair,
             cut: self.cut,
             unite: self.adapting.unite,
+            wrap: self.adapting.wrap,
             hole_edges: self.hole_edges,
             merge: self.adapting.merge.unwrap_or(usual.merge),
             delaunay: self.delaunay,

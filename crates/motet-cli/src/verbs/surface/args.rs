@@ -106,7 +106,7 @@ impl SurfaceArgs {
 
     /// What the call requests.
     pub(super) fn words(&self) -> SurfaceWords {
-        let AdaptArgs { size, distance, feature_angle, growth, repair, unite, .. } = self.adapting;
+        let AdaptArgs { size, distance, feature_angle, growth, repair, unite, wrap, .. } = self.adapting;
         SurfaceWords {
             size,
             distance,
@@ -116,6 +116,7 @@ impl SurfaceArgs {
             clip: self.clip.clone(),
             repair,
             unite,
+            wrap,
             hole_edges: self.hole_edges,
             merge: self.adapting.merge.unwrap_or(SurfaceWords::default().merge),
             smooth: self.smooth,

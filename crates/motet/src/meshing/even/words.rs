@@ -5,7 +5,7 @@ use super::super::sizes::{Sizes, sizes_by};
 use super::super::words::EdgeLength;
 use super::clip::Cut;
 use super::options::Options;
-use crate::base::Result;
+use crate::base::{Error, Result};
 use crate::mesh::Mesh;
 use crate::preflight::Repairs;
 use crate::words;
@@ -36,6 +36,10 @@ words! {
         /// Bodies that cross, touch or lie on each other become one: what lies inside is left out, except
         /// voids, which face inward. The surface has to be closed. Alone, or with `repair`.
         unite: bool = false,
+        /// The surface is replaced by a closed one within this distance, in its unit, around what it
+        /// encloses, as winding numbers tell: it may be open, torn, double, and cross itself. Walls and gaps
+        /// thinner than the distance may be lost. Not with `unite`.
+        wrap: Option<f64> = None,
         /// With `repair`, holes of at most this many edges are closed.
         hole_edges: usize = 0,
         /// With `repair`, points nearer than this are merged, in the unit of the surface.
@@ -50,8 +54,13 @@ impl SurfaceWords {
     /// The options that these words determine for a mesh.
     ///
     /// # Errors
-    /// When the mesh has no such array of sizes, or a size in it is not a length.
+    /// When both `unite` and `wrap` are requested, when the mesh has no such array of sizes, or a size in it
+    /// is not a length.
     pub fn options(&self, mesh: &Mesh) -> Result<Options> {
+        if self.unite && self.wrap.is_some() {
+            return Err(Error::options("`unite` divides the surface, `wrap` makes a new one")
+                .remedy("give one of the two"));
+        }
         let largest = match self.size {
             Some(EdgeLength::Length(h)) => Some(h),
             _ => None,
@@ -68,7 +77,7 @@ impl SurfaceWords {
             cuts: self.clip.iter().map(|numbers| Cut::of_numbers(numbers)).collect::<Result<_>>()?,
             sizes: Sizes::of(largest, false, self.growth, at_points),
             adapting: Adapting { distance: self.distance, feature_angle: self.feature_angle },
-            repairs: Repairs { unite: self.unite, ..repairs },
+            repairs: Repairs { unite: self.unite, wrap: self.wrap, ..repairs },
             smooth: self.smooth,
             held: Vec::new(),
         })

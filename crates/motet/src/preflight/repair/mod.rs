@@ -9,6 +9,7 @@ mod orient;
 mod report;
 mod unite;
 mod work;
+mod wrap;
 
 use serde::{Deserialize, Serialize};
 
@@ -54,10 +55,15 @@ pub struct Repairs {
     /// others: they bound voids. Where triangles cannot be divided otherwise, points are shifted by at most
     /// 1800 times the rounding of the coordinates, which is reported.
     pub unite: bool,
+    /// Each boundary is replaced by a new closed surface within this distance, in the unit of the points,
+    /// around what it encloses: boundaries may be open, torn, double, and cross themselves or each other. A
+    /// place is inside if they go around it more than half a time. Walls and gaps thinner than the distance
+    /// may be lost, which is reported. Nothing is divided first, and no hole is filled.
+    pub wrap: Option<f64>,
 }
 
 impl Repairs {
-    /// All repairs except `cut` and `unite`: points nearer than `merge` are merged, holes of at most
+    /// All repairs except `cut`, `unite` and `wrap`: points nearer than `merge` are merged, holes of at most
     /// `hole_edges` edges are filled.
     pub fn all(merge: f64, hole_edges: usize) -> Self {
         Self {
@@ -70,6 +76,7 @@ impl Repairs {
             keep_inward: false,
             close_holes: Some(hole_edges),
             unite: false,
+            wrap: None,
         }
     }
 }
@@ -80,7 +87,8 @@ impl Repairs {
 /// nothing uses any more become orphans; new ones are appended.
 ///
 /// # Errors
-/// If the distance for merging is negative, too large or NaN.
+/// If the distance for merging is negative, too large or NaN. If the distance of a wrapped surface is not
+/// positive, or too small for the size of the surfaces. When a stop was requested.
 ///
 /// Panics where [`preflight`](super::preflight) does.
 pub fn repair(
@@ -108,7 +116,7 @@ pub fn repair(
         orient::orient(&mut work, repairs);
     }
     let mut origins = Vec::new();
-    let is_dividing = repairs.imprint || repairs.cut || repairs.unite;
+    let is_dividing = (repairs.imprint || repairs.cut || repairs.unite) && repairs.wrap.is_none();
     let divided = is_dividing.then(|| divide::divide(&mut work, repairs, threads)).flatten();
     if let Some(divided) = &divided {
         work = divided.replace(work, &mut vertex_to_kept, &mut origins);
@@ -117,6 +125,14 @@ pub fn repair(
         }
     }
     finish(&mut work, repairs, threads);
+    let wrapped = match repairs.wrap {
+        Some(distance) => wrap::wrap(&mut work, repairs, distance, threads)?,
+        None => None,
+    };
+    if let Some(wrapped) = &wrapped {
+        work = wrapped.replace(work, &mut vertex_to_kept, &mut origins);
+        return Ok(work.finish(vertex_to_kept, origins));
+    }
     let united = repairs.unite.then(|| unite::unite(&mut work, triangles, threads)).flatten();
     if let Some(united) = &united {
         work = united.replace(work, &mut vertex_to_kept, &mut origins);
@@ -141,7 +157,7 @@ fn finish(work: &mut Work, repairs: &Repairs, threads: &Threads) {
     if repairs.orient && !repairs.unite {
         orient::orient(work, repairs);
     }
-    if let Some(longest) = repairs.close_holes {
+    if let Some(longest) = repairs.close_holes.filter(|_| repairs.wrap.is_none()) {
         holes::close(work, longest, threads);
         if repairs.orient {
             orient::orient(work, repairs);

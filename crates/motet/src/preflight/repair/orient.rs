@@ -24,7 +24,7 @@ pub(super) fn orient(work: &mut Work, repairs: &Repairs) {
         }
     }
     if !repairs.keep_inward {
-        orient_outward(work, repairs.unite);
+        orient_outward(work, repairs.unite || repairs.wrap.is_some());
     }
 }
 

@@ -22,6 +22,14 @@ pub enum RepairKind {
     KeptWall,
     /// A triangle, or a piece of a divided one, inside the union of bodies was left out.
     DroppedInside,
+    /// A triangle that encloses nothing was left out.
+    DroppedOutside,
+    /// A triangle of a wall or a gap thinner than the distance, which is not there any more, was left out.
+    DroppedThin,
+    /// A surface was replaced by a new one around what it encloses.
+    Wrapped,
+    /// A surface encloses nothing, and was left as it was.
+    LeftUnwrapped,
     /// A triangle that met others was divided, and what is inside the union of bodies left out.
     United,
     /// A vertex was shifted by a tiny length, since triangles that meet there could not be divided otherwise.

@@ -1,0 +1,82 @@
+//! What is inside of given surfaces, and where the inside ends.
+
+use crate::base::{Point, Threads, VertexId};
+use crate::geometry::vector::{add, distance, scale, sub};
+use crate::spatial::{Closest, NearestTriangle, WindingNumber};
+
+/// How near the end of the inside is found, over the allowed distance.
+const FOUND_OVER_DISTANCE: f64 = 1.0 / 32.0;
+
+/// The most halvings of a segment that crosses the surface.
+const MAX_HALVINGS: usize = 60;
+
+/// Surfaces, and what is inside of them.
+pub(crate) struct Field {
+    winding: WindingNumber,
+    nearest: NearestTriangle,
+    /// How far a new surface may stray.
+    pub(crate) distance: f64,
+}
+
+impl Field {
+    pub(crate) fn new(
+        points: &[Point],
+        triangles: &[[VertexId; 3]],
+        distance: f64,
+        threads: &Threads,
+    ) -> Self {
+        Self {
+            winding: WindingNumber::new(points, triangles),
+            nearest: NearestTriangle::new(points, triangles, threads),
+            distance,
+        }
+    }
+
+    pub(crate) fn is_inside(&self, p: Point) -> bool {
+        self.winding.at(p) > 0.5
+    }
+
+    /// The nearest place on the given triangles.
+    pub(crate) fn nearest(&self, p: Point) -> Option<Closest> {
+        self.nearest.closest(p)
+    }
+
+    /// The nearest place on the given triangles within a length.
+    pub(super) fn nearest_within(&self, p: Point, length: f64) -> Option<Point> {
+        self.nearest.closest_within(p, length).map(|closest| closest.point)
+    }
+
+    /// A place between one inside and one outside where the inside ends: on a given triangle, unless the
+    /// inside ends at a hole.
+    pub(super) fn end(&self, mut inside: Point, mut outside: Point) -> Point {
+        let found = FOUND_OVER_DISTANCE * self.distance;
+        for _ in 0..MAX_HALVINGS {
+            if distance(inside, outside) < found {
+                break;
+            }
+            let middle = between(inside, outside);
+            if self.is_inside(middle) {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        let middle = between(inside, outside);
+        self.nearest_within(middle, 2.0 * found).unwrap_or(middle)
+    }
+
+    /// Whether some places around `p`, at `radius`, are inside and others are not.
+    pub(crate) fn is_at_end(&self, p: Point, radius: f64) -> bool {
+        let around = |i: usize| {
+            let direction = [i / 9, i / 3 % 3, i % 3].map(|k| k as f64 - 1.0);
+            add(p, scale(direction, radius / distance(direction, [0.0; 3])))
+        };
+        let mut answers = (0..27).filter(|&i| i != 13).map(|i| self.is_inside(around(i)));
+        let first = answers.next();
+        answers.any(|answer| Some(answer) != first)
+    }
+}
+
+fn between(p: Point, q: Point) -> Point {
+    add(p, scale(sub(q, p), 0.5))
+}
