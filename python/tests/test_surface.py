@@ -118,3 +118,20 @@ def test_wires_of_two_texts_and_wrong_calls(tmp_path):
         motet.surface(shapes.braid(), tubes="r")
     with pytest.raises(motet.InputError, match="no line cells"):
         motet.surface(shapes.aneurysm(), tubes=0.1)
+
+
+def test_a_torn_surface_is_wrapped():
+    vessel = shapes.aneurysm()
+    triangles = vessel.triangles
+    corners = vessel.points[triangles].reshape(-1, 3)  # no triangle shares a vertex with another
+    kept = np.arange(len(triangles)) % 12 != 0
+    torn = motet.Mesh(corners, np.arange(len(corners)).reshape(-1, 3)[kept])
+    volume = np.linalg.det(vessel.points[triangles]).sum() / 6
+    made = motet.surface(torn, size=0.3, wrap=0.02)
+    assert made.report.after.rims == made.report.after.crossings == 0
+    assert made.report.after.volume == pytest.approx(volume, rel=0.03)
+    filled = motet.mesh(torn, size=0.3, surface="adapt", wrap=0.02)
+    assert filled.complete
+    for wrong in ({"wrap": 0.0}, {"wrap": 0.02, "unite": True}):
+        with pytest.raises(motet.errors.OptionsError):
+            motet.mesh(torn, **wrong)
