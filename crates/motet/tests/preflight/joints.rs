@@ -9,6 +9,8 @@ use motet::mesh::{CellKind, Cells, Mesh, Surface};
 use motet::meshing::{Options, Surfaces, fill};
 use motet::preflight::{FaultKind, RepairKind, Repaired, Repairs, Role};
 
+use crate::common::random::Random;
+
 pub(super) const IMPRINT: Repairs = Repairs {
     merge: None,
     imprint: true,
@@ -36,6 +38,25 @@ fn mesh((points, triangles): &Soup) -> Mesh {
 pub(super) fn box_of(n: [usize; 3], bounds: [Point; 2]) -> Soup {
     let surface = Surface::boundary_of(&box_grid(n, bounds));
     (surface.points, surface.triangles)
+}
+
+/// Boxes between random planes of a grid, and the number of cells of the grid that are in some box.
+pub(super) fn random_boxes(seed: u64, n: usize) -> (Vec<Soup>, usize) {
+    const N: usize = 6;
+    let mut random = Random((seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    let mut below = |n: usize| (random.next() * n as f64) as usize;
+    let mut range = |_| {
+        let low = below(N);
+        [low, low + 1 + below(N - low)]
+    };
+    let boxes: Vec<[[usize; 2]; 3]> = (0..n).map(|_| [0, 1, 2].map(&mut range)).collect();
+    let at = |of: &[[usize; 2]; 3], end: usize| -> Point { [0, 1, 2].map(|axis| of[axis][end] as f64) };
+    let bodies = boxes.iter().map(|of| box_of([1, 2, 1], [0, 1].map(|end| at(of, end)))).collect();
+    let is_in_some = |cell: &usize| {
+        let at = [cell / (N * N), cell / N % N, cell % N];
+        boxes.iter().any(|of| (0..3).all(|axis| (of[axis][0]..of[axis][1]).contains(&at[axis])))
+    };
+    (bodies, (0..N * N * N).filter(is_in_some).count())
 }
 
 /// A rectangle of two triangles.

@@ -6,10 +6,9 @@ use motet::mesh::shapes::ball;
 use motet::mesh::{Mesh, Surface};
 use motet::preflight::{FaultKind, RepairKind, Repaired, Repairs, Role, own_crossings};
 
-use crate::common::random::Random;
-
 use super::joints::{
-    CASES, IMPRINT, Soup, assert_volumes, box_of, moved, repaired, scale_of, sheet, together, volumes,
+    CASES, IMPRINT, Soup, assert_volumes, box_of, moved, random_boxes, repaired, scale_of, sheet, together,
+    volumes,
 };
 
 const UNITE: Repairs = Repairs { unite: true, ..IMPRINT };
@@ -94,33 +93,18 @@ fn bodies_within_bodies() {
 /// box are counted.
 #[test]
 fn random_boxes_have_the_volume_of_the_cells_in_them() {
-    const N: usize = 6;
     let mut n_united = 0;
-    for seed in 0..60 {
+    for seed in 0..60u64 {
         let case = seed as usize % CASES;
-        let mut random = Random((seed + 1u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        let mut below = |n: usize| (random.next() * n as f64) as usize;
-        let mut range = |_| {
-            let low = below(N);
-            [low, low + 1 + below(N - low)]
-        };
-        let boxes: Vec<[[usize; 2]; 3]> = (0..5).map(|_| [0, 1, 2].map(&mut range)).collect();
-        let bodies: Vec<Soup> = boxes
-            .iter()
-            .map(|of| box_of([1, 2, 1], [0, 1].map(|end| [0, 1, 2].map(|axis| of[axis][end] as f64))))
-            .collect();
-        let cells = (0..N * N * N).filter(|cell| {
-            let at = [cell / (N * N), cell / N % N, cell % N];
-            boxes.iter().any(|of| (0..3).all(|axis| (of[axis][0]..of[axis][1]).contains(&at[axis])))
-        });
+        let (bodies, n_cells) = random_boxes(seed, 5);
         let all = moved(case, &together(&bodies));
         let (surfaces, done) = repaired(&[(&all, Role::Boundary)], &UNITE);
         assert!(!is_left(&done), "seed {seed}");
         assert!(own_crossings(&surfaces.points, &surfaces.triangles, &Threads::single()).is_empty());
         assert!(open_edges(&surfaces.triangles).is_empty());
         let (off, unit) = scale_of(case);
-        let (volume, expected) =
-            (volumes(&surfaces).iter().sum::<f64>() / unit.powi(3), cells.count() as f64);
+        let volume = volumes(&surfaces).iter().sum::<f64>() / unit.powi(3);
+        let expected = n_cells as f64;
         assert!((volume - expected).abs() < 1e4 * off, "seed {seed}, case {case}: {volume} {expected}");
         n_united += usize::from(done.count(RepairKind::DroppedInside) > 0);
     }

@@ -1,6 +1,6 @@
 //! Surfaces wrapped: against the boxes, tubes and balls that were torn apart.
 
-use motet::base::{Point, Threads, VertexId};
+use motet::base::{Threads, VertexId};
 use motet::geometry::triangle::{area, centroid, middles};
 use motet::mesh::shapes::ball;
 use motet::mesh::{Surface, open_edges};
@@ -10,7 +10,7 @@ use motet::spatial::NearestTriangle;
 
 use crate::common::random::Random;
 
-use super::joints::{CASES, IMPRINT, Soup, box_of, moved, repaired, scale_of, sheet, together};
+use super::joints::{CASES, IMPRINT, Soup, box_of, moved, random_boxes, repaired, scale_of, sheet, together};
 
 fn wrap(distance: f64) -> Repairs {
     Repairs { imprint: false, orient: true, wrap: Some(distance), ..IMPRINT }
@@ -110,34 +110,21 @@ fn what_is_left_out_is_said() {
     assert!((volume(&surfaces) - (1.0 - 0.027)).abs() < 0.02, "{}", volume(&surfaces));
     assert!(done.count(RepairKind::DroppedOutside) >= 2, "{:?}", done.count(RepairKind::DroppedOutside));
     let nothing = sheet([3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-    let (surfaces, done) = repaired(&[(&nothing, Role::Boundary)], &wrap(0.02));
-    assert_eq!((done.count(RepairKind::LeftUnwrapped), surfaces.triangles.len()), (1, 2));
+    let roles = [Role::Boundary];
+    let refused =
+        motet::preflight::repair(&nothing.0, &nothing.1, &[0; 2], &roles, &wrap(0.02), &Threads::single());
+    assert!(refused.unwrap_err().to_string().contains("enclose nothing"));
 }
 
 #[test]
 fn random_boxes_are_wrapped_as_the_cells_in_them() {
-    const N: usize = 6;
-    for seed in 0..6 {
-        let mut random = Random((seed + 1u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        let mut below = |n: usize| (random.next() * n as f64) as usize;
-        let mut range = |_| {
-            let low = below(N);
-            [low, low + 1 + below(N - low)]
-        };
-        let boxes: Vec<[[usize; 2]; 3]> = (0..4).map(|_| [0, 1, 2].map(&mut range)).collect();
-        let at_end =
-            |of: &[[usize; 2]; 3], end: usize| -> Point { [0, 1, 2].map(|axis| of[axis][end] as f64) };
-        let bodies: Vec<Soup> =
-            boxes.iter().map(|of| box_of([1, 2, 1], [0, 1].map(|end| at_end(of, end)))).collect();
-        let cells = (0..N * N * N).filter(|cell| {
-            let at = [cell / (N * N), cell / N % N, cell % N];
-            boxes.iter().any(|of| (0..3).all(|axis| (of[axis][0]..of[axis][1]).contains(&at[axis])))
-        });
+    for seed in 0..6u64 {
+        let (bodies, n_cells) = random_boxes(seed, 4);
         let all = moved(seed as usize % CASES, &together(&bodies));
         let unit = scale_of(seed as usize % CASES).1;
         let (surfaces, done) = repaired(&[(&all, Role::Boundary)], &wrap(0.1 * unit));
         assert_sound(&surfaces, &done, &all, 0.1 * unit);
-        let off = (volume(&surfaces) / unit.powi(3) - cells.count() as f64).abs();
+        let off = (volume(&surfaces) / unit.powi(3) - n_cells as f64).abs();
         assert!(off < 0.05 * total_area(&surfaces) / (unit * unit), "seed {seed}: {off}");
     }
 }

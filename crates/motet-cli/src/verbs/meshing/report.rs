@@ -139,13 +139,9 @@ impl<'a> Report<'a> {
                 RepairKind::ShiftedVertex,
                 "vertices were shifted by a tiny length, so that triangles could be divided there",
             ),
-            (RepairKind::Wrapped, "surface is new, around what was enclosed"),
+            (RepairKind::Wrapped, "surface was replaced by a new one around what it encloses"),
             (RepairKind::DroppedOutside, "triangles enclose nothing: they are left out"),
-            (
-                RepairKind::DroppedThin,
-                "triangles are of walls or gaps thinner than the distance: they are left out",
-            ),
-            (RepairKind::LeftUnwrapped, "surface encloses nothing: it is left unchanged"),
+            (RepairKind::DroppedThin, "triangles of walls or gaps thinner than the distance were lost"),
             (RepairKind::LeftApart, "surface whose bodies cannot be united: it is left unchanged"),
             (RepairKind::KeptWall, "walls between bodies, on which each body has a triangle: one is kept"),
             (

@@ -69,20 +69,9 @@ impl Report {
             "the bodies could not be united: the surface is open, or its triangles could not be divided"
                 .to_owned()
         };
-        let n_of = |kind: RepairKind| self.repairs.iter().filter(|repair| repair.kind == kind).count();
-        let [n_thin, n_unwrapped] = [RepairKind::DroppedThin, RepairKind::LeftUnwrapped].map(n_of);
-        let thin = || {
-            format!(
-                "{n_thin} triangles are of walls or gaps thinner than the distance of the wrap, and not there any more"
-            )
-        };
-        let unwrapped = || "the surface encloses nothing that could be wrapped".to_owned();
-        reasons([
-            is_apart.then(apart),
-            (n_unwrapped > 0).then(unwrapped),
-            (n_thin > 0).then(thin),
-            is_far.then(far),
-            is_crossed.then(crosses),
-        ])
+        let n_thin = self.repairs.iter().filter(|repair| repair.kind == RepairKind::DroppedThin).count();
+        let thin =
+            || format!("{n_thin} triangles of walls or gaps thinner than the distance of the wrap were lost");
+        reasons([is_apart.then(apart), (n_thin > 0).then(thin), is_far.then(far), is_crossed.then(crosses)])
     }
 }

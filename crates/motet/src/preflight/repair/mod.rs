@@ -88,7 +88,7 @@ impl Repairs {
 ///
 /// # Errors
 /// If the distance for merging is negative, too large or NaN. If the distance of a wrapped surface is not
-/// positive, or too small for the size of the surfaces. When a stop was requested.
+/// positive, or too small for the size of the surfaces, or these enclose nothing. When a stop was requested.
 ///
 /// Panics where [`preflight`](super::preflight) does.
 pub fn repair(

@@ -28,8 +28,6 @@ pub enum RepairKind {
     DroppedThin,
     /// A surface was replaced by a new one around what it encloses.
     Wrapped,
-    /// A surface encloses nothing, and was left as it was.
-    LeftUnwrapped,
     /// A triangle that met others was divided, and what is inside the union of bodies left out.
     United,
     /// A vertex was shifted by a tiny length, since triangles that meet there could not be divided otherwise.

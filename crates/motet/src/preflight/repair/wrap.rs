@@ -2,7 +2,7 @@
 
 use super::Repairs;
 use super::divide::DividedSurfaces;
-use super::report::{Repair, RepairKind};
+use super::report::RepairKind;
 use super::work::{Piece, Work};
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::centroid;
@@ -17,11 +17,10 @@ use crate::spatial::bounding_box;
 /// The least distance, over the largest extent of a surface.
 const LEAST_OVER_EXTENT: f64 = 1e-5;
 
-/// Replaces each boundary by a new surface within `distance`. `None` if there is no boundary that encloses
-/// anything, which is reported.
+/// Replaces each boundary by a new surface within `distance`. `None` if there is no boundary.
 ///
 /// # Errors
-/// If the distance is not positive, or too small. When a stop was requested.
+/// If the distance is not positive, or too small, or a boundary encloses nothing. When a stop was requested.
 pub(super) fn wrap(
     work: &mut Work,
     repairs: &Repairs,
@@ -45,8 +44,11 @@ pub(super) fn wrap(
         let is_own = |i: &usize| work.pieces[*i].surface == surface && shapes[*i] == Shape::Sound;
         let own: Vec<usize> = (0..work.pieces.len()).filter(is_own).collect();
         let triangles: Vec<[VertexId; 3]> = own.iter().map(|&i| work.pieces[i].vertices).collect();
+        if own.is_empty() {
+            continue;
+        }
         let used = triangles.as_flattened().iter().map(|v| work.points[v.index()]);
-        let extent = if own.is_empty() { 0.0 } else { largest_extent(bounding_box(used)) };
+        let extent = largest_extent(bounding_box(used));
         if distance < LEAST_OVER_EXTENT * extent {
             let least = LEAST_OVER_EXTENT * extent;
             return Err(Error::options(format!(
@@ -55,18 +57,10 @@ pub(super) fn wrap(
             .remedy(format!("give a distance of at least {least:.1e}, a hundred thousandth of the extent")));
         }
         let field = Field::new(work.points, &triangles, distance, threads);
-        let made = match own.is_empty() {
-            true => None,
-            false => wrapped(work.points, &triangles, &field, threads)?,
-        };
-        let Some(made) = made else {
-            work.done.push(Repair {
-                kind: RepairKind::LeftUnwrapped,
-                triangles: Vec::new(),
-                vertices: Vec::new(),
-                at: own.first().map(|_| centroid(triangles[0].map(|v| work.points[v.index()]))),
-            });
-            continue;
+        let Some(made) = wrapped(work.points, &triangles, &field, threads)? else {
+            return Err(Error::input(format!("the surfaces enclose nothing thicker than {distance}")).remedy(
+                "wrap within a smaller distance; triangles have to face outward, as `--repair` turns them",
+            ));
         };
         is_replaced[surface as usize] = true;
         let nearest =

@@ -6,7 +6,7 @@
 //! | inside | `field` | a place is inside if the surfaces go around it more than half a time (Jacobson, Kavan and Sorkine-Hornung 2013, *Robust inside-outside segmentation using generalized winding numbers*) |
 //! | first sites | `seeds` | corners of creases, and vertices far from each other |
 //! | facets | `facets` | the Delaunay triangulation of the sites; a facet belongs to the surface if the centre of the circumsphere is inside on one side of it alone (Boissonnat and Oudot 2005, *Provably good sampling and meshing of surfaces*) |
-//! | more sites | `rounds` | where facets stray or are narrow, and where given triangles are far from all facets |
+//! | more sites | `rounds`, `spaced` | where facets stray or are narrow, and where given triangles are far from all facets |
 //!
 //! The surface is the boundary of a set of tets, so it is closed, and its triangles share all that they have
 //! in common.
@@ -15,6 +15,7 @@ mod facets;
 mod field;
 mod rounds;
 mod seeds;
+mod spaced;
 
 use crate::base::{MaybeId, Point, VertexId};
 

@@ -5,6 +5,7 @@ use hashbrown::HashMap;
 use super::facets::{Facet, Known, N_AROUND, facets};
 use super::field::Field;
 use super::seeds::{Creases, apart};
+use super::spaced::Spaced;
 use super::{Fate, Wrapped};
 use crate::base::{MaybeId, Point, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::triangle::{self, centroid, middles};
@@ -96,8 +97,8 @@ type FacetKey = ([VertexId; 3], bool);
 struct Growth<'a> {
     sites: Vec<Point>,
     given: Vec<MaybeId<VertexId>>,
-    /// The sites in cells of a grid, which are as large as the least distance between sites.
-    cells: HashMap<[i64; 3], Vec<Point>>,
+    /// The places of the sites, but for those around everything.
+    spaced: Spaced,
     creases: Creases,
     field: &'a Field,
     known: Known,
@@ -128,7 +129,7 @@ impl<'a> Growth<'a> {
         let mut growth = Self {
             sites: (0..N_AROUND).map(corner).collect(),
             given: vec![MaybeId::NONE; N_AROUND],
-            cells: HashMap::new(),
+            spaced: Spaced::new(LEAST_OVER_DISTANCE * field.distance),
             creases,
             field,
             known: Known::default(),
@@ -175,7 +176,8 @@ impl<'a> Growth<'a> {
             return None;
         }
         let [inner, outer] = facet.centres;
-        let is_crossed = is_finite(outer) && self.field.is_inside(inner) && !self.field.is_inside(outer);
+        // The outer centre is inside where its tet reaches to the sites around everything.
+        let is_crossed = is_finite(outer) && !self.field.is_inside(outer);
         let place = match is_crossed {
             true => self.field.end(inner, outer),
             false => self.field.nearest(centroid(corners))?.point,
@@ -188,7 +190,7 @@ impl<'a> Growth<'a> {
         }
         let radius = corners.map(|q| distance(place, q)).into_iter().fold(f64::INFINITY, f64::min);
         let proposal = Proposal { place, radius };
-        (radius >= LEAST_OVER_DISTANCE * allowed).then(|| self.at_crease(proposal))
+        (radius >= self.least()).then(|| self.at_crease(proposal))
     }
 
     fn at_crease(&self, proposal: Proposal) -> Proposal {
@@ -251,15 +253,11 @@ impl<'a> Growth<'a> {
         // Those of similar radii together, by cells of a grid as large as the largest of them.
         while let Some(Proposal { radius: largest, .. }) = rest.first() {
             let n = rest.partition_point(|proposal| proposal.radius > 0.5 * largest).max(1);
-            let mut cells: HashMap<[i64; 3], Vec<Point>> = HashMap::new();
-            let cell = |p: Point| p.map(|x| (x / (APART * largest)).floor() as i64);
-            self.sites[before..].iter().for_each(|&p| cells.entry(cell(p)).or_default().push(p));
+            let mut new = Spaced::new(APART * largest);
+            self.sites[before..].iter().for_each(|&p| new.insert(p));
             for Proposal { place, radius } in &rest[..n] {
-                let home = cell(*place);
-                let near = around(home).filter_map(|cell| cells.get(&cell));
-                let is_apart = near.flatten().all(|other| distance(*other, *place) >= APART * radius);
-                if is_apart && self.is_free(*place) {
-                    cells.entry(home).or_default().push(*place);
+                if new.is_free(*place, APART * radius) && self.spaced.is_free(*place, self.least()) {
+                    new.insert(*place);
                     self.add_site(*place, MaybeId::NONE);
                 }
             }
@@ -271,17 +269,12 @@ impl<'a> Growth<'a> {
     fn add_site(&mut self, place: Point, given: MaybeId<VertexId>) {
         self.sites.push(place);
         self.given.push(given);
-        self.cells.entry(self.cell(place)).or_default().push(place);
+        self.spaced.insert(place);
     }
 
-    fn cell(&self, p: Point) -> [i64; 3] {
-        p.map(|x| (x / (LEAST_OVER_DISTANCE * self.field.distance)).floor() as i64)
-    }
-
-    /// Whether no site is nearer than the least distance.
-    fn is_free(&self, p: Point) -> bool {
-        let near = around(self.cell(p)).filter_map(|cell| self.cells.get(&cell)).flatten();
-        near.into_iter().all(|other| distance(*other, p) >= LEAST_OVER_DISTANCE * self.field.distance)
+    /// The least distance of sites from each other.
+    fn least(&self) -> f64 {
+        LEAST_OVER_DISTANCE * self.field.distance
     }
 
     fn finish(self, found: &[Facet]) -> Wrapped {
@@ -301,11 +294,6 @@ impl<'a> Growth<'a> {
         }
         wrapped
     }
-}
-
-/// A cell of a grid, and those around it.
-fn around(cell: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
-    (0..27).map(move |i| [cell[0] + i / 9 - 1, cell[1] + i / 3 % 3 - 1, cell[2] + i % 3 - 1])
 }
 
 /// Whether the circumradius of a triangle is much longer than its shortest side, and longer than `least`.

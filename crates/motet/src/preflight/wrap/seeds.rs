@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::spaced::Spaced;
 use crate::base::{Point, Threads, VertexId, sorted_ids};
 use crate::geometry::triangle::{self, area_vector};
-use crate::geometry::vector::{add, distance, distance_squared, dot, scale, sub, unit};
+use crate::geometry::vector::{add, distance, dot, scale, sub, unit};
 use crate::preflight::crossing::own_crossings;
 use crate::spatial::NearestTriangle;
 
@@ -105,19 +106,13 @@ pub(super) fn apart(
     vertices: impl IntoIterator<Item = VertexId>,
     least: f64,
 ) -> Vec<VertexId> {
-    let mut cells: BTreeMap<[i64; 3], Vec<VertexId>> = BTreeMap::new();
-    let mut chosen = Vec::new();
-    for v in vertices {
-        let p = points[v.index()];
-        let cell = p.map(|x| (x / least).floor() as i64);
-        let near = (0..27).map(|i| [i / 9, i / 3 % 3, i % 3]).flat_map(|k| {
-            cells.get(&[0, 1, 2].map(|axis| cell[axis] + k[axis] - 1)).into_iter().flatten().copied()
-        });
-        let is_free = near.into_iter().all(|u| distance_squared(points[u.index()], p) >= least * least);
+    let mut spaced = Spaced::new(least);
+    let mut is_chosen = |v: &VertexId| {
+        let is_free = spaced.is_free(points[v.index()], least);
         if is_free {
-            cells.entry(cell).or_default().push(v);
-            chosen.push(v);
+            spaced.insert(points[v.index()]);
         }
-    }
-    chosen
+        is_free
+    };
+    vertices.into_iter().filter(|v| is_chosen(v)).collect()
 }
