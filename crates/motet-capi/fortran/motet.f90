@@ -355,8 +355,8 @@ module motet
     type(watch), pointer :: watched_by => null()
     ! 1: bodies that cross, touch or lie on each other become one, without what lies inside; default 0
     integer(c_int32_t) :: unite = 0
-    ! the surfaces are replaced by a closed one within this distance, around what they enclose: they may be open,
-    ! torn and cross; default 0: they are not
+    ! the surfaces are replaced by a closed one within this distance, around what they enclose: they may be
+    ! open, torn and cross; default 0: they are not
     real(c_double) :: wrap = 0
   end type
 
