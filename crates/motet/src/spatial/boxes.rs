@@ -135,17 +135,22 @@ impl Tree {
 }
 
 impl Node {
-    /// The squared distance from `p` to the box; 0 inside.
     #[inline(always)]
     fn distance_squared(&self, p: Point) -> f64 {
-        let mut sum = 0.0;
-        for ((x, low), high) in p.into_iter().zip(self.low).zip(self.high) {
-            let (below, above) = (low - x, x - high);
-            let outside = if below > above { below } else { above };
-            sum += if outside > 0.0 { outside * outside } else { 0.0 };
-        }
-        sum
+        squared_distance_to_box(p, [self.low, self.high])
     }
+}
+
+/// The squared distance from a point to a box; 0 inside.
+#[inline(always)]
+pub(crate) fn squared_distance_to_box(p: Point, [low, high]: Bounds) -> f64 {
+    let mut sum = 0.0;
+    for ((x, low), high) in p.into_iter().zip(low).zip(high) {
+        let (below, above) = (low - x, x - high);
+        let outside = if below > above { below } else { above };
+        sum += if outside > 0.0 { outside * outside } else { 0.0 };
+    }
+    sum
 }
 
 /// Finds the boxes that touch a box. Touching includes a shared side, edge or corner; there is no tolerance.

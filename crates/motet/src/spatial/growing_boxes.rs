@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use hashbrown::HashMap;
 
 use crate::base::Point;
-use crate::spatial::boxes::{Bounds, touch};
+use crate::spatial::boxes::{Bounds, squared_distance_to_box, touch};
 
 /// Boxes with an id each; an id may be added more than once.
 #[derive(Clone, Debug, Default)]
@@ -152,7 +152,7 @@ fn improve<T>(
     measure: &impl Fn(u32) -> Option<(f64, T)>,
     best: &mut Best<T>,
 ) {
-    let least = distance_squared(point, bounds);
+    let least = squared_distance_to_box(point, bounds);
     if bounds == NOWHERE || best.as_ref().is_some_and(|best| least > best.0 || best.1 == id) {
         return;
     }
@@ -161,11 +161,6 @@ fn improve<T>(
     {
         *best = Some((squared, id, with));
     }
-}
-
-/// The squared distance from a point to a box.
-fn distance_squared(point: Point, [low, high]: Bounds) -> f64 {
-    (0..3).map(|k| (low[k] - point[k]).max(point[k] - high[k]).max(0.0).powi(2)).sum()
 }
 
 /// The exponent of the smallest power of two above a positive number.
@@ -217,9 +212,9 @@ mod tests {
                 // Within, beside and far away.
                 let spread = [1.0, 3.0, 1e4][id as usize / 4 % 3];
                 let point = [(); 3].map(|()| shift + size * spread * (unit(&mut state) - 0.2));
-                let measure = |id: u32| Some((distance_squared(point, all[id as usize]), ()));
+                let measure = |id: u32| Some((squared_distance_to_box(point, all[id as usize]), ()));
                 let found = boxes.nearest(point, measure).map(|(squared, id, ())| (squared, id));
-                let least = (0..=id).map(|id| (distance_squared(point, all[id as usize]), id));
+                let least = (0..=id).map(|id| (squared_distance_to_box(point, all[id as usize]), id));
                 let least = least.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
                 assert_eq!(found, least, "{point:?}");
             }

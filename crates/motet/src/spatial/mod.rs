@@ -10,7 +10,7 @@ pub mod trace;
 mod winding;
 
 pub use boxes::{Bounds, BoxTree};
-pub(crate) use boxes::{bounding_box, expanded, touch};
+pub(crate) use boxes::{bounding_box, expanded, squared_distance_to_box, touch};
 pub(crate) use growing_boxes::GrowingBoxes;
 pub use locate::{Located, Locator, OUTSIDE};
 pub use nearest::{Closest, NearestTriangle};

@@ -5,6 +5,7 @@ use super::sheet::{Change, Sheet};
 use crate::base::{Point, VertexId};
 use crate::geometry::triangle::{at, closest, longest_side, middles};
 use crate::geometry::vector::distance_squared;
+use crate::spatial::{Bounds, bounding_box, squared_distance_to_box};
 
 /// Samples of a triangle are about as far apart as the allowed distance times this, with up to [`MAX_PARTS`]
 /// parts of an edge.
@@ -22,6 +23,13 @@ pub(super) struct Cover {
 /// Where the samples of the removed triangles of a change go: pairs of a sample and the place of a triangle
 /// among the new ones.
 pub(super) type Moves = Vec<(u32, u32)>;
+
+/// A new triangle of a change.
+struct New {
+    corners: [Point; 3],
+    bounds: Bounds,
+    label: u32,
+}
 
 impl Cover {
     /// Samples of a sheet that is as it was given: vertices and, of triangles that are large beside the
@@ -67,26 +75,30 @@ impl Cover {
     /// Where the samples of a change go: to the nearest new triangle of their label. `None` if one is farther
     /// than `allowed` from all of them.
     pub(super) fn moves(&self, sheet: &Sheet, change: &Change, allowed: f64) -> Option<Moves> {
-        let new: Vec<([Point; 3], u32)> = sheet
+        let new: Vec<New> = sheet
             .corners_after(change)
             .zip(&change.added)
-            .map(|(corners, (_, label))| (corners, *label))
+            .map(|(corners, (_, label))| New { corners, bounds: bounding_box(corners), label: *label })
             .collect();
         let mut moves = Vec::new();
         for &t in &change.removed {
             let label = sheet.label(t);
             for &sample in &self.of_triangle[t as usize] {
                 let p = self.places[sample as usize];
-                let of = |(k, (corners, of)): (u32, &([Point; 3], u32))| {
-                    (*of == label).then(|| (squared_distance(p, *corners), k))
-                };
-                let nearest =
-                    (0..).zip(&new).filter_map(of).min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
-                let (squared, k) = nearest?;
-                if squared > allowed * allowed {
+                let (mut least, mut nearest) = (f64::INFINITY, None);
+                for (k, New { corners, bounds, .. }) in (0..).zip(&new).filter(|(_, new)| new.label == label)
+                {
+                    if squared_distance_to_box(p, *bounds) < least {
+                        let squared = squared_distance(p, *corners);
+                        if squared < least {
+                            (least, nearest) = (squared, Some(k));
+                        }
+                    }
+                }
+                if least > allowed * allowed {
                     return None;
                 }
-                moves.push((sample, k));
+                moves.push((sample, nearest?));
             }
         }
         Some(moves)

@@ -4,7 +4,7 @@ use super::sheet::{Change, Sheet};
 use crate::base::{Point, VertexId};
 use crate::geometry::distance::triangle_triangle;
 use crate::preflight::meet;
-use crate::spatial::{GrowingBoxes, bounding_box, touch};
+use crate::spatial::{Bounds, GrowingBoxes, bounding_box, touch};
 
 /// The middle of an edge is off it by less than this times the largest coordinate.
 const ROUNDING: f64 = 1e-14;
@@ -61,6 +61,8 @@ impl Near {
         };
         self.found.clear();
         self.boxes.touching(bounds, &mut self.found);
+        self.found.sort_unstable();
+        self.found.dedup();
         let is_far = |other: [Point; 3]| {
             let reach = ROUNDING * bounds.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
             // Where triangles meet, signs say so sooner than a common point does, which is exact.
@@ -70,23 +72,26 @@ impl Near {
             };
             in_place && !change.removed.iter().any(|&t| is_near(&sheet.triangle(t).map(old)))
         };
+        let added: Vec<([VertexId; 3], Bounds)> =
+            change.added.iter().map(|(t, _)| (*t, bounding_box(corners(t)))).collect();
         let met_before = |other| change.removed.iter().any(|&t| meet_at(old, sheet.triangle(t), other));
         let meets_any = |t: u32| {
             let other = sheet.triangle(t);
             let of_other = bounding_box(corners(&other));
-            let is_near = |t: &[VertexId; 3]| touch(bounding_box(corners(t)), of_other);
-            change.added.iter().any(|(t, _)| is_near(t))
+            let mut near = added.iter().filter(|(_, bounds)| touch(*bounds, of_other)).peekable();
+            near.peek().is_some()
                 && !is_far(corners(&other))
-                && change.added.iter().any(|(t, _)| is_near(t) && meet(&sheet.points, *t, other))
+                && near.any(|(t, _)| meet(&sheet.points, *t, other))
                 && !met_before(other)
         };
         if self.found.iter().any(|t| !change.removed.contains(t) && meets_any(*t)) {
             return true;
         }
-        let is_met = |(k, (t, _)): (usize, &([VertexId; 3], u32))| {
-            change.added[..k].iter().any(|(other, _)| meet(&sheet.points, *t, *other))
+        let is_met = |(k, (t, bounds)): (usize, &([VertexId; 3], Bounds))| {
+            let mut others = added[..k].iter().filter(|other| touch(*bounds, other.1));
+            others.any(|(other, _)| meet(&sheet.points, *t, *other))
         };
-        change.added.iter().enumerate().any(is_met)
+        added.iter().enumerate().any(is_met)
     }
 
     /// Takes out the triangles that a change removes, before it is made.
