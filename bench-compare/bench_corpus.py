@@ -18,7 +18,9 @@ EXTENSIONS = {".stl", ".obj", ".ply", ".vtp", ".vtk", ".off", ".glb"}
 ADAPT = ["--repair", "--surface", "adapt"]
 # Name in the table: options of `motet mesh`, with numbers as fractions of the extent; or keyword of rivals/mesh_python.py.
 KEPT = {"motet": [], "motet --repair": ["--repair"], "TetGen -pY": "tetgen-keep"}
-EVEN = {"motet --surface adapt": [*ADAPT, "--size", SIZE, "--distance", DISTANCE], "TetGen -pq1.2/14a": "tetgen-divide",
+ADAPTED, WRAPPED = "motet --surface adapt", "motet, wrapped where refused"
+EVEN = {ADAPTED: [*ADAPT, "--size", SIZE, "--distance", DISTANCE],
+        WRAPPED: [*ADAPT, "--size", SIZE, "--distance", DISTANCE / 2, "--wrap", DISTANCE / 2], "TetGen -pq1.2/14a": "tetgen-divide",
         "MeshLab, TetGen -pq1.2/14aY": "meshlab-tetgen", "Gmsh": "gmsh-adapt", "fTetWild": "ftetwild"}
 
 
@@ -40,7 +42,7 @@ def run(record, options):
         print(f"  corpus {path.name}", file=sys.stderr, flush=True)
     print("\n## Surfaces of others\n")
     print(f"One run of each, one thread; {options.limit:g} s at most. Size {SIZE:g} and distance {DISTANCE:g} of the largest extent. Valid: all tets are positive,\n"
-          "their boundary is closed and, as they are, has every triangle of the surface. Near: the boundary and the surface are within the distance of each\n"
+          "their boundary is closed and, without repairs, every triangle of the surface is a facet. Near: the boundary and the surface are within the distance of each\n"
           f"other, measured by libigl at vertices and {PLACES:,} random places (holes that are closed and walls inside are far).")
     for title, programs in ("as they are", kept), ("with even triangles", even):
         print(f"\n### Filled {title}\n")
@@ -62,15 +64,17 @@ def of_surface(record, path, programs, limit):
     np.savez(case.npz, points=case.points, triangles=case.triangles, distance=case.distance)
     results = {}
     for name, what in programs.items():
-        if isinstance(what, str):
+        if name == WRAPPED and "error" not in results.get(ADAPTED, {"error": ""}):
+            result = results[ADAPTED]
+        elif isinstance(what, str):
             result, end = call(rival(case, name, what, case.size, runs=1), limit), ".npz"
         else:
             words = [word * extent if isinstance(word, float) else word for word in what]
             result, end = call(ours(case, name, words), limit), ".vtu"
         if "error" in result:
             result = {"error": short_error(result["error"])}
-        else:
-            result |= measured(case, case.out(name, end), name in KEPT)
+        elif "fault" not in result:
+            result |= measured(case, case.out(name, end), name in ("motet", "TetGen -pY"))
             result["seconds"] = float(np.ravel(result["seconds"])[0])
         record.add(**{"bench": "corpus", "surface": path.name, "program": name, **result})
         results[name] = result
@@ -80,7 +84,7 @@ def of_surface(record, path, programs, limit):
 def measured(case, path, is_kept):
     """Return the quality of a mesh, its distances from the surface, and what makes it invalid."""
     from remesh_files import made
-    from sameness import surface_kept
+    from sameness import surface_lost
 
     points, tets = made(path)
     size = volumes(points, tets)
@@ -99,9 +103,9 @@ def measured(case, path, is_kept):
     if (times % 2).any():
         faults.append(f"{int((times % 2).sum())} open edges")
     if is_kept:
-        found, _ = surface_kept(case.points, case.triangles, points, tets)
-        if found < len(case.triangles):
-            faults.append(f"{len(case.triangles) - found} triangles lost")
+        lost = surface_lost(case.points, case.triangles, points, tets)
+        if lost:
+            faults.append(f"{lost} triangles lost")
     else:
         surfaces = (case.points, case.triangles), (points, facets)
         result["distances"] = [farthest(*surfaces[way], *surfaces[1 - way]) / case.distance for way in (0, 1)]

@@ -2,7 +2,7 @@
 1e-9."""
 import numpy as np
 
-from tets import boundary
+from tets import FACETS, boundary
 
 NEAR = 1e-9
 
@@ -48,3 +48,9 @@ def surface_kept(old_points, triangles, points, tets):
     facets = boundary(tets)
     found, _ = kept(triangles, facets, row, to_the_bit)
     return found, len(facets) - found
+
+
+def surface_lost(old_points, triangles, points, tets):
+    """Count the triangles that are no facet, neither of the boundary nor between tets, exactly."""
+    row, to_the_bit = matched(old_points, np.ascontiguousarray(points, np.float64) + 0.0)
+    return len(triangles) - kept(triangles, tets[:, FACETS].reshape(-1, 3), row, to_the_bit)[0]

@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 
 use super::features::{Kind, length};
 use super::sheet::{Change, Sheet, edges_of};
-use super::work::{Refusal, Work, cosines, is_due};
-use crate::base::{Error, Point, Result, VertexId, sorted_ids};
+use super::work::{Refusal, Tried, Work, cosines, is_due};
+use crate::base::{Error, Point, Result, VertexId, entry, sorted_ids};
+use crate::geometry::segment;
 use crate::geometry::triangle::{area, centroid, largest_cosine, longest_side};
 use crate::geometry::vector::{add, distance, scale};
 
@@ -77,6 +78,7 @@ impl Work<'_> {
             self.round(true)?;
             self.widen_all();
         }
+        self.fit(NARROW);
         Ok(())
     }
 
@@ -108,6 +110,9 @@ impl Work<'_> {
         growth: f64,
         is_settled: bool,
     ) {
+        if !is_settled {
+            self.collapses.clear();
+        }
         for v in 0..self.sheet.points.len() {
             if self.is_held(VertexId::new(v)) {
                 continue;
@@ -153,6 +158,7 @@ impl Work<'_> {
     /// When there would be more than `max_triangles`.
     fn split_long(&mut self) -> Result<usize> {
         let (mut n, mut longest, mut refused) = (0, f64::INFINITY, BTreeSet::new());
+        let mut flips = Tried::new();
         for _ in 0..SPLITS {
             if self.sheet.n_slots() > self.max_triangles {
                 let what = format!("the adapted surface needs more than {} triangles", self.max_triangles);
@@ -177,7 +183,7 @@ impl Work<'_> {
             }
             n += n_now;
             // Parts of needles get shorter edges, and fewer vertices, before they are split themselves.
-            self.flip_once(LONG);
+            self.flip_once(LONG, &mut flips);
             if longest_now > 2.0 * LONG && longest_now < SHORTER * longest {
                 longest = longest_now;
                 self.collapse_short(true);
@@ -215,6 +221,10 @@ impl Work<'_> {
             if self.sheet.at_edge(u, v).next().is_none() || self.ratio(edge) >= SHORT {
                 continue;
             }
+            // Once sizes do not rise any more, what was refused stays so, and what it needed is known.
+            if !is_due(&self.changes, self.collapses.entry(edge).or_default(), &edge) && is_settled {
+                continue;
+            }
             let longest = LONG * self.size(edge);
             let admits = |sheet: &Sheet, change: &Change| {
                 let [before, after] = cosines(sheet, change);
@@ -240,19 +250,20 @@ impl Work<'_> {
 
     /// Flips edges where that widens the narrower of their triangles.
     fn flip_all(&mut self) {
+        let mut flips = Tried::new();
         for _ in 0..FLIPS {
-            if self.flip_once(FLIPPED) == 0 {
+            if self.flip_once(FLIPPED, &mut flips) == 0 {
                 return;
             }
         }
     }
 
-    /// Makes one pass of flips. New edges are no longer than `limit` times the size, or than the old ones.
-    /// Returns how many there were.
-    fn flip_once(&mut self, limit: f64) -> usize {
+    /// Makes one pass of flips of edges that are due. New edges are no longer than `limit` times the size, or
+    /// than the old ones. Returns how many there were.
+    fn flip_once(&mut self, limit: f64, flips: &mut Tried) -> usize {
         let mut n = 0;
         for edge in self.sheet.edges() {
-            if self.is_held_edge(edge) {
+            if self.is_held_edge(edge) || !is_due(&self.changes, flips.entry(edge).or_default(), &edge) {
                 continue;
             }
             let longest = limit * self.size(edge);
@@ -270,7 +281,9 @@ impl Work<'_> {
     /// Moves each vertex towards the centroid of its triangles, weighted so that sizes are followed.
     fn smooth(&mut self) {
         for v in (0..self.sheet.points.len()).map(VertexId::new) {
-            if self.sheet.star(v).is_empty() || !is_due(&self.changes, &mut self.moved, v.index(), &[v]) {
+            if self.sheet.star(v).is_empty()
+                || !is_due(&self.changes, entry(&mut self.moved, v.index()), &[v])
+            {
                 continue;
             }
             let admits = |sheet: &Sheet, change: &Change| {
@@ -288,11 +301,12 @@ impl Work<'_> {
                     let ends = self.features.line_ends(&self.sheet, v);
                     let &[a, b] = ends.as_slice() else { continue };
                     let [of_a, of_b] = [a, b].map(|end| self.ratio([v, end]));
-                    let (towards, from) = if of_a > of_b { (a, b) } else { (b, a) };
+                    let towards = if of_a > of_b { a } else { b };
                     let [of_towards, of_from] = [of_a.max(of_b), of_a.min(of_b)];
                     let fraction = 0.5 * (of_towards - of_from) / of_towards;
                     if fraction > 0.05 {
-                        self.slide(v, [towards, from], fraction, admits);
+                        let way = [v, towards].map(|v| self.sheet.points[v.index()]);
+                        self.shift_line(v, segment::at(way, fraction), admits);
                     }
                 }
                 Kind::Corner => {}
@@ -353,7 +367,7 @@ impl Work<'_> {
     fn widen(&mut self, t: u32, tried: &mut Vec<u32>) -> bool {
         if !self.sheet.exists(t)
             || largest_cosine(self.sheet.corners(t)) <= NARROW
-            || !is_due(&self.changes, tried, t as usize, &self.sheet.triangle(t))
+            || !is_due(&self.changes, entry(tried, t as usize), &self.sheet.triangle(t))
         {
             return false;
         }

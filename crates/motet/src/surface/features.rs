@@ -36,7 +36,7 @@ impl Features {
     /// both are at least `least_height` high: the normals of lower ones say nothing.
     pub(super) fn of(sheet: &Sheet, max_angle: f64, least_height: f64) -> Self {
         let min_cosine = max_angle.to_radians().cos();
-        let mut lines = Lines::default();
+        let mut lines = Lines::new(sheet.points.len());
         for edge in sheet.edges() {
             let is_border = is_border(sheet, edge);
             if is_border || is_crease(sheet, edge, min_cosine, least_height) {

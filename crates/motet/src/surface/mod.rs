@@ -5,6 +5,7 @@
 //! | features | `features` | borders of labels, rims, creases and corners stay where they are |
 //! | passes | `adapt` | long edges split, short ones collapsed, edges flipped, vertices moved |
 //! | changes | `work`, `sheet` | proposed, checked, made |
+//! | fit | `fit` | vertices moved across the surface, so that it keeps its volume |
 //! | parts | `parts` | of a surface that stays for the most part, only the rest is worked on |
 //! | distance | `original`, `cover` | both ways, for each change |
 //! | crossings | `near` | none is made |
@@ -14,6 +15,7 @@
 mod adapt;
 mod cover;
 mod features;
+mod fit;
 mod lines;
 mod near;
 mod original;

@@ -1,12 +1,14 @@
 //! Changes of a surface, made only where it stays near the given one, faces the same way and crosses nothing.
 
+use hashbrown::HashMap;
+
 use super::cover::{Cover, Moves};
 use super::features::{Features, Kind, length};
 use super::lines::Line;
 use super::near::Near;
 use super::original::Original;
 use super::sheet::{Change, Sheet, edges_of};
-use crate::base::{Changes, Point, Threads, VertexId, entry, sorted_ids};
+use crate::base::{Changes, Point, Threads, VertexId, sorted_ids};
 use crate::geometry::segment;
 use crate::geometry::triangle::{centroid, largest_cosine, longest_side};
 use crate::geometry::vector::{add, distance, scale};
@@ -35,13 +37,15 @@ pub(super) struct Work<'a> {
     pub(super) sheet: Sheet,
     pub(super) features: Features,
     pub(super) original: Original,
-    cover: Cover,
+    pub(super) cover: Cover,
     near: Near,
     /// The requested length of edges at each vertex.
     pub(super) sizes: Vec<f64>,
     pub(super) threads: &'a Threads,
     pub(super) max_triangles: usize,
     pub(super) changes: Changes,
+    /// When it was last tried to collapse edges.
+    pub(super) collapses: Tried,
     /// When it was last tried to move each vertex; 0: never.
     pub(super) moved: Vec<u32>,
 }
@@ -58,8 +62,20 @@ impl<'a> Work<'a> {
         let cover = Cover::new(&sheet, original.distance);
         let near = Near::new(&sheet);
         let changes = Changes::new();
-        let moved = Vec::new();
-        Self { cover, near, sheet, features, original, sizes, threads, max_triangles, changes, moved }
+        let (collapses, moved) = (Tried::new(), Vec::new());
+        Self {
+            cover,
+            near,
+            sheet,
+            features,
+            original,
+            sizes,
+            threads,
+            max_triangles,
+            changes,
+            collapses,
+            moved,
+        }
     }
 
     /// Keeps vertices where they are, and edges between them.
@@ -209,12 +225,12 @@ impl<'a> Work<'a> {
         Ok((end, line))
     }
 
-    /// Two edges of a line as one, with the place of the vertex between them.
+    /// Two edges of a line as one, with the place of the vertex between them if the given line has it.
     fn joined_line(&self, [from, between, to]: [VertexId; 3]) -> Option<Line> {
         let [first, second] = [[from, between], [between, to]].map(|edge| self.features.lines.get(edge));
         let (first, second) = first.zip(second)?;
-        let place = self.sheet.points[between.index()];
-        let places = first.places.iter().chain([&place]).chain(&second.places).copied().collect();
+        let place = self.features.lines.is_on(between).then(|| self.sheet.points[between.index()]);
+        let places = first.places.iter().chain(&place).chain(&second.places).copied().collect();
         Some(Line { places, is_crease: first.is_crease && second.is_crease })
     }
 
@@ -248,19 +264,18 @@ impl<'a> Work<'a> {
         true
     }
 
-    /// Moves a vertex along its line, towards one of its ends, by a fraction of that edge.
-    pub(super) fn slide(
+    /// Moves a vertex of a line with two ends there, if `admits` the change and the given line stays near.
+    pub(super) fn shift_line(
         &mut self,
         v: VertexId,
-        [towards, from]: [VertexId; 2],
-        fraction: f64,
+        place: Point,
         admits: impl Fn(&Sheet, &Change) -> bool,
     ) -> bool {
-        let at = |v: VertexId| self.sheet.points[v.index()];
-        let (old, end) = (at(v), at(towards));
-        let place: Point = std::array::from_fn(|k| old[k] + fraction * (end[k] - old[k]));
-        let segments = [[at(from), place], [place, end]];
-        let Some(Line { places, is_crease }) = self.joined_line([from, v, towards]) else { return false };
+        let ends = self.features.line_ends(&self.sheet, v);
+        let &[from, to] = ends.as_slice() else { return false };
+        let segments = [[from, v], [v, to]]
+            .map(|edge| edge.map(|w| if w == v { place } else { self.sheet.points[w.index()] }));
+        let Some(Line { places, is_crease }) = self.joined_line([from, v, to]) else { return false };
         let mut parts = [Vec::new(), Vec::new()];
         for p in places {
             let [first, second] = segments.map(|segment| distance(p, on_segment(segment, p)));
@@ -274,7 +289,8 @@ impl<'a> Work<'a> {
         }
         let [first, second] = parts;
         self.features.lines.insert([from, v], Line { places: first, is_crease });
-        self.features.lines.insert([v, towards], Line { places: second, is_crease });
+        self.features.lines.insert([v, to], Line { places: second, is_crease });
+        self.features.lines.set_off(v);
         true
     }
 
@@ -332,9 +348,8 @@ impl<'a> Work<'a> {
     }
 }
 
-fn on_segment([a, b]: [Point; 2], p: Point) -> Point {
-    let share = segment::closest([a, b], p);
-    std::array::from_fn(|k| a[k] + share * (b[k] - a[k]))
+fn on_segment(ends: [Point; 2], p: Point) -> Point {
+    segment::at(ends, segment::closest(ends, p))
 }
 
 /// The largest cosines of the triangles before and after a change.
@@ -344,9 +359,12 @@ pub(super) fn cosines(sheet: &Sheet, change: &Change) -> [f64; 2] {
     [before, after]
 }
 
-/// Whether a thing with these vertices was not tried yet, or something at them has changed since; it is being
-/// tried now.
-pub(super) fn is_due(changes: &Changes, tried: &mut Vec<u32>, id: usize, vertices: &[VertexId]) -> bool {
-    let time = std::mem::replace(entry(tried, id), changes.now());
+/// When changes of edges were last tried.
+pub(super) type Tried = HashMap<[VertexId; 2], u32>;
+
+/// Whether a thing with these vertices, last tried at this time, was not tried yet, or something at them has
+/// changed since; it is being tried now.
+pub(super) fn is_due(changes: &Changes, tried: &mut u32, vertices: &[VertexId]) -> bool {
+    let time = std::mem::replace(tried, changes.now());
     !vertices.iter().all(|v| changes.none_since(*v, time))
 }

@@ -2,7 +2,7 @@
 
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
-use motet::geometry::triangle::{area_vector, centroid};
+use motet::geometry::triangle::{area, area_vector, centroid};
 use motet::geometry::vector::{add, distance, dot, norm};
 use motet::mesh::history::{Changed, Origin};
 use motet::mesh::shapes::{Aneurysm, ball, box_grid};
@@ -85,6 +85,11 @@ fn rim_length(mesh: &Mesh) -> f64 {
         .sum()
 }
 
+fn surface_area(mesh: &Mesh) -> f64 {
+    let surface = surface(mesh);
+    (0..surface.triangles.len()).map(|t| area(surface.corners(t))).sum()
+}
+
 fn check(name: &str, made: &Changed<Report>, min_angle: f64) {
     let report = &made.report;
     assert_eq!(report.not_reached(), None, "{name}");
@@ -114,6 +119,21 @@ fn the_rims_of_an_open_cylinder_stay_where_they_are() {
     assert!((0.98..1.0).contains(&shrunk), "{shrunk}");
     let [least, median, largest] = made.report.after.edges;
     assert!(least > 0.05 && (0.2..0.4).contains(&median) && largest < 0.6, "{:?}", made.report.after.edges);
+}
+
+#[test]
+fn rims_keep_their_length_however_often_they_are_made_even() {
+    let mut mesh = cylinder();
+    for round in 0..16 {
+        mesh = even(&mesh, &options(if round % 2 == 0 { 0.3 } else { 0.36 }, 0.02)).mesh;
+        for v in rims(&mesh).into_iter().flatten() {
+            let z = mesh.points[v.index()][2];
+            assert!(z == 0.0 || z == 4.0, "a rim leaves its plane: {z}");
+        }
+    }
+    let [rims, area] =
+        [rim_length(&mesh) / 2.0, surface_area(&mesh) / 4.0].map(|x| x / std::f64::consts::TAU - 1.0);
+    assert!(rims.abs() < 0.004 && area.abs() < 0.004, "{rims} {area}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use motet::base::{Point, Threads, VertexId};
+use motet::base::{CellId, Point, Threads, VertexId};
 use motet::geometry::triangle::{angle_at, area, at, closest};
 use motet::geometry::vector::{distance, norm, sub};
 use motet::mesh::shapes::{Aneurysm, ball, box_grid};
@@ -106,6 +106,24 @@ fn a_ball_of_narrow_triangles_gets_even_ones_near_it() {
         let angles = least_angles(&new);
         assert!(angles[angles.len() / 100] > 30.0, "{n} {size}: {:?}", &angles[..8]);
     }
+}
+
+#[test]
+fn what_is_made_even_again_and_again_keeps_its_volume_and_its_area() {
+    let mesh = Aneurysm::default().mesh().unwrap();
+    let mut surface = Surface::own_or_boundary_of(&mesh);
+    let measured =
+        |of: &Surface| [of.enclosed_volume(), (0..of.triangles.len()).map(|t| area(of.corners(t))).sum()];
+    let first = measured(&surface);
+    for round in 0..16 {
+        let new = adapted(&surface, &options(if round % 2 == 0 { 0.3 } else { 0.33 }, 0.02));
+        surface.patches = new.labels.iter().map(|&label| label as i32).collect();
+        (surface.points, surface.triangles) = (new.points, new.triangles);
+        surface.triangle_to_cell = vec![CellId::new(0); surface.triangles.len()];
+    }
+    let last = measured(&surface);
+    let [volume, area] = [0, 1].map(|k| last[k] / first[k] - 1.0);
+    assert!(volume.abs() < 0.002 && area.abs() < 0.004, "{volume} {area}");
 }
 
 #[test]
