@@ -64,12 +64,14 @@ impl Default for Adapting {
 /// # Errors
 /// When the distance is not a length, or the angle not in [0, 180].
 ///
-/// `held`: for each point, whether it stays; empty if none has to.
+/// `held`: for each point, whether it stays; empty if none has to. `is_for_tets`: whether the room inside is
+/// to be filled.
 pub(super) fn adapt(
     surfaces: &Surfaces,
     sizes: Option<&Sizes>,
     adapting: &Adapting,
     held: &[bool],
+    is_for_tets: bool,
     threads: &Threads,
 ) -> Result<(Surfaces, Option<Sizes>, Adapted)> {
     let distance = adapting.allowed(surfaces);
@@ -103,6 +105,7 @@ pub(super) fn adapt(
         feature_angle: adapting.feature_angle,
         growth: grading.growth,
         held: held.to_vec(),
+        is_for_tets,
     };
     let adapted = surface::adapt(&surfaces.points, &sheet.triangles, &labels, &options, threads)?;
     let [to_given, from_given] = surface::distances(

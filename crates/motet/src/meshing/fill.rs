@@ -201,7 +201,7 @@ pub fn fill(
     options.improve.as_ref().map_or(Ok(()), remesh::Options::check)?;
     if options.dividing == Dividing::Adapt {
         let (adapted, sizes, report) =
-            adapt(surfaces, options.sizes.as_ref(), &options.adapting, &[], threads)?;
+            adapt(surfaces, options.sizes.as_ref(), &options.adapting, &[], true, threads)?;
         let preflight = adapted.preflight(threads);
         let options = Options { dividing: Dividing::Never, sizes, ..options.clone() };
         let mut filled = fill(&adapted, &preflight, &options, threads)?;

@@ -8,8 +8,8 @@ use super::sheet::{Change, Sheet, edges_of};
 use super::work::{Refusal, Tried, Work, cosines, is_due};
 use crate::base::{Error, Point, Result, VertexId, entry, sorted_ids};
 use crate::geometry::segment;
-use crate::geometry::triangle::{area, centroid, largest_cosine, longest_side};
-use crate::geometry::vector::{add, distance, scale};
+use crate::geometry::triangle::{area, area_vector, centroid, largest_cosine, longest_side};
+use crate::geometry::vector::{add, distance, scale, unit};
 
 /// Edges longer than this times the size are split; halves are then as near to it as the whole was.
 const LONG: f64 = 4.0 / 3.0;
@@ -26,6 +26,11 @@ const FLIPPED: f64 = 2.0;
 const FLIPS: usize = 3;
 /// How many rounds are made at most.
 const ROUNDS: usize = 8;
+/// The largest size between walls, over their distance: tets from triangles there to the opposite wall are
+/// then wide enough.
+const SIZE_OVER_GAP: f64 = 2.5;
+/// Walls so near that the size would be less than this times the requested one would need too many triangles.
+const LEAST_BETWEEN_WALLS: f64 = 0.25;
 /// How much finer a surface may become in a round between lines that are near each other.
 const MAX_FINER: f64 = 2.0;
 /// The first round after which sizes do not rise again, so that rounds come to an end.
@@ -119,6 +124,7 @@ impl Work<'_> {
             }
             if let Some(&t) = self.sheet.star(VertexId::new(v)).first() {
                 let requested = sizes(self, self.sheet.label(t), self.sheet.points[v]);
+                let requested = self.between_walls(VertexId::new(v), requested);
                 self.sizes[v] = if is_settled { self.sizes[v].min(requested) } else { requested };
             }
         }
@@ -126,6 +132,21 @@ impl Work<'_> {
             self.sizes[v.index()] = self.sizes[v.index()].min(size);
         }
         self.grade(growth);
+    }
+
+    /// The size at a vertex where a wall opposite to it may be too near for wide tets between triangles of the
+    /// requested size.
+    fn between_walls(&self, v: VertexId, requested: f64) -> f64 {
+        if !self.is_for_tets {
+            return requested;
+        }
+        let areas = self.sheet.star(v).iter().map(|&t| area_vector(self.sheet.corners(t)));
+        let Some(normal) = unit(areas.fold([0.0; 3], add)) else { return requested };
+        let apart = self.original.opposite(self.sheet.points[v.index()], normal, requested / SIZE_OVER_GAP);
+        match apart.map(|apart| SIZE_OVER_GAP * apart) {
+            Some(size) if size > LEAST_BETWEEN_WALLS * requested => size,
+            _ => requested,
+        }
     }
 
     /// Lowers sizes that grow by more than `growth` times the distance.

@@ -51,6 +51,9 @@ pub struct Options {
     /// For each point of the surface, whether it stays; edges between two points that stay are kept. Empty if
     /// none has to.
     pub held: Vec<bool>,
+    /// Whether the room inside is to be filled with tets: sizes are then smaller between walls that are near
+    /// each other.
+    pub is_for_tets: bool,
 }
 
 impl Options {
@@ -154,6 +157,7 @@ fn adapt_whole(
     let features = Features::of(&sheet, options.feature_angle, original.distance);
     let mut work = Work::new(sheet, features, original, at_points.clone(), max_triangles, threads);
     work.hold(&options.held);
+    work.is_for_tets = options.is_for_tets;
     let is_uniform = options.sizes.len() == 1;
     let sizes = |work: &Work<'_>, label: u32, p: Point| match is_uniform {
         true => options.sizes[0],

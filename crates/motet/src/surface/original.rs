@@ -8,6 +8,10 @@ use crate::spatial::{Closest, NearestTriangle};
 /// The cosine of the largest angle between a new triangle and the given surface near it: 45 degrees.
 const MIN_COSINE: f64 = 0.707;
 
+/// Walls are opposite to each other if both are this near to a right angle to the way between them: cosine of
+/// 14 degrees.
+const OPPOSITE: f64 = 0.97;
+
 /// The given surface, label by label.
 pub(super) struct Original {
     of_label: Vec<OfLabel>,
@@ -71,6 +75,22 @@ impl Original {
     /// Whether a place of a label is near.
     pub(super) fn is_near(&self, label: u32, p: Point) -> bool {
         self.near(label, p, self.distance).is_some()
+    }
+
+    /// The distance of the nearest wall beyond the room on one side of a place with this normal; `None` if
+    /// there is none within `reach`, or it is nearer than the surface itself may stray.
+    pub(super) fn opposite(&self, p: Point, normal: Point, reach: f64) -> Option<f64> {
+        let of = |of: &OfLabel| {
+            let is_opposite = |t: u32, found: &Closest| {
+                let way = sub(found.point, p);
+                let least = OPPOSITE * norm(way);
+                least > 2.0 * OPPOSITE * self.distance
+                    && dot(way, normal).abs() > least
+                    && dot(way, of.normals[t as usize]) > least
+            };
+            of.tree.closest_where(p, reach, is_opposite).map(|found| found.distance_squared.sqrt())
+        };
+        self.of_label.iter().filter_map(of).min_by(f64::total_cmp)
     }
 
     /// Whether the centroid of a triangle is near a place of its label that faces the same way.

@@ -43,6 +43,8 @@ pub(super) struct Work<'a> {
     pub(super) sizes: Vec<f64>,
     pub(super) threads: &'a Threads,
     pub(super) max_triangles: usize,
+    /// Whether sizes are smaller between walls that are near each other.
+    pub(super) is_for_tets: bool,
     pub(super) changes: Changes,
     /// When it was last tried to collapse edges.
     pub(super) collapses: Tried,
@@ -72,6 +74,7 @@ impl<'a> Work<'a> {
             sizes,
             threads,
             max_triangles,
+            is_for_tets: false,
             changes,
             collapses,
             moved,

@@ -84,6 +84,25 @@ fn the_wall_between_two_bodies_stays_one_wall() {
     assert!(filled.mesh.cells.vertices(CellId::new(0)).len() == 4);
 }
 
+/// The boundary of a plate of sides 4 and 3, as triangles.
+fn plate(thickness: f64) -> Mesh {
+    let surface = Surface::boundary_of(&box_grid([1; 3], [[0.0; 3], [4.0, 3.0, thickness]]));
+    let mut cells = motet::mesh::Cells::new();
+    surface.triangles.iter().for_each(|t| cells.push(motet::mesh::CellKind::TRIANGLE, *t));
+    Mesh::new(surface.points, cells)
+}
+
+#[test]
+fn triangles_between_walls_that_are_near_each_other_are_smaller() {
+    let (size, distance) = (0.4, 0.002);
+    let of = |thickness: f64| filled(&plate(thickness), size, Dividing::Adapt, distance).0;
+    let [thin, thick] = [0.1, 1.0].map(of);
+    let quality = Qualities::of_mesh(&thin.mesh, &Threads::single()).unwrap();
+    assert!(quality.worst >= 0.2 && quality.p1 > 0.25, "{quality:?}");
+    let after = |filled: &Filled| filled.report.adapted.unwrap().after;
+    assert!(after(&thin) > 2 * after(&thick), "{} {}", after(&thin), after(&thick));
+}
+
 #[test]
 fn a_distance_out_of_range_is_refused() {
     let threads = Threads::single();

@@ -13,7 +13,14 @@ use motet::surface::{Adapted, Options, adapt, distances};
 use crate::common::random::Random;
 
 fn options(size: f64, distance: f64) -> Options {
-    Options { sizes: vec![size], distance, feature_angle: 40.0, growth: 0.3, held: Vec::new() }
+    Options {
+        sizes: vec![size],
+        distance,
+        feature_angle: 40.0,
+        growth: 0.3,
+        held: Vec::new(),
+        is_for_tets: false,
+    }
 }
 
 fn adapted(surface: &Surface, options: &Options) -> Adapted {

@@ -79,7 +79,7 @@ fn even(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<Changed<Rep
     if !held.is_empty() {
         held.resize(surfaces.points.len(), false);
     }
-    let (new, _, adapted) = adapt(&surfaces, sizes.as_ref(), &options.adapting, &held, threads)?;
+    let (new, _, adapted) = adapt(&surfaces, sizes.as_ref(), &options.adapting, &held, false, threads)?;
     let history =
         history(&Given { mesh, given: &given, repaired: &repaired, surfaces: &surfaces }, &new, threads)?;
     let after = Measured::of(&new.points, &new.triangles, threads);
