@@ -96,6 +96,18 @@ fn an_open_box_is_closed_whichever_way_it_faces() {
     }
 }
 
+/// A part of a cylinder of radius 2, bent by 0.6 radians.
+fn bent_sheet() -> Soup {
+    let n = 12;
+    let at = |i: usize, z: f64| {
+        let angle = 0.6 * i as f64 / n as f64;
+        [5.0 + 2.0 * angle.cos(), 2.0 * angle.sin(), z]
+    };
+    let points = (0..=n).flat_map(|i| [at(i, 0.0), at(i, 1.0)]).collect();
+    let quad = |i: usize| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]];
+    (points, (0..n).flat_map(quad).map(|t| t.map(VertexId::new)).collect())
+}
+
 /// A void stays, a sheet that encloses nothing goes, a plate thinner than the distance may go, which is said.
 #[test]
 fn what_is_left_out_is_said() {
@@ -104,16 +116,19 @@ fn what_is_left_out_is_said() {
     let void = (inner, faces.into_iter().map(|[a, b, c]| [a, c, b]).collect());
     let apart = sheet([3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let plate = box_of([2; 3], [[-3.0, 0.0, 0.0], [-2.998, 1.0, 1.0]]);
-    let all = together(&[outer, void, apart, plate]);
+    let bent = bent_sheet();
+    let n_bent = bent.1.len();
+    let all = together(&[outer, void, apart, bent, plate]);
     let (surfaces, done) = repaired(&[(&all, Role::Boundary)], &wrap(0.02));
     assert_sound(&surfaces, &done, &all, 0.02);
     assert!((volume(&surfaces) - (1.0 - 0.027)).abs() < 0.02, "{}", volume(&surfaces));
-    assert!(done.count(RepairKind::DroppedOutside) >= 2, "{:?}", done.count(RepairKind::DroppedOutside));
-    let nothing = sheet([3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-    let roles = [Role::Boundary];
-    let refused =
-        motet::preflight::repair(&nothing.0, &nothing.1, &[0; 2], &roles, &wrap(0.02), &Threads::single());
-    assert!(refused.unwrap_err().to_string().contains("enclose nothing"));
+    assert!(done.count(RepairKind::DroppedOutside) >= 2 + n_bent);
+    for nothing in [sheet([3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]), bent_sheet()] {
+        let (of, roles) = (vec![0; nothing.1.len()], [Role::Boundary]);
+        let refused =
+            motet::preflight::repair(&nothing.0, &nothing.1, &of, &roles, &wrap(0.02), &Threads::single());
+        assert!(refused.unwrap_err().to_string().contains("enclose nothing"));
+    }
 }
 
 #[test]

@@ -42,8 +42,8 @@ pub(super) fn wrap(
     let mut pieces: Vec<Piece> = Vec::new();
     for surface in (0..work.roles.len() as u32).filter(|s| work.roles[*s as usize] == Role::Boundary) {
         let is_own = |i: &usize| work.pieces[*i].surface == surface && shapes[*i] == Shape::Sound;
-        let own: Vec<usize> = (0..work.pieces.len()).filter(is_own).collect();
-        let triangles: Vec<[VertexId; 3]> = own.iter().map(|&i| work.pieces[i].vertices).collect();
+        let mut own: Vec<usize> = (0..work.pieces.len()).filter(is_own).collect();
+        let mut triangles: Vec<[VertexId; 3]> = own.iter().map(|&i| work.pieces[i].vertices).collect();
         if own.is_empty() {
             continue;
         }
@@ -56,8 +56,22 @@ pub(super) fn wrap(
             ))
             .remedy(format!("give a distance of at least {least:.1e}, a hundred thousandth of the extent")));
         }
-        let field = Field::new(work.points, &triangles, distance, threads);
-        let Some(made) = wrapped(work.points, &triangles, &field, threads)? else {
+        let mut field = Field::new(work.points, &triangles, distance, threads);
+        let is_sheet = sheets(work, &field, threads);
+        if own.iter().any(|&i| is_sheet[i]) {
+            for &i in own.iter().filter(|&&i| is_sheet[i]) {
+                let vertices = work.pieces[i].vertices.to_vec();
+                work.record(RepairKind::DroppedOutside, vec![work.old(i as u32)], vertices);
+            }
+            own.retain(|&i| !is_sheet[i]);
+            triangles = own.iter().map(|&i| work.pieces[i].vertices).collect();
+            field = Field::new(work.points, &triangles, distance, threads);
+        }
+        let made = match own.is_empty() {
+            true => None,
+            false => wrapped(work.points, &triangles, &field, threads)?,
+        };
+        let Some(made) = made else {
             return Err(Error::input(format!("the surfaces enclose nothing thicker than {distance}")).remedy(
                 "wrap within a smaller distance; triangles have to face outward, as `--repair` turns them",
             ));
@@ -104,6 +118,21 @@ pub(super) fn wrap(
     pieces.extend(work.pieces.iter().filter(|piece| !is_replaced[piece.surface as usize]));
     let vertex_to_kept = (0..n_before).map(VertexId::new).collect();
     Ok(Some(DividedSurfaces { points, origins, vertex_to_kept, pieces }))
+}
+
+/// For each piece, whether it is one of an open part that encloses nothing: around the thin room behind a
+/// bent sheet, a new surface would need very many triangles.
+fn sheets(work: &mut Work, field: &Field, threads: &Threads) -> Vec<bool> {
+    let lists = work.lists();
+    let sides = work.sides(&lists);
+    let mut is_sheet = vec![false; work.pieces.len()];
+    for (part, is_closed) in Parts::new(work.pieces.len(), &sides).iter() {
+        let corners = |t: &u32| work.pieces[*t as usize].vertices.map(|v| work.points[v.index()]);
+        if !is_closed && !field.is_enclosing(&part.iter().map(corners).collect::<Vec<_>>(), threads) {
+            part.iter().for_each(|t| is_sheet[*t as usize] = true);
+        }
+    }
+    is_sheet
 }
 
 /// Turns open parts so that they face away from what they go around.

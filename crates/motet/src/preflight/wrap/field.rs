@@ -1,7 +1,8 @@
 //! What is inside of given surfaces, and where the inside ends.
 
 use crate::base::{Point, Threads, VertexId};
-use crate::geometry::vector::{add, distance, scale, sub};
+use crate::geometry::triangle::{area, area_vector, centroid};
+use crate::geometry::vector::{add, distance, scale, sub, unit};
 use crate::spatial::{Closest, NearestTriangle, WindingNumber};
 
 /// How near the end of the inside is found, over the allowed distance.
@@ -9,6 +10,15 @@ const FOUND_OVER_DISTANCE: f64 = 1.0 / 32.0;
 
 /// The most halvings of a segment that crosses the surface.
 const MAX_HALVINGS: usize = 60;
+
+/// How often surfaces go around places behind triangles that enclose these.
+const AROUND: f64 = 0.6;
+
+/// The least share of the area of triangles behind which something is enclosed.
+const LEAST_SHARE: f64 = 0.1;
+
+/// At how many triangles that is measured, at most.
+const MAX_SAMPLES: usize = 1000;
 
 /// Surfaces, and what is inside of them.
 pub(crate) struct Field {
@@ -34,6 +44,23 @@ impl Field {
 
     pub(crate) fn is_inside(&self, p: Point) -> bool {
         self.winding.at(p) > 0.5
+    }
+
+    /// Whether triangles enclose something behind them. Behind a sheet that goes round nothing the surfaces
+    /// go around half a time, and slightly more where it is bent.
+    pub(crate) fn is_enclosing(&self, triangles: &[[Point; 3]], threads: &Threads) -> bool {
+        let step = triangles.len().div_ceil(MAX_SAMPLES).max(1);
+        let shares = threads.map_parts(triangles.len().div_ceil(step), 16, |i| {
+            let corners = triangles[i * step];
+            let behind = unit(area_vector(corners))
+                .map(|normal| add(centroid(corners), scale(normal, -self.distance)))
+                .filter(|p| self.winding.at(*p) > AROUND);
+            (area(corners), behind.is_some())
+        });
+        let sum = |is_wanted: fn(&bool) -> bool| -> f64 {
+            shares.iter().filter(|of| is_wanted(&of.1)).map(|of| of.0).sum()
+        };
+        sum(|is_around| *is_around) > LEAST_SHARE * sum(|_| true)
     }
 
     /// The nearest place on the given triangles.

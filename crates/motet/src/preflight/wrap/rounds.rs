@@ -20,6 +20,10 @@ const LEAST_OVER_DISTANCE: f64 = 0.25;
 /// more.
 const STRAY_OVER_DISTANCE: f64 = 0.5;
 
+/// Facets across holes may stray this far from where the inside ends, over their longest side: that is known
+/// to the accuracy of winding numbers alone, and finer facets would follow the error.
+const AT_HOLE: f64 = 0.1;
+
 /// Given triangles farther than this from all facets need sites, over the allowed distance.
 const FAR_OVER_DISTANCE: f64 = 0.8;
 
@@ -185,7 +189,8 @@ impl<'a> Growth<'a> {
         let off = distance(place, triangle::at(corners, triangle::closest(corners, place)));
         // Where the inside ends at a hole, no given triangle is near.
         let is_at_hole = || self.field.nearest_within(place, stray).is_none();
-        if strays && !is_branching && off <= stray && is_at_hole() {
+        let flat = stray.max(AT_HOLE * triangle::longest_side(corners));
+        if strays && !is_branching && off <= flat && is_at_hole() {
             return None;
         }
         let radius = corners.map(|q| distance(place, q)).into_iter().fold(f64::INFINITY, f64::min);
