@@ -134,8 +134,8 @@ impl Work<'_> {
         self.grade(growth);
     }
 
-    /// The size at a vertex where a wall opposite to it may be too near for wide tets between triangles of the
-    /// requested size.
+    /// The size at a vertex where a wall opposite to it may be too near for wide tets between triangles
+    /// of the requested size.
     fn between_walls(&self, v: VertexId, requested: f64) -> f64 {
         if !self.is_for_tets {
             return requested;
