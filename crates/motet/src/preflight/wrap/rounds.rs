@@ -7,10 +7,10 @@ use super::field::Field;
 use super::seeds::{Creases, apart};
 use super::spaced::Spaced;
 use super::{Fate, Wrapped};
-use crate::base::{MaybeId, Point, Result, Threads, VertexId, sorted_ids};
+use crate::base::{DisjointSets, MaybeId, Point, Result, Threads, VertexId, sorted_ids};
 use crate::geometry::triangle::{self, centroid, middles};
 use crate::geometry::vector::{add, cross, distance, is_finite, scale, sub, unit};
-use crate::mesh::largest_extent;
+use crate::mesh::{cone_volume, largest_extent};
 use crate::spatial::{NearestTriangle, bounding_box};
 
 /// Sites are not nearer than this to each other, over the allowed distance.
@@ -86,6 +86,7 @@ pub(crate) fn wrap(
         length *= 0.5;
         suspects = suspects.iter().flat_map(|sample| sample.divided(&all, length)).collect();
     }
+    growth.drop_crumbs(&mut found);
     if found.is_empty() {
         return Ok(None);
     }
@@ -220,6 +221,28 @@ impl<'a> Growth<'a> {
             let [behind, before] = if is_far { self.beside(place, normal) } else { [false; 2] };
             (behind != before).then_some(Proposal { place, radius: radius.min(length) })
         })
+    }
+
+    /// Drops parts of the surface around rooms thinner than half the distance.
+    fn drop_crumbs(&self, found: &mut Vec<Facet>) {
+        let mut sets = DisjointSets::new(self.sites.len());
+        sets.join_all(found.iter().map(|facet| facet.sites.as_slice()));
+        let roots = sets.roots();
+        let root = |facet: &Facet| roots[facet.sites[0].index()];
+        let mut measured: HashMap<u32, (Point, f64, f64)> = HashMap::new();
+        for facet in &*found {
+            let corners = facet.sites.map(|v| self.sites[v.index()]);
+            let (origin, volume, area) = measured.entry(root(facet)).or_insert((corners[0], 0.0, 0.0));
+            *volume += cone_volume(facet.sites.into_iter(), &self.sites, *origin);
+            *area += triangle::area(corners);
+        }
+        let least = 0.5 * self.field.distance;
+        let is_thick = |facet: &Facet| {
+            let (_, volume, area) = measured[&root(facet)];
+            // A plate of this thickness has as much volume and area.
+            2.0 * volume.abs() >= least * area
+        };
+        found.retain(is_thick);
     }
 
     /// What became of given triangles.
