@@ -12,7 +12,9 @@ use motet::geometry::vector::distance;
 use motet::io::{self, WriteOptions};
 use motet::mesh::firsts_at_place;
 use motet::mesh::{CellKind, Surface};
-use motet::preflight::{Fault, FaultKind, Preflight, Repairs, Role, culprits, preflight, renamed, repair};
+use motet::preflight::{
+    Fault, FaultKind, Preflight, RepairKind, Repairs, Role, culprits, preflight, renamed, repair,
+};
 use proptest::prelude::*;
 
 type Triangles = Vec<[VertexId; 3]>;
@@ -142,6 +144,28 @@ proptest! {
         prop_assert!(!repairs.drop_duplicates || after.count(FaultKind::Duplicate) == 0);
         prop_assert!(!repairs.drop_degenerate || after.count(FaultKind::RepeatedVertex) == 0);
     }
+}
+
+#[test]
+fn no_triangle_is_double_after_a_wrap_either() {
+    // A membrane beside a boundary, its triangle given twice.
+    let points = [
+        [0.0; 3],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [9.0, 0.0, 0.0],
+        [9.0, 1.0, 0.0],
+        [9.0, 0.0, 1.0],
+    ];
+    let triangles: Triangles =
+        [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [4, 5, 6], [4, 5, 6]].map(|t| t.map(VertexId)).to_vec();
+    let (of, roles) = ([0, 0, 0, 0, 1, 1], [Role::Boundary, Role::Membrane]);
+    let repairs = Repairs { unite: true, wrap: Some(0.05), ..Repairs::all(0.0, 0) };
+    let mended = repair(&points, &triangles, &of, &roles, &repairs, &Threads::single()).unwrap();
+    let after = preflight(&mended.points, &mended.triangles, &mended.surface_of, &roles, &Threads::single());
+    assert_eq!(after.count(FaultKind::Duplicate), 0);
+    assert_eq!((mended.triangles.len() > 1, mended.count(RepairKind::Wrapped)), (true, 1));
 }
 
 #[test]

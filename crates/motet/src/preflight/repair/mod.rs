@@ -58,7 +58,7 @@ pub struct Repairs {
     /// Each boundary is replaced by a new closed surface within this distance, in the unit of the points,
     /// around what it encloses: boundaries may be open, torn, double, and cross themselves or each other. A
     /// place is inside if they go around it more than half a time. Walls and gaps thinner than the distance
-    /// may be lost, which is reported. Nothing is divided first, and no hole is filled.
+    /// may be lost, which is reported. Nothing is divided or united first, and no hole is filled.
     pub wrap: Option<f64>,
 }
 
@@ -99,6 +99,8 @@ pub fn repair(
     repairs: &Repairs,
     threads: &Threads,
 ) -> Result<Repaired> {
+    // One new surface is around all bodies.
+    let repairs = &Repairs { unite: repairs.unite && repairs.wrap.is_none(), ..*repairs };
     let mut work = Work::new(&Surfaces::new(points, triangles, surface_of, roles));
     let mut vertex_to_kept = match repairs.merge {
         Some(distance) if !(0.0..=LARGEST).contains(&distance) => {
