@@ -65,16 +65,17 @@ def of_surface(record, path, programs, limit):
     results = {}
     for name, what in programs.items():
         if name == WRAPPED and "error" not in results.get(ADAPTED, {"error": ""}):
-            result = results[ADAPTED]
-        elif isinstance(what, str):
+            results[name] = results[ADAPTED]
+            continue
+        if isinstance(what, str):
             result, end = call(rival(case, name, what, case.size, runs=1), limit), ".npz"
         else:
             words = [word * extent if isinstance(word, float) else word for word in what]
             result, end = call(ours(case, name, words), limit), ".vtu"
         if "error" in result:
             result = {"error": short_error(result["error"])}
-        elif "fault" not in result:
-            result |= measured(case, case.out(name, end), name in ("motet", "TetGen -pY"))
+        else:
+            result |= measured(case, case.out(name, end), name in KEPT and "--repair" not in what)
             result["seconds"] = float(np.ravel(result["seconds"])[0])
         record.add(**{"bench": "corpus", "surface": path.name, "program": name, **result})
         results[name] = result

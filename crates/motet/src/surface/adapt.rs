@@ -8,8 +8,8 @@ use super::sheet::{Change, Sheet, edges_of};
 use super::work::{Refusal, Tried, Work, cosines, is_due};
 use crate::base::{Error, Point, Result, VertexId, entry, sorted_ids};
 use crate::geometry::segment;
-use crate::geometry::triangle::{area, area_vector, centroid, largest_cosine, longest_side};
-use crate::geometry::vector::{add, distance, scale, unit};
+use crate::geometry::triangle::{area, centroid, largest_cosine, longest_side};
+use crate::geometry::vector::{add, distance, scale};
 
 /// Edges longer than this times the size are split; halves are then as near to it as the whole was.
 const LONG: f64 = 4.0 / 3.0;
@@ -140,8 +140,7 @@ impl Work<'_> {
         if !self.is_for_tets {
             return requested;
         }
-        let areas = self.sheet.star(v).iter().map(|&t| area_vector(self.sheet.corners(t)));
-        let Some(normal) = unit(areas.fold([0.0; 3], add)) else { return requested };
+        let Some(normal) = self.sheet.normal(v) else { return requested };
         let apart = self.original.opposite(self.sheet.points[v.index()], normal, requested / SIZE_OVER_GAP);
         match apart.map(|apart| SIZE_OVER_GAP * apart) {
             Some(size) if size > LEAST_BETWEEN_WALLS * requested => size,

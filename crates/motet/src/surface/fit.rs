@@ -7,8 +7,8 @@ use super::sheet::{Change, Sheet};
 use super::work::{Work, cosines};
 use crate::base::{Point, VertexId};
 use crate::geometry::segment;
-use crate::geometry::triangle::{area_vector, at, closest};
-use crate::geometry::vector::{add, dot, norm, scale, sub, unit};
+use crate::geometry::triangle::{at, closest};
+use crate::geometry::vector::{add, dot, norm, scale, sub};
 
 /// Vertices do not move by less than this times the allowed distance, so that planes stay planes.
 const STILL: f64 = 0.01;
@@ -48,8 +48,7 @@ impl Work<'_> {
     /// vertex has of it.
     fn offset_of_surface(&self, v: VertexId) -> Option<Point> {
         let star = self.sheet.star(v);
-        let areas = star.iter().map(|&t| area_vector(self.sheet.corners(t)));
-        let normal = unit(areas.fold([0.0; 3], add))?;
+        let normal = self.sheet.normal(v)?;
         let (mut sum, mut total) = (0.0, 0.0);
         for &t in star {
             let corners = self.sheet.corners(t);

@@ -2,7 +2,8 @@
 //! number of triangles.
 
 use crate::base::{Point, VertexId, sorted_ids};
-use crate::geometry::vector::{add, scale};
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, scale, unit};
 
 /// Triangles over points, each with a label, and the triangles at each vertex.
 #[derive(Clone, Debug)]
@@ -204,6 +205,11 @@ impl Sheet {
         }
         self.unused.extend(reused);
         ids
+    }
+
+    /// The unit normal at a vertex; `None` where its triangles have none.
+    pub(crate) fn normal(&self, v: VertexId) -> Option<Point> {
+        unit(self.star(v).iter().map(|&t| area_vector(self.corners(t))).fold([0.0; 3], add))
     }
 
     /// The middle of an edge.

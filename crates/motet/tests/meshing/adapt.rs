@@ -1,6 +1,6 @@
 //! Surfaces of needles, which force bad tets: adapted first, they do not.
 
-use motet::base::{CellId, Threads, VertexId};
+use motet::base::{CellId, Point, Threads, VertexId};
 use motet::geometry::triangle::at;
 use motet::mesh::shapes::{Aneurysm, box_grid};
 use motet::mesh::{Mesh, Qualities, Surface};
@@ -34,6 +34,14 @@ fn filled(mesh: &Mesh, size: f64, dividing: Dividing, distance: f64) -> (Filled,
     (fill(&surfaces, &surfaces.preflight(&threads), &options, &threads).unwrap(), options)
 }
 
+/// The boundary of a box, as triangles.
+fn box_of(corners: [Point; 2]) -> Mesh {
+    let surface = Surface::boundary_of(&box_grid([1; 3], corners));
+    let mut cells = motet::mesh::Cells::new();
+    surface.triangles.iter().for_each(|t| cells.push(motet::mesh::CellKind::TRIANGLE, *t));
+    Mesh::new(surface.points, cells)
+}
+
 fn volume(mesh: &Mesh) -> f64 {
     motet::mesh::cell_volumes(&mesh.cells, &mesh.points).iter().sum()
 }
@@ -63,14 +71,7 @@ fn needles_of_an_adapted_surface_force_no_bad_tet() {
 
 #[test]
 fn the_wall_between_two_bodies_stays_one_wall() {
-    let left = Surface::boundary_of(&box_grid([1; 3], [[0.0; 3], [1.0, 1.0, 1.0]]));
-    let right = Surface::boundary_of(&box_grid([1; 3], [[1.0, 0.0, 0.0], [2.0, 1.0, 1.0]]));
-    let mesh = |surface: &Surface| {
-        let mut cells = motet::mesh::Cells::new();
-        surface.triangles.iter().for_each(|t| cells.push(motet::mesh::CellKind::TRIANGLE, *t));
-        Mesh::new(surface.points.clone(), cells)
-    };
-    let (left, right) = (mesh(&left), mesh(&right));
+    let (left, right) = (box_of([[0.0; 3], [1.0; 3]]), box_of([[1.0, 0.0, 0.0], [2.0, 1.0, 1.0]]));
     let threads = Threads::single();
     let surfaces =
         Surfaces::new(&[(&left, Role::Boundary, "left"), (&right, Role::Boundary, "right")]).unwrap();
@@ -84,17 +85,10 @@ fn the_wall_between_two_bodies_stays_one_wall() {
     assert!(filled.mesh.cells.vertices(CellId::new(0)).len() == 4);
 }
 
-/// The boundary of a plate of sides 4 and 3, as triangles.
-fn plate(thickness: f64) -> Mesh {
-    let surface = Surface::boundary_of(&box_grid([1; 3], [[0.0; 3], [4.0, 3.0, thickness]]));
-    let mut cells = motet::mesh::Cells::new();
-    surface.triangles.iter().for_each(|t| cells.push(motet::mesh::CellKind::TRIANGLE, *t));
-    Mesh::new(surface.points, cells)
-}
-
 #[test]
 fn triangles_between_walls_that_are_near_each_other_are_smaller() {
     let (size, distance) = (0.4, 0.002);
+    let plate = |thickness: f64| box_of([[0.0; 3], [4.0, 3.0, thickness]]);
     let of = |thickness: f64| filled(&plate(thickness), size, Dividing::Adapt, distance).0;
     let [thin, thick] = [0.1, 1.0].map(of);
     let quality = Qualities::of_mesh(&thin.mesh, &Threads::single()).unwrap();

@@ -1,5 +1,7 @@
 //! Replaces boundaries by new closed surfaces around what they enclose.
 
+use std::collections::BTreeSet;
+
 use super::Repairs;
 use super::divide::DividedSurfaces;
 use super::report::RepairKind;
@@ -34,6 +36,7 @@ pub(super) fn wrap(
     if repairs.orient {
         turn_open_parts(work);
     }
+    let open = open_parts(work);
     let lists = work.lists();
     let shapes = shapes(&lists.surfaces(work), threads);
     let n_before = work.points.len();
@@ -57,13 +60,19 @@ pub(super) fn wrap(
             .remedy(format!("give a distance of at least {least:.1e}, a hundred thousandth of the extent")));
         }
         let mut field = Field::new(work.points, &triangles, distance, threads);
-        let is_sheet = sheets(work, &field, threads);
-        if own.iter().any(|&i| is_sheet[i]) {
-            for &i in own.iter().filter(|&&i| is_sheet[i]) {
+        // In the thin room behind a bent sheet, a new surface would need very many triangles.
+        let is_sheet = |part: &&Vec<u32>| {
+            let corners = |t: &u32| work.pieces[*t as usize].vertices.map(|v| work.points[v.index()]);
+            work.pieces[part[0] as usize].surface == surface
+                && !field.is_enclosing(&part.iter().map(corners).collect::<Vec<_>>(), threads)
+        };
+        let sheets: BTreeSet<u32> = open.iter().filter(is_sheet).flatten().copied().collect();
+        if !sheets.is_empty() {
+            for &i in own.iter().filter(|i| sheets.contains(&(**i as u32))) {
                 let vertices = work.pieces[i].vertices.to_vec();
                 work.record(RepairKind::DroppedOutside, vec![work.old(i as u32)], vertices);
             }
-            own.retain(|&i| !is_sheet[i]);
+            own.retain(|i| !sheets.contains(&(*i as u32)));
             triangles = own.iter().map(|&i| work.pieces[i].vertices).collect();
             field = Field::new(work.points, &triangles, distance, threads);
         }
@@ -120,35 +129,24 @@ pub(super) fn wrap(
     Ok(Some(DividedSurfaces { points, origins, vertex_to_kept, pieces }))
 }
 
-/// For each piece, whether it is one of an open part that encloses nothing: around the thin room behind a
-/// bent sheet, a new surface would need very many triangles.
-fn sheets(work: &mut Work, field: &Field, threads: &Threads) -> Vec<bool> {
+/// The parts of the surfaces that are open.
+fn open_parts(work: &mut Work) -> Vec<Vec<u32>> {
     let lists = work.lists();
     let sides = work.sides(&lists);
-    let mut is_sheet = vec![false; work.pieces.len()];
-    for (part, is_closed) in Parts::new(work.pieces.len(), &sides).iter() {
-        let corners = |t: &u32| work.pieces[*t as usize].vertices.map(|v| work.points[v.index()]);
-        if !is_closed && !field.is_enclosing(&part.iter().map(corners).collect::<Vec<_>>(), threads) {
-            part.iter().for_each(|t| is_sheet[*t as usize] = true);
-        }
-    }
-    is_sheet
+    let parts = Parts::new(work.pieces.len(), &sides);
+    parts.iter().filter(|(_, is_closed)| !is_closed).map(|(part, _)| part.to_vec()).collect()
 }
 
 /// Turns open parts so that they face away from what they go around.
 fn turn_open_parts(work: &mut Work) {
-    let lists = work.lists();
-    let sides = work.sides(&lists);
-    let mut turned = Vec::new();
-    for (part, is_closed) in Parts::new(work.pieces.len(), &sides).iter() {
+    for part in open_parts(work) {
         let of = |t: &u32| work.pieces[*t as usize].vertices;
         let corners = || part.iter().flat_map(of).map(|v| work.points[v.index()]);
         let n = 3.0 * part.len() as f64;
         let middle = corners().fold([0.0; 3], |sum, p| [0, 1, 2].map(|axis| sum[axis] + p[axis] / n));
         let volume: f64 = part.iter().map(|t| cone_volume(of(t).into_iter(), work.points, middle)).sum();
-        if !is_closed && volume < 0.0 {
-            turned.extend(part);
+        if volume < 0.0 {
+            part.into_iter().for_each(|t| work.reverse(t));
         }
     }
-    turned.into_iter().for_each(|t| work.reverse(t));
 }

@@ -52,15 +52,14 @@ impl Field {
         let step = triangles.len().div_ceil(MAX_SAMPLES).max(1);
         let shares = threads.map_parts(triangles.len().div_ceil(step), 16, |i| {
             let corners = triangles[i * step];
-            let behind = unit(area_vector(corners))
-                .map(|normal| add(centroid(corners), scale(normal, -self.distance)))
-                .filter(|p| self.winding.at(*p) > AROUND);
-            (area(corners), behind.is_some())
+            let is_around = unit(area_vector(corners)).is_some_and(|normal| {
+                self.winding.at(add(centroid(corners), scale(normal, -self.distance))) > AROUND
+            });
+            (area(corners), is_around)
         });
-        let sum = |is_wanted: fn(&bool) -> bool| -> f64 {
-            shares.iter().filter(|of| is_wanted(&of.1)).map(|of| of.0).sum()
-        };
-        sum(|is_around| *is_around) > LEAST_SHARE * sum(|_| true)
+        let all: f64 = shares.iter().map(|of| of.0).sum();
+        let around: f64 = shares.iter().filter(|of| of.1).map(|of| of.0).sum();
+        around > LEAST_SHARE * all
     }
 
     /// The nearest place on the given triangles.

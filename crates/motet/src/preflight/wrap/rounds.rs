@@ -225,24 +225,25 @@ impl<'a> Growth<'a> {
 
     /// Drops parts of the surface around rooms thinner than half the distance.
     fn drop_crumbs(&self, found: &mut Vec<Facet>) {
-        let mut sets = DisjointSets::new(self.sites.len());
-        sets.join_all(found.iter().map(|facet| facet.sites.as_slice()));
+        let mut sets = DisjointSets::new(found.len());
+        for pair in sides(found).windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            sets.join(pair[0].1, pair[1].1);
+        }
         let roots = sets.roots();
-        let root = |facet: &Facet| roots[facet.sites[0].index()];
         let mut measured: HashMap<u32, (Point, f64, f64)> = HashMap::new();
-        for facet in &*found {
+        for (facet, root) in found.iter().zip(&roots) {
             let corners = facet.sites.map(|v| self.sites[v.index()]);
-            let (origin, volume, area) = measured.entry(root(facet)).or_insert((corners[0], 0.0, 0.0));
+            let (origin, volume, area) = measured.entry(*root).or_insert((corners[0], 0.0, 0.0));
             *volume += cone_volume(facet.sites.into_iter(), &self.sites, *origin);
             *area += triangle::area(corners);
         }
         let least = 0.5 * self.field.distance;
-        let is_thick = |facet: &Facet| {
-            let (_, volume, area) = measured[&root(facet)];
+        let mut is_thick = roots.iter().map(|root| {
+            let (_, volume, area) = measured[root];
             // A plate of this thickness has as much volume and area.
             2.0 * volume.abs() >= least * area
-        };
-        found.retain(is_thick);
+        });
+        found.retain(|_| is_thick.next() == Some(true));
     }
 
     /// What became of given triangles.
@@ -332,8 +333,8 @@ fn is_narrow([a, b, c]: [Point; 3], least: f64) -> bool {
     radius > least && radius > NARROW * shortest
 }
 
-/// Whether more than two facets meet at an edge of each facet.
-fn branching(found: &[Facet]) -> Vec<bool> {
+/// The sides of facets, each with its facet, in rising order.
+fn sides(found: &[Facet]) -> Vec<([VertexId; 2], u32)> {
     let mut sides: Vec<([VertexId; 2], u32)> = (0u32..)
         .zip(found)
         .flat_map(|(i, Facet { sites: [a, b, c], .. })| {
@@ -341,6 +342,12 @@ fn branching(found: &[Facet]) -> Vec<bool> {
         })
         .collect();
     sides.sort_unstable();
+    sides
+}
+
+/// Whether more than two facets meet at an edge of each facet.
+fn branching(found: &[Facet]) -> Vec<bool> {
+    let sides = sides(found);
     let mut is_branching = vec![false; found.len()];
     for same in sides.chunk_by(|x, y| x.0 == y.0).filter(|same| same.len() > 2) {
         same.iter().for_each(|side| is_branching[side.1 as usize] = true);
