@@ -17,6 +17,7 @@ use crate::base::{Point, Threads, VertexId};
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::distance::{segment_segment, segment_triangle};
 use crate::geometry::predicates::{collinear, orient3d};
+use crate::geometry::triangle::area_vector;
 use crate::spatial::BoxTree;
 use crate::spatial::runs::{bounding_box, corners, in_runs};
 
@@ -66,6 +67,9 @@ pub(super) fn crossings_of(
 
 /// Whether two triangles have more in common than the vertices and edges that they share by id.
 pub(crate) fn meet(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool {
+    if are_beside(points, a, b) || are_beside(points, b, a) {
+        return false;
+    }
     let [of_a, of_b] = [a, b].map(|t| corners(points, t));
     if !a.iter().any(|v| b.contains(v)) {
         return triangle_triangle::meet(of_a, of_b);
@@ -86,6 +90,42 @@ pub(crate) fn meet(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool
             segment_triangle::meet([at(rest_a[0]), at(rest_a[1])], of_b)
                 || segment_triangle::meet([at(rest_b[0]), at(rest_b[1])], of_a)
         }
+    }
+}
+
+/// The rounding error of twice the area of a triangle in a plane, relative to the sum of the absolute values
+/// of its two products (Shewchuk 1997, *Adaptive precision floating-point arithmetic and fast robust geometric
+/// predicates*: 3 times 2^-53 and a little).
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
+/// Products below this may have lost bits to underflow.
+const UNDERFLOW: f64 = 1e-290;
+
+/// Whether a plane through an edge of `a`, along the axis nearest to its normal, has the rest of `a` on one
+/// side and `b` on the other but for the vertices of that edge: they then have no other point in common.
+/// `false` if that is not certain.
+fn are_beside(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool {
+    let corners = corners(points, a);
+    let normal = area_vector(corners);
+    let axis = (0..3).fold(0, |most, k| if normal[k].abs() > normal[most].abs() { k } else { most });
+    let seen = |p: Point| [p[(axis + 1) % 3], p[(axis + 2) % 3]];
+    let [p, q, r] = corners.map(seen);
+    let side = side_of([p, q], r);
+    if side == 0 {
+        return false;
+    }
+    [([a[0], a[1]], [p, q]), ([a[1], a[2]], [q, r]), ([a[2], a[0]], [r, p])].into_iter().any(
+        |(edge, line)| b.iter().all(|v| edge.contains(v) || side_of(line, seen(points[v.index()])) == -side),
+    )
+}
+
+/// The side of a line in a plane on which a point lies: 1, -1, or 0 if that is not certain.
+fn side_of([p, q]: [[f64; 2]; 2], r: [f64; 2]) -> i8 {
+    let [first, second] = [(q[0] - p[0]) * (r[1] - p[1]), (q[1] - p[1]) * (r[0] - p[0])];
+    let error = ROUNDING * (first.abs() + second.abs()) + UNDERFLOW;
+    match first - second {
+        area if area > error => 1,
+        area if area < -error => -1,
+        _ => 0,
     }
 }
 

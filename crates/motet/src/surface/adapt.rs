@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::features::{Kind, length};
 use super::sheet::{Change, Sheet, edges_of};
-use super::work::{Refusal, Tried, Work, cosines, is_due};
+use super::work::{Refusal, Work, cosines, is_due};
 use crate::base::{Error, Point, Result, VertexId, entry, sorted_ids};
 use crate::geometry::segment;
 use crate::geometry::triangle::{area, centroid, largest_cosine, longest_side};
@@ -37,6 +37,9 @@ const MAX_FINER: f64 = 2.0;
 const SETTLED: usize = 2;
 /// Rounds end when fewer than this fraction of the edges was split or collapsed.
 const FEW: f64 = 0.005;
+/// Rounds end when the mean of the least angles of all triangles grows by less than this, in degrees: where
+/// what one round splits is collapsed by the next, they would not come to an end.
+const WIDER: f64 = 0.25;
 /// The cosine of the angle below which a triangle is narrow: 30 degrees.
 const NARROW: f64 = 0.866;
 /// The cosine of the angle that no change but one of worse triangles may fall below: 20 degrees.
@@ -60,14 +63,17 @@ impl Work<'_> {
     /// Brings edges to their sizes. `sizes` gives those requested of a place of a label, `growth` how much
     /// they may grow per unit of distance.
     pub(super) fn adapt(&mut self, sizes: impl Fn(&Self, u32, Point) -> f64, growth: f64) -> Result<()> {
+        let mut before = 0.0;
         for round in 0..ROUNDS {
             self.threads.watch().report_and_check("making the surface even", round, ROUNDS)?;
             let (n_changed, needed) = self.round(round >= SETTLED)?;
             self.resize(&sizes, &needed, growth, round >= SETTLED);
             let n_edges = 1.5 * self.sheet.existing().count() as f64;
-            if (n_changed as f64) < FEW * n_edges {
+            let after = self.mean_angle();
+            if (n_changed as f64) < FEW * n_edges || round > SETTLED && after < before + WIDER {
                 break;
             }
+            before = after;
         }
         self.widen_all();
         let mut n_narrow = usize::MAX;
@@ -85,6 +91,13 @@ impl Work<'_> {
         }
         self.fit(NARROW);
         Ok(())
+    }
+
+    /// The mean of the least angles of all triangles, in degrees.
+    fn mean_angle(&self) -> f64 {
+        let angle = |t| largest_cosine(self.sheet.corners(t)).clamp(-1.0, 1.0).acos().to_degrees();
+        let (sum, n) = self.sheet.existing().fold((0.0, 0.0), |(sum, n), t| (sum + angle(t), n + 1.0));
+        sum / n
     }
 
     /// Splits, collapses, flips and moves once. Returns how many edges were split or collapsed, and the sizes
@@ -178,13 +191,14 @@ impl Work<'_> {
     /// When there would be more than `max_triangles`.
     fn split_long(&mut self) -> Result<usize> {
         let (mut n, mut longest, mut refused) = (0, f64::INFINITY, BTreeSet::new());
-        let mut flips = Tried::new();
+        let mut since = 0;
         for _ in 0..SPLITS {
             if self.sheet.n_slots() > self.max_triangles {
                 let what = format!("the adapted surface needs more than {} triangles", self.max_triangles);
                 return Err(Error::options(what).remedy("give a larger size or distance"));
             }
-            let mut long = self.edges_where(|ratio| ratio > LONG);
+            let now = self.changes.now();
+            let mut long = self.edges_where(since, |ratio| ratio > LONG);
             long.reverse();
             let longest_now = long.first().map_or(0.0, |x| x.0);
             let mut n_now = 0;
@@ -203,7 +217,8 @@ impl Work<'_> {
             }
             n += n_now;
             // Parts of needles get shorter edges, and fewer vertices, before they are split themselves.
-            self.flip_once(LONG, &mut flips);
+            self.flip_once(LONG, since);
+            since = now;
             if longest_now > 2.0 * LONG && longest_now < SHORTER * longest {
                 longest = longest_now;
                 self.collapse_short(true);
@@ -221,9 +236,15 @@ impl Work<'_> {
             && others.any(|other| refused.contains(&sorted_ids(other)) && self.ratio(other) > ratio)
     }
 
-    /// Edges whose lengths over their sizes are wanted, from the least of these ratios to the greatest.
-    fn edges_where(&self, is_wanted: impl Fn(f64) -> bool) -> Vec<(f64, [VertexId; 2])> {
-        let edges = self.sheet.edges().into_iter().filter(|edge| !self.is_held_edge(*edge));
+    /// The edges of triangles that changed since a time, or of all if that is 0.
+    fn edges_since(&self, time: u32) -> Vec<[VertexId; 2]> {
+        self.sheet.edges_where(|t| self.sheet.triangle(t).iter().all(|v| !self.changes.none_since(*v, time)))
+    }
+
+    /// Edges that are not held, of triangles that changed since a time, whose lengths over their sizes are
+    /// wanted, from the least of these ratios to the greatest.
+    fn edges_where(&self, since: u32, is_wanted: impl Fn(f64) -> bool) -> Vec<(f64, [VertexId; 2])> {
+        let edges = self.edges_since(since).into_iter().filter(|edge| !self.is_held_edge(*edge));
         let edges = edges.map(|edge| (self.ratio(edge), edge));
         let mut edges: Vec<_> = edges.filter(|x| is_wanted(x.0)).collect();
         edges.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
@@ -233,7 +254,7 @@ impl Work<'_> {
     /// Collapses short edges, the shortest first. Returns how many, and the sizes of vertices whose edges are
     /// as short as the given surface needs.
     fn collapse_short(&mut self, is_settled: bool) -> (usize, Vec<(VertexId, f64)>) {
-        let short = self.edges_where(|ratio| ratio < SHORT);
+        let short = self.edges_where(0, |ratio| ratio < SHORT);
         let (mut n, mut needed) = (0, Vec::new());
         let least = 2.0 * self.original.distance;
         for (_, edge) in short {
@@ -270,20 +291,22 @@ impl Work<'_> {
 
     /// Flips edges where that widens the narrower of their triangles.
     fn flip_all(&mut self) {
-        let mut flips = Tried::new();
+        let mut since = 0;
         for _ in 0..FLIPS {
-            if self.flip_once(FLIPPED, &mut flips) == 0 {
+            let now = self.changes.now();
+            if self.flip_once(FLIPPED, since) == 0 {
                 return;
             }
+            since = now;
         }
     }
 
-    /// Makes one pass of flips of edges that are due. New edges are no longer than `limit` times the size, or
-    /// than the old ones. Returns how many there were.
-    fn flip_once(&mut self, limit: f64, flips: &mut Tried) -> usize {
+    /// Makes one pass of flips of edges of triangles that changed since a time. New edges are no longer than
+    /// `limit` times the size, or than the old ones. Returns how many there were.
+    fn flip_once(&mut self, limit: f64, since: u32) -> usize {
         let mut n = 0;
-        for edge in self.sheet.edges() {
-            if self.is_held_edge(edge) || !is_due(&self.changes, flips.entry(edge).or_default(), &edge) {
+        for edge in self.edges_since(since) {
+            if self.is_held_edge(edge) {
                 continue;
             }
             let longest = limit * self.size(edge);

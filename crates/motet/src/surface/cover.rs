@@ -4,18 +4,26 @@
 use super::sheet::{Change, Sheet};
 use crate::base::{Point, VertexId};
 use crate::geometry::triangle::{area, at, closest, longest_side, middles};
-use crate::geometry::vector::distance_squared;
+use crate::geometry::vector::{cross, distance_squared, dot, scale, sub};
 use crate::spatial::{Bounds, bounding_box, squared_distance_to_box};
 
-/// Samples of a triangle are about as far apart as the allowed distance times this, with up to [`MAX_PARTS`]
-/// parts of an edge.
+/// Samples of a triangle are about as far apart as the allowed distance times this, or as the size times
+/// [`SPACING_OF_SIZE`] if that is more, with up to [`MAX_PARTS`] parts of an edge.
 const SPACING: f64 = 2.0;
-const MAX_PARTS: f64 = 8.0;
+const SPACING_OF_SIZE: f64 = 0.25;
+const MAX_PARTS: f64 = 6.0;
 
 /// The shares of a triangle's area of samples at its corners, and at the middles of its sides and the
 /// centroid: exact for cubic functions.
 const AT_CORNER: f64 = 1.0 / 20.0;
 const AT_MIDDLES: [f64; 4] = [2.0 / 15.0, 2.0 / 15.0, 2.0 / 15.0, 9.0 / 20.0];
+
+/// Triangles whose squared area, times four, is below this times the fourth power of their longest side are
+/// needles.
+const NEEDLE: f64 = 1e-12;
+
+/// Samples nearer to a triangle than this times the allowed distance are on it.
+const NEAR: f64 = 0.1;
 
 /// A sample of the given surface.
 #[derive(Clone, Copy, Debug)]
@@ -31,33 +39,87 @@ pub(super) struct Cover {
     samples: Vec<Sample>,
     /// The samples of each triangle.
     of_triangle: Vec<Vec<u32>>,
+    /// A triangle this near to a sample may have it, even if another is nearer.
+    near: f64,
 }
 
 /// Where the samples of the removed triangles of a change go: pairs of a sample and the place of a triangle
 /// among the new ones.
 pub(super) type Moves = Vec<(u32, u32)>;
 
-/// A new triangle of a change.
+/// A new triangle of a change, prepared for the distances of many samples.
 struct New {
     corners: [Point; 3],
     bounds: Bounds,
     label: u32,
+    /// The unit normal, and the directions in which the weights of corners grow; `None` for needles.
+    frame: Option<Frame>,
+}
+
+struct Frame {
+    normal: Point,
+    /// The gradients of the weights of the second and the third corner.
+    gradients: [Point; 2],
+    /// The heights over the sides opposite to the corners, squared.
+    heights: [f64; 3],
+}
+
+impl New {
+    fn of(corners: [Point; 3], label: u32) -> Self {
+        let [a, b, c] = corners;
+        let sides = [sub(c, b), sub(a, c), sub(b, a)];
+        let normal = cross(sub(b, a), sub(c, a));
+        let square = dot(normal, normal);
+        let longest = sides.iter().map(|side| dot(*side, *side)).fold(0.0, f64::max);
+        let frame = (square > NEEDLE * longest * longest).then(|| Frame {
+            normal: scale(normal, 1.0 / square.sqrt()),
+            gradients: [sides[1], sides[2]].map(|side| scale(cross(normal, side), 1.0 / square)),
+            heights: sides.map(|side| square / dot(side, side)),
+        });
+        Self { corners, bounds: bounding_box(corners), label, frame }
+    }
+
+    /// The squared distance of a point, if it is not above `most`.
+    fn squared_distance(&self, p: Point, most: f64) -> Option<f64> {
+        if squared_distance_to_box(p, self.bounds) > most {
+            return None;
+        }
+        if let Some(frame) = &self.frame {
+            let from_corner = sub(p, self.corners[0]);
+            let off_plane = dot(from_corner, frame.normal);
+            let [of_second, of_third] = frame.gradients.map(|gradient| dot(from_corner, gradient));
+            let weights = [1.0 - of_second - of_third, of_second, of_third];
+            // Beyond a side, it is at least as far off as the line of that side.
+            let beside = (0..3)
+                .filter(|&k| weights[k] < 0.0)
+                .map(|k| weights[k] * weights[k] * frame.heights[k])
+                .fold(0.0, f64::max);
+            let least = off_plane * off_plane + beside;
+            if beside == 0.0 || least > most {
+                return Some(least).filter(|least| *least <= most);
+            }
+        }
+        Some(distance_squared(at(self.corners, closest(self.corners, p)), p)).filter(|found| *found <= most)
+    }
 }
 
 impl Cover {
     /// Samples of a sheet that is as it was given: vertices and, of triangles that are large beside the
     /// allowed distance, centroids, middles of edges, and points in between.
-    pub(super) fn new(sheet: &Sheet, allowed: f64) -> Self {
-        let mut cover = Self { samples: Vec::new(), of_triangle: vec![Vec::new(); sheet.n_slots()] };
+    pub(super) fn new(sheet: &Sheet, sizes: &[f64], allowed: f64) -> Self {
+        let of_triangle = vec![Vec::new(); sheet.n_slots()];
+        let mut cover = Self { samples: Vec::new(), of_triangle, near: NEAR * allowed };
         let mut at_vertices = vec![None; sheet.points.len()];
         for t in sheet.existing() {
             let corners = sheet.corners(t);
             let area = area(corners);
-            let n = (longest_side(corners) / (SPACING * allowed)).floor().min(MAX_PARTS) as usize;
-            let at_corner = match n {
-                0 => 1.0 / 3.0,
-                1 | 2 => AT_CORNER,
-                _ => 1.0 / (3 * n * n) as f64,
+            let size = sheet.triangle(t).map(|v| sizes[v.index()]).into_iter().fold(f64::INFINITY, f64::min);
+            let spacing = f64::max(SPACING * allowed, SPACING_OF_SIZE * size);
+            let n = (longest_side(corners) / spacing).floor().min(MAX_PARTS) as usize;
+            let [at_corner, on_side, inside] = match n {
+                0 => [1.0 / 3.0, 0.0, 0.0],
+                1 | 2 => [AT_CORNER, 0.0, 0.0],
+                _ => shares(n),
             };
             for v in sheet.triangle(t) {
                 let place = sheet.points[v.index()];
@@ -75,8 +137,7 @@ impl Cover {
                 let weights = [i, j, n - i - j].map(|k| k as f64 / n as f64);
                 // Corners are samples already.
                 if weights.iter().all(|w| *w < 1.0) {
-                    let is_inside = weights.iter().all(|w| *w > 0.0);
-                    let share = if is_inside { 2.0 } else { 1.0 } / (n * n) as f64;
+                    let share = if weights.iter().all(|w| *w > 0.0) { inside } else { on_side };
                     cover.add(t, Sample { place: at(corners, weights), area: share * area });
                 }
             }
@@ -86,7 +147,11 @@ impl Cover {
 
     /// Adds a sample, a place of the given surface, to the nearest triangle of a vertex.
     pub(super) fn add_near(&mut self, sheet: &Sheet, v: VertexId, place: Point) {
-        let star = sheet.star(v).iter().map(|&t| (squared_distance(place, sheet.corners(t)), t));
+        let squared_distance = |t| {
+            let corners = sheet.corners(t);
+            distance_squared(at(corners, closest(corners, place)), place)
+        };
+        let star = sheet.star(v).iter().map(|&t| (squared_distance(t), t));
         if let Some((_, t)) = star.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1))) {
             self.add(t, Sample { place, area: 0.0 });
         }
@@ -107,11 +172,8 @@ impl Cover {
     /// Where the samples of a change go: to the nearest new triangle of their label. `None` if one is farther
     /// than `allowed` from all of them.
     pub(super) fn moves(&self, sheet: &Sheet, change: &Change, allowed: f64) -> Option<Moves> {
-        let new: Vec<New> = sheet
-            .corners_after(change)
-            .zip(&change.added)
-            .map(|(corners, (_, label))| New { corners, bounds: bounding_box(corners), label: *label })
-            .collect();
+        let new = sheet.corners_after(change).zip(&change.added);
+        let new: Vec<New> = new.map(|(corners, (_, label))| New::of(corners, *label)).collect();
         let mut moves = Vec::new();
         let n = new.len();
         for (own, &t) in change.removed.iter().enumerate() {
@@ -120,12 +182,13 @@ impl Cover {
                 let p = self.samples[sample as usize].place;
                 // From the triangle that replaces its own one on, since that is nearest as a rule.
                 let (mut least, mut nearest) = (f64::INFINITY, None);
-                for k in (own..n).chain(0..own) {
-                    let New { corners, bounds, label: of } = &new[k];
-                    if *of == label && squared_distance_to_box(p, *bounds) <= least {
-                        let found = (squared_distance(p, *corners), Some(k as u32));
-                        if found < (least, nearest) {
-                            (least, nearest) = found;
+                for k in (own..n).chain(0..own).filter(|&k| new[k].label == label) {
+                    if let Some(found) = new[k].squared_distance(p, least)
+                        && (found, Some(k as u32)) < (least, nearest)
+                    {
+                        (least, nearest) = (found, Some(k as u32));
+                        if least <= self.near * self.near {
+                            break;
                         }
                     }
                 }
@@ -151,6 +214,49 @@ impl Cover {
     }
 }
 
-fn squared_distance(p: Point, corners: [Point; 3]) -> f64 {
-    distance_squared(at(corners, closest(corners, p)), p)
+/// The shares of a triangle's area of samples at its corners, on its sides and inside, with `n` parts of each
+/// side, at least 3: those at corners have a third of those on sides. Exact for quadratic functions, of which
+/// the sum of the squares of the weights of corners has the mean 1/2.
+fn shares(n: usize) -> [f64; 3] {
+    let square = |k: usize| (k as f64 / n as f64).powi(2);
+    let n_inside = ((n - 1) * (n - 2) / 2) as f64;
+    let squares_inside: f64 = (1..n - 1)
+        .flat_map(|i| (1..n - i).map(move |j| [i, j, n - i - j]))
+        .map(|parts| parts.map(square).iter().sum::<f64>())
+        .sum();
+    let squares_around = 1.0 + 6.0 * (1..n).map(square).sum::<f64>();
+    let n_around = (3 * n - 2) as f64;
+    let [inside, around] = [squares_inside / n_inside, squares_around / n_around];
+    let share = (0.5 - inside) / (around - inside);
+    [share / (3.0 * n_around), share / n_around, (1.0 - share) / n_inside]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_add_up_and_integrate_quadratic_functions() {
+        for n in 3..=MAX_PARTS as usize {
+            let [at_corner, on_side, inside] = shares(n);
+            let (mut area, mut moments) = (0.0, [0.0; 2]);
+            for (i, j) in (0..=n).flat_map(|i| (0..=n - i).map(move |j| (i, j))) {
+                let k = n - i - j;
+                let share = match [i, j, k].iter().filter(|part| **part == 0).count() {
+                    2 => at_corner,
+                    1 => on_side,
+                    _ => inside,
+                };
+                assert!(share > 0.0, "{n}");
+                let [u, v] = [i, j].map(|part| part as f64 / n as f64);
+                area += share;
+                moments[0] += share * u * u;
+                moments[1] += share * u * v;
+            }
+            // The means of these over a triangle.
+            for (found, right) in [(area, 1.0), (moments[0], 1.0 / 6.0), (moments[1], 1.0 / 12.0)] {
+                assert!((found - right).abs() < 1e-14, "{n}: {found} for {right}");
+            }
+        }
+    }
 }

@@ -78,10 +78,9 @@ impl Near {
         let meets_any = |t: u32| {
             let other = sheet.triangle(t);
             let of_other = bounding_box(corners(&other));
-            let mut near = added.iter().filter(|(_, bounds)| touch(*bounds, of_other)).peekable();
-            near.peek().is_some()
+            let mut near = added.iter().filter(|(_, bounds)| touch(*bounds, of_other));
+            near.any(|(t, _)| meet(&sheet.points, *t, other))
                 && !is_far(corners(&other))
-                && near.any(|(t, _)| meet(&sheet.points, *t, other))
                 && !met_before(other)
         };
         if self.found.iter().any(|t| !change.removed.contains(t) && meets_any(*t)) {

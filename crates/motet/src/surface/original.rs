@@ -72,9 +72,17 @@ impl Original {
         corners.iter().zip(found.weights).map(|(v, weight)| weight * of_vertices[v.index()]).sum()
     }
 
-    /// Whether a place of a label is near.
-    pub(super) fn is_near(&self, label: u32, p: Point) -> bool {
-        self.near(label, p, self.distance).is_some()
+    /// Whether a place of a label is near. `last` is the label and triangle that the last place was near to,
+    /// which as a rule is near to this one as well.
+    pub(super) fn is_near(&self, label: u32, p: Point, last: &mut Option<(u32, usize)>) -> bool {
+        let tree = &self.of_label[label as usize].tree;
+        let reach = self.distance * self.distance;
+        if last.is_some_and(|(of, t)| of == label && tree.distance_squared(t, p) <= reach) {
+            return true;
+        }
+        let found = tree.closest_within(p, self.distance);
+        *last = found.map(|found| (label, found.triangle));
+        found.is_some()
     }
 
     /// The distance of the nearest wall beyond the room on one side of a place with this normal; `None` if

@@ -90,8 +90,13 @@ impl Sheet {
 
     /// The edges of the triangles that exist, each once, in rising order.
     pub(crate) fn edges(&self) -> Vec<[VertexId; 2]> {
+        self.edges_where(|_| true)
+    }
+
+    /// The edges of wanted triangles, each once, in rising order.
+    pub(crate) fn edges_where(&self, is_wanted: impl Fn(u32) -> bool) -> Vec<[VertexId; 2]> {
         let of = |t: u32| edges_of(self.triangle(t)).map(sorted_ids);
-        let mut edges: Vec<_> = self.existing().flat_map(of).collect();
+        let mut edges: Vec<_> = self.existing().filter(|&t| is_wanted(t)).flat_map(of).collect();
         edges.sort_unstable();
         edges.dedup();
         edges

@@ -61,7 +61,7 @@ impl<'a> Work<'a> {
         max_triangles: usize,
         threads: &'a Threads,
     ) -> Self {
-        let cover = Cover::new(&sheet, original.distance);
+        let cover = Cover::new(&sheet, &sizes, original.distance);
         let near = Near::new(&sheet);
         let changes = Changes::new();
         let (collapses, moved) = (Tried::new(), Vec::new());
@@ -317,10 +317,11 @@ impl<'a> Work<'a> {
         let mut seen: Vec<([VertexId; 2], u32)> = Vec::new();
         let is_long = |length: f64| length > DENSE * self.original.distance;
         let mixed = |a: Point, b: Point, share: f64| add(scale(a, 1.0 - share), scale(b, share));
+        let mut last = None;
         for &(triangle, label) in &change.added {
             let corners = triangle.map(|v| sheet.place(change, v));
             let middle = centroid(corners);
-            let is_near = |p: Point| self.original.is_near(label, p);
+            let mut is_near = |p: Point| self.original.is_near(label, p, &mut last);
             let is_large = is_long(longest_side(corners));
             if !self.original.faces(label, corners)
                 || is_large && !corners.into_iter().all(|p| is_near(mixed(middle, p, 0.5)))

@@ -12,6 +12,8 @@ mod search;
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::base::{MaybeId, Point, Threads, TriangleId, VertexId};
+use crate::geometry::triangle::{at, closest};
+use crate::geometry::vector::distance_squared;
 use nearby::Nearby;
 use packed::Packed;
 use pairs::{PairSearch, Reach};
@@ -81,6 +83,14 @@ impl NearestTriangle {
     /// beyond.
     pub fn closest_within(&self, p: Point, distance: f64) -> Option<Closest> {
         Arch::new().dispatch(SingleSearch { tree: &self.tree, p, reach: distance * distance, admit: All })
+    }
+
+    /// The squared distance of a point from one of the triangles.
+    ///
+    /// Panics if there is no such triangle.
+    pub fn distance_squared(&self, triangle: usize, p: Point) -> f64 {
+        let corners = self.tree.corners(self.tree.id_to_place[triangle] as usize);
+        distance_squared(at(corners, closest(corners, p)), p)
     }
 
     /// The closest of those triangles within `distance` that `admit` admits. `admit` receives the index of a
