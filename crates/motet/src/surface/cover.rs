@@ -3,7 +3,7 @@
 
 use super::sheet::{Change, Sheet};
 use crate::base::{Point, VertexId};
-use crate::geometry::triangle::{area, at, closest, longest_side, middles};
+use crate::geometry::triangle::{at, closest, longest_side, middles};
 use crate::geometry::vector::{cross, distance_squared, dot, scale, sub};
 use crate::spatial::{Bounds, bounding_box, squared_distance_to_box};
 
@@ -13,11 +13,6 @@ const SPACING: f64 = 2.0;
 const SPACING_OF_SIZE: f64 = 0.25;
 const MAX_PARTS: f64 = 6.0;
 
-/// The shares of a triangle's area of samples at its corners, and at the middles of its sides and the
-/// centroid: exact for cubic functions.
-const AT_CORNER: f64 = 1.0 / 20.0;
-const AT_MIDDLES: [f64; 4] = [2.0 / 15.0, 2.0 / 15.0, 2.0 / 15.0, 9.0 / 20.0];
-
 /// Triangles whose squared area, times four, is below this times the fourth power of their longest side are
 /// needles.
 const NEEDLE: f64 = 1e-12;
@@ -25,18 +20,10 @@ const NEEDLE: f64 = 1e-12;
 /// Samples nearer to a triangle than this times the allowed distance are on it.
 const NEAR: f64 = 0.1;
 
-/// A sample of the given surface.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
-    pub(super) place: Point,
-    /// The area of the given surface that it stands for; 0 for those that are there to be near alone.
-    pub(super) area: f64,
-}
-
 /// Samples of the given surface.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cover {
-    samples: Vec<Sample>,
+    samples: Vec<Point>,
     /// The samples of each triangle.
     of_triangle: Vec<Vec<u32>>,
     /// A triangle this near to a sample may have it, even if another is nearer.
@@ -109,36 +96,25 @@ impl Cover {
     pub(super) fn new(sheet: &Sheet, sizes: &[f64], allowed: f64) -> Self {
         let of_triangle = vec![Vec::new(); sheet.n_slots()];
         let mut cover = Self { samples: Vec::new(), of_triangle, near: NEAR * allowed };
-        let mut at_vertices = vec![None; sheet.points.len()];
+        let mut is_taken = vec![false; sheet.points.len()];
         for t in sheet.existing() {
             let corners = sheet.corners(t);
-            let area = area(corners);
+            for v in sheet.triangle(t) {
+                if !std::mem::replace(&mut is_taken[v.index()], true) {
+                    cover.add(t, sheet.points[v.index()]);
+                }
+            }
             let size = sheet.triangle(t).map(|v| sizes[v.index()]).into_iter().fold(f64::INFINITY, f64::min);
             let spacing = f64::max(SPACING * allowed, SPACING_OF_SIZE * size);
             let n = (longest_side(corners) / spacing).floor().min(MAX_PARTS) as usize;
-            let [at_corner, on_side, inside] = match n {
-                0 => [1.0 / 3.0, 0.0, 0.0],
-                1 | 2 => [AT_CORNER, 0.0, 0.0],
-                _ => shares(n),
-            };
-            for v in sheet.triangle(t) {
-                let place = sheet.points[v.index()];
-                let sample =
-                    *at_vertices[v.index()].get_or_insert_with(|| cover.add(t, Sample { place, area: 0.0 }));
-                cover.samples[sample as usize].area += at_corner * area;
-            }
-            if n > 0 {
-                let shares = if n > 2 { [0.0; 4] } else { AT_MIDDLES };
-                for (place, share) in middles(corners).into_iter().zip(shares) {
-                    cover.add(t, Sample { place, area: share * area });
-                }
+            if n == 1 || n == 2 {
+                middles(corners).into_iter().for_each(|place| cover.add(t, place));
             }
             for (i, j) in (0..=n).flat_map(|i| (0..=n - i).map(move |j| (i, j))).filter(|_| n > 2) {
                 let weights = [i, j, n - i - j].map(|k| k as f64 / n as f64);
                 // Corners are samples already.
                 if weights.iter().all(|w| *w < 1.0) {
-                    let share = if weights.iter().all(|w| *w > 0.0) { inside } else { on_side };
-                    cover.add(t, Sample { place: at(corners, weights), area: share * area });
+                    cover.add(t, at(corners, weights));
                 }
             }
         }
@@ -153,20 +129,13 @@ impl Cover {
         };
         let star = sheet.star(v).iter().map(|&t| (squared_distance(t), t));
         if let Some((_, t)) = star.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1))) {
-            self.add(t, Sample { place, area: 0.0 });
+            self.add(t, place);
         }
     }
 
-    /// The samples of a triangle.
-    pub(super) fn samples(&self, t: u32) -> impl Iterator<Item = Sample> + '_ {
-        self.of_triangle[t as usize].iter().map(|&sample| self.samples[sample as usize])
-    }
-
-    fn add(&mut self, t: u32, sample: Sample) -> u32 {
-        let id = self.samples.len() as u32;
-        self.of_triangle[t as usize].push(id);
-        self.samples.push(sample);
-        id
+    fn add(&mut self, t: u32, place: Point) {
+        self.of_triangle[t as usize].push(self.samples.len() as u32);
+        self.samples.push(place);
     }
 
     /// Where the samples of a change go: to the nearest new triangle of their label. `None` if one is farther
@@ -179,7 +148,7 @@ impl Cover {
         for (own, &t) in change.removed.iter().enumerate() {
             let (own, label) = (own.min(n), sheet.label(t));
             for &sample in &self.of_triangle[t as usize] {
-                let p = self.samples[sample as usize].place;
+                let p = self.samples[sample as usize];
                 // From the triangle that replaces its own one on, since that is nearest as a rule.
                 let (mut least, mut nearest) = (f64::INFINITY, None);
                 for k in (own..n).chain(0..own).filter(|&k| new[k].label == label) {
@@ -210,53 +179,6 @@ impl Cover {
         self.of_triangle.resize_with(most.max(self.of_triangle.len()), Vec::new);
         for &(sample, k) in moves {
             self.of_triangle[ids[k as usize] as usize].push(sample);
-        }
-    }
-}
-
-/// The shares of a triangle's area of samples at its corners, on its sides and inside, with `n` parts of each
-/// side, at least 3: those at corners have a third of those on sides. Exact for quadratic functions, of which
-/// the sum of the squares of the weights of corners has the mean 1/2.
-fn shares(n: usize) -> [f64; 3] {
-    let square = |k: usize| (k as f64 / n as f64).powi(2);
-    let n_inside = ((n - 1) * (n - 2) / 2) as f64;
-    let squares_inside: f64 = (1..n - 1)
-        .flat_map(|i| (1..n - i).map(move |j| [i, j, n - i - j]))
-        .map(|parts| parts.map(square).iter().sum::<f64>())
-        .sum();
-    let squares_around = 1.0 + 6.0 * (1..n).map(square).sum::<f64>();
-    let n_around = (3 * n - 2) as f64;
-    let [inside, around] = [squares_inside / n_inside, squares_around / n_around];
-    let share = (0.5 - inside) / (around - inside);
-    [share / (3.0 * n_around), share / n_around, (1.0 - share) / n_inside]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shares_add_up_and_integrate_quadratic_functions() {
-        for n in 3..=MAX_PARTS as usize {
-            let [at_corner, on_side, inside] = shares(n);
-            let (mut area, mut moments) = (0.0, [0.0; 2]);
-            for (i, j) in (0..=n).flat_map(|i| (0..=n - i).map(move |j| (i, j))) {
-                let k = n - i - j;
-                let share = match [i, j, k].iter().filter(|part| **part == 0).count() {
-                    2 => at_corner,
-                    1 => on_side,
-                    _ => inside,
-                };
-                assert!(share > 0.0, "{n}");
-                let [u, v] = [i, j].map(|part| part as f64 / n as f64);
-                area += share;
-                moments[0] += share * u * u;
-                moments[1] += share * u * v;
-            }
-            // The means of these over a triangle.
-            for (found, right) in [(area, 1.0), (moments[0], 1.0 / 6.0), (moments[1], 1.0 / 12.0)] {
-                assert!((found - right).abs() < 1e-14, "{n}: {found} for {right}");
-            }
         }
     }
 }
