@@ -83,9 +83,10 @@ impl Sheet {
         neighbours
     }
 
-    /// The triangles at an edge.
+    /// The triangles at an edge; none at one of a vertex that is not there yet.
     pub(crate) fn at_edge(&self, u: VertexId, v: VertexId) -> impl Iterator<Item = u32> + '_ {
-        self.star(u).iter().copied().filter(move |&t| self.triangle(t).contains(&v))
+        let star = self.at_vertex.get(u.index()).map_or(&[][..], Vec::as_slice);
+        star.iter().copied().filter(move |&t| self.triangle(t).contains(&v))
     }
 
     /// The edges of the triangles that exist, each once, in rising order.

@@ -10,8 +10,8 @@ use super::original::Original;
 use super::sheet::{Change, Sheet, edges_of};
 use crate::base::{Changes, Point, Threads, VertexId, sorted_ids};
 use crate::geometry::segment;
-use crate::geometry::triangle::{centroid, largest_cosine, longest_side};
-use crate::geometry::vector::{add, distance, scale};
+use crate::geometry::triangle::{area_vector, centroid, largest_cosine, longest_side};
+use crate::geometry::vector::{add, distance, dot, scale, unit};
 
 /// A vertex that would move by less than this times the allowed distance stays in place.
 const NEGLIGIBLE: f64 = 1e-6;
@@ -19,6 +19,9 @@ const NEGLIGIBLE: f64 = 1e-6;
 /// Edges longer than this times the allowed distance are checked at three places instead of one, and their
 /// triangles at four.
 const DENSE: f64 = 8.0;
+
+/// Neighbours whose normals have a smaller cosine than this are folded onto each other: 165 degrees.
+const MIN_FOLD: f64 = -0.966;
 
 /// Why a change is not made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -299,7 +302,7 @@ impl<'a> Work<'a> {
 
     fn allowed(&mut self, change: &Change) -> Result<Moves, Refusal> {
         let moves = self.allowed_near(change)?;
-        if self.near.crosses(&mut self.sheet, change, false) {
+        if folds(&self.sheet, change) || self.near.crosses(&mut self.sheet, change, false) {
             return Err(Refusal::Bad);
         }
         Ok(moves)
@@ -354,6 +357,46 @@ impl<'a> Work<'a> {
 
 fn on_segment(ends: [Point; 2], p: Point) -> Point {
     segment::at(ends, segment::closest(ends, p))
+}
+
+/// Whether a change folds triangles onto their neighbours where none was folded: they would not cross, but be
+/// apart by rounding alone.
+fn folds(sheet: &Sheet, change: &Change) -> bool {
+    let before = |v: VertexId| sheet.points[v.index()];
+    let old: Vec<[VertexId; 3]> = change.removed.iter().map(|&t| sheet.triangle(t)).collect();
+    let new: Vec<[VertexId; 3]> = change.added.iter().map(|(t, _)| *t).collect();
+    sharpest(sheet, change, &new, |v| sheet.place(change, v)) < MIN_FOLD
+        && sharpest(sheet, change, &old, before) >= MIN_FOLD
+}
+
+/// The least cosine between the normals of neighbours across an edge, of `triangles` among each other and with
+/// those that a change does not remove.
+fn sharpest(
+    sheet: &Sheet,
+    change: &Change,
+    triangles: &[[VertexId; 3]],
+    place: impl Fn(VertexId) -> Point,
+) -> f64 {
+    let normal = |t: [VertexId; 3]| unit(area_vector(t.map(&place)));
+    let normals: Vec<Option<Point>> = triangles.iter().map(|t| normal(*t)).collect();
+    let mut least: f64 = 1.0;
+    for (k, t) in triangles.iter().enumerate() {
+        let Some(own) = normals[k] else { continue };
+        for [a, b] in edges_of(*t) {
+            let among = triangles[..k].iter().position(|other| edges_of(*other).contains(&[b, a]));
+            let other = match among {
+                Some(i) => normals[i],
+                None => sheet
+                    .at_edge(a, b)
+                    .filter(|other| !change.removed.contains(other))
+                    .map(|other| sheet.triangle(other))
+                    .find(|other| edges_of(*other).contains(&[b, a]))
+                    .and_then(normal),
+            };
+            least = other.map_or(least, |other| least.min(dot(own, other)));
+        }
+    }
+    least
 }
 
 /// The largest cosines of the triangles before and after a change.
