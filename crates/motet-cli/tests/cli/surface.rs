@@ -2,7 +2,7 @@
 
 use crate::common::{Folder, stderr, stdout};
 use motet::Mesh;
-use motet::base::VertexId;
+use motet::base::{Point, VertexId};
 use motet::io::read;
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{CellKind, Cells, Field, Surface};
@@ -181,7 +181,12 @@ fn boxes() -> Mesh {
 
 /// The boxes without the first triangles.
 fn boxes_without(n_missing: usize) -> Mesh {
-    let boxes = [[[0.0; 3], [1.0; 3]], [[0.5, 0.25, 0.25], [2.0, 0.75, 0.75]]].map(|of| box_grid([3; 3], of));
+    two_boxes([[[0.0; 3], [1.0; 3]], [[0.5, 0.25, 0.25], [2.0, 0.75, 0.75]]], n_missing)
+}
+
+/// Two boxes, the first without its first triangles.
+fn two_boxes(boxes: [[Point; 2]; 2], n_missing: usize) -> Mesh {
+    let boxes = boxes.map(|of| box_grid([3; 3], of));
     let [a, b] = boxes.each_ref().map(Surface::boundary_of);
     let (mut cells, n) = (Cells::new(), a.points.len());
     a.triangles[n_missing..].iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
@@ -216,6 +221,17 @@ fn bodies_that_overlap_become_one() {
 }
 
 /// Open, crossing, and cut to pieces: a box without a side through another.
+#[test]
+fn a_plate_thinner_than_the_distance_of_a_wrap_is_lost_and_the_status_says_so() {
+    let folder = Folder::new();
+    folder.mesh("both.vtp", &two_boxes([[[0.0; 3], [1.0; 3]], [[2.0, 0.0, 0.0], [3.0, 1.0, 0.01]]], 0));
+    for words in [&["surface", "-o", "one.vtp"][..], &["mesh", "-o", "one.vtu", "--surface", "adapt"]] {
+        let more = ["both.vtp", "--wrap", "0.05", "--size", "0.2"];
+        let call = folder.motet(words.iter().chain(&more)).assert().code(4);
+        assert!(stderr(&call).contains("triangles of walls or gaps thinner"), "{}", stderr(&call));
+    }
+}
+
 #[test]
 fn what_is_torn_is_wrapped() {
     let folder = Folder::new();

@@ -33,6 +33,21 @@ pub struct Adapted {
     pub from_given: f64,
 }
 
+/// Why surfaces are not as near as requested, with the largest distance of the new ones from the given ones and
+/// of these from the new ones; `None` if they are.
+pub(super) fn strayed([to_given, from_given]: [f64; 2], allowed: f64) -> Option<String> {
+    (to_given.max(from_given) > allowed).then(|| {
+        format!(
+            "the new surface is up to {to_given:.3e} from the given one, and that up to {from_given:.3e} from it; {allowed:.3e} was allowed"
+        )
+    })
+}
+
+/// What a wrap has lost: so many triangles; `None` if there are none.
+pub(super) fn lost(n: usize) -> Option<String> {
+    (n > 0).then(|| format!("{n} triangles of walls or gaps thinner than the distance of the wrap were lost"))
+}
+
 /// How surfaces are adapted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adapting {

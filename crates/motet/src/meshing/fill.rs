@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::adapt::{Adapted, Adapting, adapt};
+use super::adapt::{Adapted, Adapting, adapt, lost, strayed};
 use super::bodies::{self, Body, Named, NumberedBodies, Seed};
 use super::compact::{compact, used_vertices};
 use super::divide::{Divided, divide};
@@ -137,8 +137,11 @@ impl Filled {
         let flat = (not_positive > 0).then(|| {
             format!("{not_positive} tets do not have positive volume in floating-point coordinates")
         });
+        let strays = self.report.adapted.and_then(|of| strayed([of.to_given, of.from_given], of.allowed));
         let without_layers = self.layers.as_ref().is_some_and(|layers| layers.prisms == 0);
         reasons([
+            lost(self.report.lost),
+            strays,
             in_pieces,
             flat,
             self.improved.as_ref().and_then(remesh::Report::not_reached),
@@ -168,6 +171,8 @@ pub struct Report {
     pub coarse: Option<Coarse>,
     /// How many triangles such a surface was divided into.
     pub divided: Option<Divided>,
+    /// Triangles of walls and gaps that a wrap has lost before, since they are thinner than its distance.
+    pub lost: usize,
     /// How surfaces were adapted, if requested.
     pub adapted: Option<Adapted>,
     /// Bodies left out because closed surfaces turned inward enclose them.
@@ -385,6 +390,7 @@ fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize, threads: &
         triangles_outside: filled.triangle_to_bodies.iter().filter(|b| **b == [None; 2]).count(),
         coarse: None,
         divided: None,
+        lost: surfaces.n_lost,
         adapted: None,
         voids: 0,
         worst_eas: eas.into_iter().fold(f64::INFINITY, f64::min),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::compact::{compact, used_vertices};
 use crate::base::{Error, Point, Result, Threads, VertexId, sorted_ids};
 use crate::mesh::{Mesh, Surface, firsts_at_place};
-use crate::preflight::{self, Preflight, Repaired, Repairs, Role, renamed};
+use crate::preflight::{self, Preflight, RepairKind, Repaired, Repairs, Role, renamed};
 
 /// Joined surfaces to be filled: coincident points are one vertex, and meshes that end at a common edge are
 /// one surface.
@@ -27,6 +27,9 @@ pub struct Surfaces {
     pub patches: Vec<i32>,
     /// Names of patches, where there are any.
     pub patch_names: BTreeMap<i32, String>,
+    /// Triangles of walls and gaps that were lost by [`Self::repair`], since they are thinner than the
+    /// distance of a wrap.
+    pub n_lost: usize,
 }
 
 impl Surfaces {
@@ -55,6 +58,7 @@ impl Surfaces {
             meshes: (0..surfaces.len() as u32).map(|mesh| vec![mesh]).collect(),
             patches: Vec::new(),
             patch_names: BTreeMap::new(),
+            n_lost: 0,
         };
         for (number, &(surface, _, name)) in surfaces.iter().enumerate() {
             all.add(surface, number as u32, name)?;
@@ -193,6 +197,7 @@ impl Surfaces {
         self.points = done.points.clone();
         self.triangles = done.triangles.clone();
         self.surface_of = done.surface_of.clone();
+        self.n_lost += done.done.iter().filter(|repair| repair.kind == RepairKind::DroppedThin).count();
         self.join();
         Ok(done)
     }

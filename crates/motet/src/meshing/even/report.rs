@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::super::adapt::{lost, strayed};
 use super::clip::Clipped;
 use super::measured::Measured;
 use crate::base::reasons;
@@ -51,13 +52,7 @@ pub struct Smoothed {
 impl Report {
     /// Why the requested result was not reached; `None` if it was.
     pub fn not_reached(&self) -> Option<String> {
-        let Self { before, after, allowed, to_given, from_given, .. } = self;
-        let is_far = to_given.max(*from_given) > *allowed;
-        let far = || {
-            format!(
-                "the new surface is up to {to_given:.3e} from the given one, and that up to {from_given:.3e} from it; {allowed:.3e} was allowed"
-            )
-        };
+        let Self { before, after, .. } = self;
         let crosses = || {
             let cause = if self.smoothed.is_some() { ": smoothing made them" } else { "" };
             format!("{} pairs of triangles cross, none did before{cause}", after.crossings)
@@ -69,9 +64,8 @@ impl Report {
             "the bodies could not be united: the surface is open, or its triangles could not be divided"
                 .to_owned()
         };
-        let n_thin = self.repairs.iter().filter(|repair| repair.kind == RepairKind::DroppedThin).count();
-        let thin =
-            || format!("{n_thin} triangles of walls or gaps thinner than the distance of the wrap were lost");
-        reasons([is_apart.then(apart), (n_thin > 0).then(thin), is_far.then(far), is_crossed.then(crosses)])
+        let n_lost = self.repairs.iter().filter(|repair| repair.kind == RepairKind::DroppedThin).count();
+        let strays = strayed([self.to_given, self.from_given], self.allowed);
+        reasons([is_apart.then(apart), lost(n_lost), strays, is_crossed.then(crosses)])
     }
 }

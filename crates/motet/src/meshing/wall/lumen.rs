@@ -91,6 +91,7 @@ impl Lumen {
                 meshes: vec![vec![0]],
                 patches,
                 patch_names: own.patch_names,
+                n_lost: 0,
             },
         }
     }

@@ -223,7 +223,7 @@ impl<'a> Growth<'a> {
         })
     }
 
-    /// Drops parts of the surface around rooms thinner than half the distance.
+    /// Drops parts of the surface around rooms thinner than the distance.
     fn drop_crumbs(&self, found: &mut Vec<Facet>) {
         let mut sets = DisjointSets::new(found.len());
         for pair in sides(found).windows(2).filter(|pair| pair[0].0 == pair[1].0) {
@@ -237,7 +237,7 @@ impl<'a> Growth<'a> {
             *volume += cone_volume(facet.sites.into_iter(), &self.sites, *origin);
             *area += triangle::area(corners);
         }
-        let least = 0.5 * self.field.distance;
+        let least = self.field.distance;
         let mut is_thick = roots.iter().map(|root| {
             let (_, volume, area) = measured[root];
             // A plate of this thickness has as much volume and area.
