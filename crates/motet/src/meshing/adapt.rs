@@ -33,8 +33,8 @@ pub struct Adapted {
     pub from_given: f64,
 }
 
-/// Why surfaces are not as near as requested, with the largest distance of the new ones from the given ones and
-/// of these from the new ones; `None` if they are.
+/// Why surfaces are not as near as requested, with the largest distance of the new ones from the given ones
+/// and of these from the new ones; `None` if they are.
 pub(super) fn strayed([to_given, from_given]: [f64; 2], allowed: f64) -> Option<String> {
     (to_given.max(from_given) > allowed).then(|| {
         format!(

@@ -94,8 +94,8 @@ pub(crate) fn meet(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool
 }
 
 /// The rounding error of twice the area of a triangle in a plane, relative to the sum of the absolute values
-/// of its two products (Shewchuk 1997, *Adaptive precision floating-point arithmetic and fast robust geometric
-/// predicates*: 3 times 2^-53 and a little).
+/// of its two products (Shewchuk 1997, *Adaptive precision floating-point arithmetic and fast robust
+/// geometric predicates*: 3 times 2^-53 and a little).
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 /// Products below this may have lost bits to underflow.
 const UNDERFLOW: f64 = 1e-290;

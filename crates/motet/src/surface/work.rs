@@ -359,8 +359,8 @@ fn on_segment(ends: [Point; 2], p: Point) -> Point {
     segment::at(ends, segment::closest(ends, p))
 }
 
-/// Whether a change folds triangles onto their neighbours where none was folded: they would not cross, but be
-/// apart by rounding alone.
+/// Whether a change folds triangles onto their neighbours where none was folded: they would not cross, but
+/// be apart by rounding alone.
 fn folds(sheet: &Sheet, change: &Change) -> bool {
     let before = |v: VertexId| sheet.points[v.index()];
     let old: Vec<[VertexId; 3]> = change.removed.iter().map(|&t| sheet.triangle(t)).collect();
