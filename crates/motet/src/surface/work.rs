@@ -369,8 +369,8 @@ fn folds(sheet: &Sheet, change: &Change) -> bool {
         && sharpest(sheet, change, &old, before) >= MIN_FOLD
 }
 
-/// The least cosine between the normals of neighbours across an edge, of `triangles` among each other and with
-/// those that a change does not remove.
+/// The least cosine between the normals of neighbours across an edge, of `triangles` among each other and
+/// with those that a change does not remove.
 fn sharpest(
     sheet: &Sheet,
     change: &Change,
