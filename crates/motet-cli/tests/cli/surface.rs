@@ -220,7 +220,6 @@ fn bodies_that_overlap_become_one() {
     assert!(stderr(&folder.motet(both).assert().code(2)).contains("--cut"));
 }
 
-/// Open, crossing, and cut to pieces: a box without a side through another.
 #[test]
 fn a_plate_thinner_than_the_distance_of_a_wrap_is_lost_and_the_status_says_so() {
     let folder = Folder::new();
@@ -232,6 +231,7 @@ fn a_plate_thinner_than_the_distance_of_a_wrap_is_lost_and_the_status_says_so() 
     }
 }
 
+/// Open, crossing, and cut to pieces: a box without a side through another.
 #[test]
 fn what_is_torn_is_wrapped() {
     let folder = Folder::new();

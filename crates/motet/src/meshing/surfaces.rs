@@ -197,7 +197,7 @@ impl Surfaces {
         self.points = done.points.clone();
         self.triangles = done.triangles.clone();
         self.surface_of = done.surface_of.clone();
-        self.n_lost += done.done.iter().filter(|repair| repair.kind == RepairKind::DroppedThin).count();
+        self.n_lost += done.count(RepairKind::DroppedThin);
         self.join();
         Ok(done)
     }

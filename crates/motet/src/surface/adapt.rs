@@ -198,7 +198,7 @@ impl Work<'_> {
                 return Err(Error::options(what).remedy("give a larger size or distance"));
             }
             let now = self.changes.now();
-            let mut long = self.edges_where(since, |ratio| ratio > LONG);
+            let mut long = self.edges_by_ratio(since, |ratio| ratio > LONG);
             long.reverse();
             let longest_now = long.first().map_or(0.0, |x| x.0);
             let mut n_now = 0;
@@ -243,7 +243,7 @@ impl Work<'_> {
 
     /// Edges that are not held, of triangles that changed since a time, whose lengths over their sizes are
     /// wanted, from the least of these ratios to the greatest.
-    fn edges_where(&self, since: u32, is_wanted: impl Fn(f64) -> bool) -> Vec<(f64, [VertexId; 2])> {
+    fn edges_by_ratio(&self, since: u32, is_wanted: impl Fn(f64) -> bool) -> Vec<(f64, [VertexId; 2])> {
         let edges = self.edges_since(since).into_iter().filter(|edge| !self.is_held_edge(*edge));
         let edges = edges.map(|edge| (self.ratio(edge), edge));
         let mut edges: Vec<_> = edges.filter(|x| is_wanted(x.0)).collect();
@@ -254,7 +254,7 @@ impl Work<'_> {
     /// Collapses short edges, the shortest first. Returns how many, and the sizes of vertices whose edges are
     /// as short as the given surface needs.
     fn collapse_short(&mut self, is_settled: bool) -> (usize, Vec<(VertexId, f64)>) {
-        let short = self.edges_where(0, |ratio| ratio < SHORT);
+        let short = self.edges_by_ratio(0, |ratio| ratio < SHORT);
         let (mut n, mut needed) = (0, Vec::new());
         let least = 2.0 * self.original.distance;
         for (_, edge) in short {

@@ -3,8 +3,8 @@
 
 use super::sheet::{Change, Sheet};
 use crate::base::{Point, VertexId};
-use crate::geometry::triangle::{at, closest, longest_side, middles};
-use crate::geometry::vector::{cross, distance_squared, dot, scale, sub};
+use crate::geometry::triangle::{at, distance_squared, is_well_shaped, longest_side, middles};
+use crate::geometry::vector::{cross, dot, scale, sub};
 use crate::spatial::{Bounds, bounding_box, squared_distance_to_box};
 
 /// Samples of a triangle are about as far apart as the allowed distance times this, or as the size times
@@ -12,10 +12,6 @@ use crate::spatial::{Bounds, bounding_box, squared_distance_to_box};
 const SPACING: f64 = 2.0;
 const SPACING_OF_SIZE: f64 = 0.25;
 const MAX_PARTS: f64 = 6.0;
-
-/// Triangles whose squared area, times four, is below this times the fourth power of their longest side are
-/// needles.
-const NEEDLE: f64 = 1e-12;
 
 /// Samples nearer to a triangle than this times the allowed distance are on it.
 const NEAR: f64 = 0.1;
@@ -39,11 +35,12 @@ struct New {
     corners: [Point; 3],
     bounds: Bounds,
     label: u32,
-    /// The unit normal, and the directions in which the weights of corners grow; `None` for needles.
+    /// `None` for needles, of which it would say nothing.
     frame: Option<Frame>,
 }
 
 struct Frame {
+    /// The unit normal.
     normal: Point,
     /// The gradients of the weights of the second and the third corner.
     gradients: [Point; 2],
@@ -58,7 +55,7 @@ impl New {
         let normal = cross(sub(b, a), sub(c, a));
         let square = dot(normal, normal);
         let longest = sides.iter().map(|side| dot(*side, *side)).fold(0.0, f64::max);
-        let frame = (square > NEEDLE * longest * longest).then(|| Frame {
+        let frame = is_well_shaped(square, longest).then(|| Frame {
             normal: scale(normal, 1.0 / square.sqrt()),
             gradients: [sides[1], sides[2]].map(|side| scale(cross(normal, side), 1.0 / square)),
             heights: sides.map(|side| square / dot(side, side)),
@@ -86,7 +83,7 @@ impl New {
                 return Some(least).filter(|least| *least <= most);
             }
         }
-        Some(distance_squared(at(self.corners, closest(self.corners, p)), p)).filter(|found| *found <= most)
+        Some(distance_squared(self.corners, p)).filter(|found| *found <= most)
     }
 }
 
@@ -123,11 +120,7 @@ impl Cover {
 
     /// Adds a sample, a place of the given surface, to the nearest triangle of a vertex.
     pub(super) fn add_near(&mut self, sheet: &Sheet, v: VertexId, place: Point) {
-        let squared_distance = |t| {
-            let corners = sheet.corners(t);
-            distance_squared(at(corners, closest(corners, place)), place)
-        };
-        let star = sheet.star(v).iter().map(|&t| (squared_distance(t), t));
+        let star = sheet.star(v).iter().map(|&t| (distance_squared(sheet.corners(t), place), t));
         if let Some((_, t)) = star.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1))) {
             self.add(t, place);
         }

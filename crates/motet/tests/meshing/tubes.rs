@@ -1,9 +1,11 @@
 //! Wires as closed surfaces: volumes, unions, joints, what is refused.
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use motet::base::{Point, Threads, VertexId};
-use motet::geometry::vector::{distance, dot, scale, sub};
+use motet::geometry::triangle::area_vector;
+use motet::geometry::vector::{distance, dot, scale, sub, unit};
 use motet::mesh::shapes::{Braid, Coil};
 use motet::mesh::{CellKind, Cells, Field, Mesh, Surface, open_edges};
 use motet::meshing::even::SurfaceWords;
@@ -172,6 +174,28 @@ fn a_braid_of_wires_that_touch_overlap_or_stay_apart_is_closed_and_even() {
         let volume = after.volume.unwrap();
         assert!((volume / even.report.wires.volume - 1.0).abs() < 0.01);
     }
+}
+
+/// The least cosine between the normals of two triangles at an edge.
+fn sharpest_fold(surface: &Surface) -> f64 {
+    let mut at = BTreeMap::new();
+    for (t, &[a, b, c]) in surface.triangles.iter().enumerate() {
+        at.extend([[a, b], [b, c], [c, a]].map(|edge| (edge, t)));
+    }
+    let normal = |t: usize| unit(area_vector(surface.corners(t))).unwrap();
+    at.iter().map(|(&[u, v], &t)| dot(normal(t), normal(at[&[v, u]]))).fold(1.0, f64::min)
+}
+
+#[test]
+fn no_triangles_are_folded_onto_each_other_where_wires_overlap() {
+    let braid =
+        Braid { radius: 0.6, length: 2.0, wires: 8, pitch: 2.5, wire_radius: 0.05, gap: -0.07, over: 1 };
+    let mut mesh = braid.lines(2).unwrap();
+    mesh.points.iter_mut().for_each(|p| p[0] += 0.5 * p[2] * p[2]);
+    let options = Options::of(Radius::Array("radius".into()));
+    let even = even_tubes(&mesh, &options, &SurfaceWords::default(), &Threads::single()).unwrap();
+    let fold = sharpest_fold(&Surface::of(&even.mesh));
+    assert!(fold > -0.966, "{fold}");
 }
 
 #[test]

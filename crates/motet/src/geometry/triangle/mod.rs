@@ -6,7 +6,7 @@ mod needle;
 use std::ops::Range;
 
 use crate::base::Point;
-use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub, unit};
+use crate::geometry::vector::{self, add, cross, distance, dot, norm, scale, sub, unit};
 
 /// Half the cross product of two sides: its length is the area, its direction the normal (from its tip the
 /// triangle is seen counter-clockwise).
@@ -96,13 +96,23 @@ pub fn closest(triangle: [Point; 3], p: Point) -> [f64; 3] {
     let longest_squared = larger(larger(squares[0], squares[1]), squares[2]);
     let normal = cross(edges[0], sub(c, a));
     let square = dot(normal, normal);
-    let is_well_shaped =
-        FOURTH_POWERS.contains(&square) && square > WELL_SHAPED * longest_squared * longest_squared;
-    if !is_well_shaped {
+    if !is_well_shaped(square, longest_squared) {
         return needle::closest(triangle, p);
     }
     let from_p = [sub(a, p), sub(b, p), sub(c, p)];
     foot(from_p, normal).unwrap_or_else(|| on_edges(from_p, edges, squares))
+}
+
+/// The squared distance of a point from a triangle.
+#[inline]
+pub fn distance_squared(triangle: [Point; 3], p: Point) -> f64 {
+    vector::distance_squared(at(triangle, closest(triangle, p)), p)
+}
+
+/// Whether plain formulas serve for a triangle with this square of twice its area and of its longest side.
+#[inline(always)]
+pub(crate) fn is_well_shaped(square: f64, longest_squared: f64) -> bool {
+    FOURTH_POWERS.contains(&square) && square > WELL_SHAPED * longest_squared * longest_squared
 }
 
 /// Weights of the foot of the perpendicular from the origin; `None` when it lies outside.

@@ -12,8 +12,7 @@ mod search;
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::base::{MaybeId, Point, Threads, TriangleId, VertexId};
-use crate::geometry::triangle::{at, closest};
-use crate::geometry::vector::distance_squared;
+use crate::geometry::triangle;
 use nearby::Nearby;
 use packed::Packed;
 use pairs::{PairSearch, Reach};
@@ -88,9 +87,8 @@ impl NearestTriangle {
     /// The squared distance of a point from one of the triangles.
     ///
     /// Panics if there is no such triangle.
-    pub fn distance_squared(&self, triangle: usize, p: Point) -> f64 {
-        let corners = self.tree.corners(self.tree.id_to_place[triangle] as usize);
-        distance_squared(at(corners, closest(corners, p)), p)
+    pub fn distance_squared(&self, id: usize, p: Point) -> f64 {
+        triangle::distance_squared(self.tree.corners(self.tree.id_to_place[id] as usize), p)
     }
 
     /// The closest of those triangles within `distance` that `admit` admits. `admit` receives the index of a
