@@ -32,8 +32,8 @@ fn parts() -> impl Iterator<Item = [f64; 3]> {
 }
 
 impl Work<'_> {
-    /// Moves vertices by the offset of what is given around them, as far as `admissible` cosines of angles and
-    /// the distance allow.
+    /// Moves vertices by the offset of what is given around them, as far as `admissible` cosines of angles
+    /// and the distance allow.
     pub(super) fn fit(&mut self, admissible: f64) {
         let admits = |sheet: &Sheet, change: &Change| {
             let [before, after] = cosines(sheet, change);
